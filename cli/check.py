@@ -67,7 +67,7 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
 
 def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     """All complaints about all files on standard output, in a format that programs read."""
-    from mbsym.report.words.findings import Finding, found, github_annotations, json_lines, sarif
+    from mbsym.report.words.findings import Finding, findings_of, github_annotations, json_lines, sarif
 
     findings: list[Finding] = []
     worst = OK
@@ -78,7 +78,7 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
             defect(error, path)
             worst = max(worst, FAILED)
             continue
-        findings += found(printable(path.as_posix()), complaints.sorted())
+        findings += findings_of(printable(path.as_posix()), complaints.sorted())
         worst = max(worst, BAD_INPUT if complaints.errors else OK)
     written = {
         "github": github_annotations,

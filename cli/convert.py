@@ -57,6 +57,7 @@ def command(
     Other new names are parameters.  New variables are pure numbers; so is a new parameter that stands once only, at a
     parameter.  Names of units (those of factors first, then the first positive ones) become 1, and what has
     a dimension still is measured in them.  The equations of both are compared exactly before anything is written.
+    Names in factors are taken to be positive.  Claims, abbreviations, limits and units of measurement are left out.
     'mbsym groups' proposes such a list.
 
     \b

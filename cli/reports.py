@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
     from mbsym.model.system import System
     from mbsym.numerics.ledger.entry import Ledger
-    from mbsym.numerics.ledger.work import Wanted
+    from mbsym.numerics.ledger.work import AccuracyGoal
     from mbsym.report.brief import Brief
     from mbsym.report.content import Facts
     from mbsym.report.figures.made_figures import MadeFigure
@@ -61,7 +61,7 @@ class Request:
     terms: int
     quiet: bool
     strict_claims: bool = False
-    ledger: Wanted | bool = False  # or the accuracy that it is held against
+    ledger: AccuracyGoal | bool = False  # or the accuracy that it is held against
     brief: bool = False
     width: int = 0
     angles: Angles | None = None  # None: what each kind of text usually has
@@ -156,7 +156,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     return made_figures(text, meaning(system), unchanged)
 
 
-def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: Wanted | bool) -> Ledger:
+def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: AccuracyGoal | bool) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
     from mbsym.report.runs.ledger import ledger_csv, with_ledger

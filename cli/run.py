@@ -17,21 +17,21 @@ from mbsym_cli.simulate.choice import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
-    from mbsym.numerics.ledger.work import Wanted
+    from mbsym.numerics.ledger.work import AccuracyGoal
 
 
 # ``--ledger`` of ``mbsym run``, and the accuracy that it is held against.
 
 
 @dataclass(frozen=True)
-class Asked:
+class LedgerOptions:
     """As typed."""
 
     ledger: bool
     accuracy: str | None
     until: str | None
 
-    def read(self, asked: Options) -> Wanted | bool:
+    def read(self, asked: Options) -> AccuracyGoal | bool:
         """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
         if self.accuracy is None and self.until is None:
             return self.ledger
@@ -44,14 +44,14 @@ class Asked:
         until = asked.number("--until", self.until)
         if accuracy is None or until is None:
             return self.ledger
-        from mbsym.numerics.ledger.work import Wanted
+        from mbsym.numerics.ledger.work import AccuracyGoal
 
-        return Wanted(accuracy, until)
+        return AccuracyGoal(accuracy, until)
 
 
 ledger_options = group(
     "ledger",
-    Asked,
+    LedgerOptions,
     click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved."),
     click.option(
         "--accuracy",
@@ -106,7 +106,7 @@ def command(
     language: str | None,
     strict_claims: bool,
     brief: bool,
-    ledger: Asked,
+    ledger: LedgerOptions,
     verbose: bool,
     quiet: bool,
 ) -> None:

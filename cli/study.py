@@ -273,7 +273,7 @@ def show_files(folder: Path, names: Iterable[str], language: str) -> None:
     tell(f"  {Language(language).say(Message('files in'))} ", (printable(folder), "bold"), f": {', '.join(names)}")
 
 
-def told(
+def show_result(
     file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
 ) -> None:
     """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""

@@ -95,7 +95,7 @@ def command(
       mbsym batch systems/ --format latex --appendix
       mbsym batch systems/ --cluster tcp://10.0.0.1:8786
     """
-    from mbsym.batch.transport import Asked, Budget
+    from mbsym.batch.transport import BatchOptions, Budget
     from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES
 
@@ -124,7 +124,7 @@ def command(
     request = Request(
         folders=folders,
         out=out,
-        asked=Asked(kinds, numbers, bound, form, wanted),
+        asked=BatchOptions(kinds, numbers, bound, form, wanted),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,

@@ -17,7 +17,7 @@ _APART = {"__pycache__", "node_modules"}
 
 
 @dataclass(frozen=True)
-class Found:
+class Descriptions:
     """``places`` in the order of their files; ``unreadable`` folders with the reason; ``others``: files passed over."""
 
     places: tuple[Place, ...]
@@ -25,7 +25,7 @@ class Found:
     others: int = 0
 
 
-def found_in(paths: Sequence[Path], out: Path) -> Found:
+def found_in(paths: Sequence[Path], out: Path) -> Descriptions:
     """The descriptions of files and folders, with all that is in these; each once, whatever it is called.
 
     Not looked into: hidden folders, links to folders (they may lead round in circles), and ``out``.  A file that is
@@ -46,7 +46,7 @@ def found_in(paths: Sequence[Path], out: Path) -> Found:
                 candidates.append((file, labels[path] / inside))
             else:
                 others += 1
-    return Found(tuple(_places(candidates)), tuple(unreadable), others)
+    return Descriptions(tuple(_places(candidates)), tuple(unreadable), others)
 
 
 def chosen(places: Iterable[Place], patterns: Sequence[str]) -> list[Place]:

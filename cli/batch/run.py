@@ -19,11 +19,11 @@ from mbsym.batch.coordinator import Batch, Place
 from mbsym.batch.digests import derivation
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary, findings
 from mbsym.batch.summary_json import FILENAME, summary_text
-from mbsym.batch.transport import Asked, Budget
+from mbsym.batch.transport import BatchOptions, Budget
 from mbsym.expressions.message import counted
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch.appendix import SUMMARY
-from mbsym_cli.batch.folders import Found, chosen, found_in, share
+from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
 from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
@@ -41,7 +41,7 @@ class Request:
 
     folders: tuple[Path, ...]
     out: Path
-    asked: Asked
+    asked: BatchOptions
     budget: Budget
     jobs: int
     patterns: tuple[str, ...] = ()
@@ -88,7 +88,7 @@ def run(request: Request) -> int:
     return summary.exit_code if whole else summary.exit_code or FAILED
 
 
-def _summed_up(request: Request, places: list[Place], found: Found, started: float) -> tuple[Summary, bool]:
+def _summed_up(request: Request, places: list[Place], found: Descriptions, started: float) -> tuple[Summary, bool]:
     """Every row, and whether the batch was stopped."""
     version = derivation()
     refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
@@ -201,7 +201,7 @@ def _unreadable(folder: str, reason: str) -> Row:
     return Row(folder, "", Outcome.ERRORS, complaints=(complaint,))
 
 
-def _nothing(request: Request, found: Found) -> str:
+def _nothing(request: Request, found: Descriptions) -> str:
     """What to say where there is nothing to do."""
     where = ", ".join(map(printable, request.folders))
     if found.places:

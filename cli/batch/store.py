@@ -16,7 +16,7 @@ from typing import Any
 from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row
-from mbsym.batch.transport import MALFORMED, Asked, Finished, Task, read_row, row_data
+from mbsym.batch.transport import MALFORMED, BatchOptions, Finished, Task, read_row, row_data
 from mbsym.report.targets import FORMATS
 from mbsym_cli.batch.machine import Locks
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle, recover
@@ -34,7 +34,7 @@ _MOST_BYTES = 4 * 256 * 1024 + 1
 class FolderStore:
     """The ``Store`` of a batch in the folder ``out``."""
 
-    def __init__(self, out: Path, asked: Asked, derivation: str) -> None:
+    def __init__(self, out: Path, asked: BatchOptions, derivation: str) -> None:
         self.out, self.asked = out, asked
         problems = None if asked.problems is None else list(asked.problems)
         #: What results follow from besides the description.

@@ -49,7 +49,7 @@ class Choosing:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Goal:
     """What is to be reached, and what is settled already; ``only_plan``: nothing is run.
 
     ``settings`` are those of --set, ``carried`` further options, for the command that repeats the run.
@@ -97,7 +97,7 @@ def with_goal(
     if accuracy is None:
         return wanted
     pins = _pins(wanted.request, choosing, "--arithmetic" in typed)
-    return replace(wanted, goal=Wanted(accuracy, pins, choosing.plan, tuple(settings), tuple(carried)))
+    return replace(wanted, goal=Goal(accuracy, pins, choosing.plan, tuple(settings), tuple(carried)))
 
 
 def _pins(request: Request, choosing: Choosing, arithmetic: bool) -> Pins:

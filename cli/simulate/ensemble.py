@@ -12,7 +12,7 @@ from mbsym.expressions.message import Message
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, progress, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
-from mbsym_cli.study import attempted, told
+from mbsym_cli.study import attempted, show_result
 
 if TYPE_CHECKING:
     from mbsym.expressions.tree import Expression
@@ -68,7 +68,7 @@ def spread(
     if found is None:
         return FAILED
     if not wanted.quiet:
-        told(file, given.system, sentences(found), folder, texts)
+        show_result(file, given.system, sentences(found), folder, texts)
     if found.interrupted:
         complain(file, f"interrupted; kept up to t = {found.times[-1]:.9g}")
         return INTERRUPTED
@@ -123,7 +123,7 @@ def answers(
     if found is None:
         return FAILED
     if not wanted.quiet:
-        told(file, given.system, sentences(found), folder, ["sensitivity.csv"], Message("derivatives"))
+        show_result(file, given.system, sentences(found), folder, ["sensitivity.csv"], Message("derivatives"))
     if found.ended is not None:
         complain(file, f"the derivatives end early: {found.ended}")
         return BROKEN_DOWN

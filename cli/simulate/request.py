@@ -14,7 +14,7 @@ from mbsym_cli.requests import read_some
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.simulation import Request
-    from mbsym_cli.simulate.choice import Wanted
+    from mbsym_cli.simulate.choice import Goal
 
 FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
 
@@ -32,7 +32,7 @@ class Asked:
     request: Request
     formats: tuple[str, ...]
     quiet: bool
-    goal: Wanted | None = None
+    goal: Goal | None = None
     verbose: bool = False
 
 

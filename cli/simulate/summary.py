@@ -13,7 +13,7 @@ from mbsym.report.content import facts, say
 from mbsym.report.language import Language
 from mbsym.report.unit_text import pretty
 from mbsym_cli.console import BROKEN_DOWN, OK, asked_width, complain, printable, show, status, tell
-from mbsym_cli.simulate.choice import Wanted
+from mbsym_cli.simulate.choice import Goal
 from mbsym_cli.simulate.request import Asked
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def planning(asked: Asked, file: Path) -> Iterator[None]:
 
 
 def simulated_to(
-    goal: Wanted, given: Scenario, request: Request, watch: Callable[[float], None], stage: Stage
+    goal: Goal, given: Scenario, request: Request, watch: Callable[[float], None], stage: Stage
 ) -> Simulation:
     """The run that a plan asks for."""
     from mbsym.simulation.accurate import simulate_accurately
@@ -164,7 +164,7 @@ def only_planned(file: Path, given: Scenario, asked: Asked) -> int:
     return OK if plan.reached else BROKEN_DOWN
 
 
-def print_repeat(file: Path, system: System, goal: Wanted, settled: Request) -> None:
+def print_repeat(file: Path, system: System, goal: Goal, settled: Request) -> None:
     """The command that makes the same trajectory without choosing, on a line of its own to be pasted."""
     from mbsym.report.runs.plan_words import repeating_command
 

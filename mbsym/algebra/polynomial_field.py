@@ -20,7 +20,8 @@ class PolynomialField:
 
     Generators of ``context`` are the ``parameters``, then the ``variables``.  ``denominator`` does not vanish where the
     field is regular (it holds det M, and what parameters are divided by).  ``relations`` vanish on all states and are
-    kept by the field: the norm of a unit vector less 1, sin^2 + cos^2 - 1.
+    kept by the field: the norm of a unit vector less 1, sin^2 + cos^2 - 1.  ``roots``: the parameters that are square
+    roots, each with its square in those before it.
     """
 
     context: Any
@@ -29,6 +30,7 @@ class PolynomialField:
     numerators: tuple[Polynomial, ...]
     denominator: Polynomial
     relations: tuple[Polynomial, ...] = ()
+    roots: tuple[tuple[str, Polynomial], ...] = ()
 
     def __post_init__(self) -> None:
         if tuple(self.context.names()) != (*self.parameters, *self.variables):
@@ -109,6 +111,7 @@ class PolynomialField:
             numerators=tuple(map(moved, self.numerators)),
             denominator=denominator,
             relations=tuple(r for r in map(moved, self.relations) if r != 0),
+            roots=tuple((name, moved(square)) for name, square in self.roots),
         )
 
 

@@ -18,7 +18,7 @@ that a result does not depend on the machine.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
@@ -898,15 +898,18 @@ class Ring(Algebra[Polynomial]):
 
     # --- zero test ---------------------------------------------------------------------------------------------------
 
-    def fraction(self, x: Polynomial) -> tuple[Polynomial, list[tuple[Polynomial, int]]]:
-        """(numerator, [(factor, exponent), ...]) with x = numerator / product: reciprocals cleared, gcds removed."""
+    def fraction(self, x: Polynomial, kept: Collection[int] = ()) -> tuple[Polynomial, list[tuple[Polynomial, int]]]:
+        """(numerator, [(factor, exponent), ...]) with x = numerator / product: reciprocals cleared, gcds removed.
+
+        Reciprocals that are ``kept`` stay in the numerator.
+        """
         denominators: list[tuple[Polynomial, int]] = []
         x = self.reduce(x)
         degrees = x.degrees()
         for index in range(self._free + 1, self.spare):
             known = self.generators[index]
             degree = int(degrees[index])
-            if known.kind != "reciprocal" or degree <= 0:
+            if known.kind != "reciprocal" or degree <= 0 or index in kept:
                 continue
             x = self.reduce(self._cleared(x, index, degree, known.argument))
             while degree and x and (quotient := self.quotient(x, known.argument)) is not None:

@@ -6,6 +6,8 @@ either sign of each root.  An element has a reciprocal if the product of its con
 not zero.  Products are reduced at once (s_i^2 is replaced), and common factors of polynomial and denominator cancelled.
 
 Frequencies of normal forms live here: lambda^4 + a lambda^2 + b = 0 by three square roots.
+
+The cosine of a parameter may be a parameter itself, by the name ``cos(x)`` or ``cos(x/2)``; its sine is a root then.
 """
 
 from __future__ import annotations
@@ -89,6 +91,8 @@ class Tower(Algebra[Element]):
         #: s_i^2, polynomials in what stands before them, and what each s_i is divided by to give the root asked for.
         self.squares: list[fmpq_mpoly] = []
         self._asked: list[tuple[Element, Element]] = []
+        #: Roots that are sines of parameters, and those: name and denominator.
+        self._sines: dict[int, tuple[str, int]] = {}
         self._unit, self.work = self.context.constant(1), 0
         self.zero, self.one = self.element(0), self.element(1)
 
@@ -201,16 +205,25 @@ class Tower(Algebra[Element]):
         return fmpq(0) if x.is_zero() else x.top.leading_coefficient() / x.bottom.leading_coefficient()
 
     def kind(self, index: int) -> str | fmpq_mpoly:
-        """What a generator of ``context`` is: the name of a parameter, or the square s^2 of a root."""
+        """What a generator of ``context`` is: a parameter's name, a cosine or sine of one, or a root's square."""
         if index >= MOST_ROOTS:
             return self.parameters[index - MOST_ROOTS]
-        return self.squares[MOST_ROOTS - 1 - index]
+        place = MOST_ROOTS - 1 - index
+        return f"sin({_angle(*self._sines[place])})" if place in self._sines else self.squares[place]
 
     def place(self, root: Element) -> int:
         """Which s_k a root that was adjoined is a multiple of."""
         return next(k for k in range(len(self.squares)) if root.top.degrees()[MOST_ROOTS - 1 - k])
 
     def sin_cos(self, angle: LinearForm) -> tuple[Element, Element]:
+        if len(angle.coefficients) == 1 and angle == LinearForm(angle.coefficients):
+            ((name, share),) = angle.coefficients
+            cosine = f"cos({_angle(name, share.denominator)})"
+            if share.numerator == 1 and cosine in self.parameters:
+                c = self.parameter(cosine)
+                s = self.square_root(1 - c * c)
+                self._sines[self.place(s)] = name, share.denominator
+                return s, c
         raise NoClosedForm(
             "sines and cosines of parameters or numbers in the coefficients: only square roots are exact here"
         )
@@ -224,11 +237,32 @@ class Tower(Algebra[Element]):
         raise NoClosedForm(Message("[[name]] in the coefficients: only square roots are exact here", name=name))
 
     def enclosed(self, x: Element, values: Mapping[str, Any]) -> acb:
-        """x at values of the parameters; roots by their principal values."""
-        point = [acb(0)] * MOST_ROOTS + [acb(values[name]) for name in self.parameters]
+        """x at values of the parameters, of angles, too; roots by their principal values, sines by the angle."""
+        point = [acb(0)] * MOST_ROOTS + [_value(name, values) for name in self.parameters]
         for k, square in enumerate(self.squares):
-            point[MOST_ROOTS - 1 - k] = _at(square, point).sqrt()
+            angle, share = self._sines.get(k, ("", 1))
+            known = angle in values
+            point[MOST_ROOTS - 1 - k] = (acb(values[angle]) / share).sin() if known else _at(square, point).sqrt()
         return _at(x.top, point) / _at(x.bottom, point)
+
+
+def _angle(name: str, denominator: int) -> str:
+    return name if denominator == 1 else f"{name}/{denominator}"
+
+
+def angle_in(name: str) -> tuple[str, str, int] | None:
+    """("cos", "x", 2) of ``cos(x/2)``; None of a plain name."""
+    if name[3:4] != "(":
+        return None
+    angle, _, share = name[4:-1].partition("/")
+    return name[:3], angle, int(share or 1)
+
+
+def _value(name: str, values: Mapping[str, Any]) -> acb:
+    inside = angle_in(name)
+    if name in values or inside is None:
+        return acb(values[name])
+    return (acb(values[inside[1]]) / inside[2]).cos()
 
 
 def _at(x: fmpq_mpoly, point: Sequence[acb]) -> acb:

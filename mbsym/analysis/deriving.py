@@ -295,7 +295,7 @@ def analysis(source: Analysis) -> Analysis:
     return _same(source, system)
 
 
-def told(source: Analysis, name: str) -> Any:
+def result_in_coordinates(source: Analysis, name: str) -> Any:
     """A result there; of angles that are singular on the motion the verdict may be had in others."""
     try:
         return getattr(source.in_coordinates, name)

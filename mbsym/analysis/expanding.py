@@ -17,13 +17,13 @@ from mbsym.analysis.stages import Unavailable
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.motion import relations
+from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold, scaled
 from mbsym.problems.small_parameter.steady import steady_states
-from mbsym.problems.vector_field import Transfer, in_speeds
+from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -35,7 +35,7 @@ class Expansion(Shown):
 
     ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have
     negative real parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what
-    was divided by, and is not zero where the expansion holds.
+    was divided by, and is not zero where the expansion holds; ``velocities``: variables that are rates of others.
     """
 
     manifold: SlowManifold
@@ -45,6 +45,7 @@ class Expansion(Shown):
     fast: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
     slow: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
     provided: tuple[Formula, ...] = ()
+    velocities: tuple[str, ...] = ()
 
     def formula(self, c: Quotient) -> Formula:
         """A coefficient as a formula of the description."""
@@ -70,16 +71,22 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     if small is None:
         raise NoClosedForm("the description names no small parameter", remedy="add 'small parameter: eps'")
     form = analysis.speed_form
-    if form is None:
-        first = next((f"{name}_dot" for name in analysis.system.coordinates), "x_dot")
-        remedy = Message("declare 'speeds' in the bodies, as in  speeds: {v: [[first]]}", first=first)
-        raise NoClosedForm("expansions are made of equations in speeds", remedy=remedy)
     images = relations(analysis.parameters_scene)
     _refuse(analysis, small, values or {}, images)
     equations: Any = analysis.equations
     motion = _motion(analysis)
-    steady = () if isinstance(motion, str) else tuple(motion.values())
-    whole, transfer = in_speeds(form, equations, steady, images)
+    steady: Iterable[Any] = () if isinstance(motion, str) else motion.values()
+    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, [*steady], images)
+    inside = [name for name in whole.variables if not name.isidentifier()]
+    if inside:
+        raise NoClosedForm(
+            Message(
+                "[[names]] are variables: slow manifolds are expanded in positions and velocities that stand by "
+                "themselves",
+                names=", ".join(inside),
+            ),
+            remedy="see 'mbsym oscillations' about a motion",
+        )
     for name, _ in small.powers:
         if name in whole.variables:
             raise NoClosedForm(
@@ -109,13 +116,13 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     if not found.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
     names = tuple(field.context.names())
-    plain = Expansion(found, transfer, names, "")
+    plain = Expansion(found, transfer, names, "", velocities=() if form is not None else analysis.system.velocities)
     divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, functions))
     plain = replace(plain, provided=tuple({str(x): x for x in _open(analysis, divided)}.values()))
     if isinstance(motion, str):
         return replace(plain, missing=motion)
     try:
-        at = {n: _quotient(transfer, names, numbers, x) for n, x in motion.items()}
+        at = {n: _quotient(transfer, names, numbers, x) for n, x in _values(analysis, transfer, motion).items()}
         for name in (*fast, *moving):
             at.setdefault(name, Quotient.of(field.context.constant(0)))
         steady_found = steady_states(there, moving, dict(zip(fast, functions, strict=True)), at, order)
@@ -185,17 +192,34 @@ def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...
     return small.fast
 
 
-def _motion(analysis: Analysis) -> dict[str, Any] | str:
-    """The variables on the unperturbed motion; why there are none otherwise."""
+def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
+    """The unperturbed motion, by variables in speeds, by generators in coordinates; why there is none otherwise."""
     if not analysis.system.motion:
         return "no unperturbed motion is given"
     try:
+        if analysis.speed_form is None:
+            scene, equilibrium = analysis.parameters_scene, analysis.equilibrium
+            if equilibrium.impossible:
+                return "the given motion does not exist"
+            return unperturbed_with(scene, equilibrium.determined(scene))
         found = analysis.first_order
     except Unavailable as unavailable:
         return unavailable.reason
     except Failure as reason:
         return message_of(reason)
     return {name: value.polynomial for name, value in zip(found.names, found.values, strict=True)}
+
+
+def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -> Mapping[str, Any]:
+    """The variables on it.  Raises NoClosedForm where one of them varies."""
+    if analysis.speed_form is not None:
+        return motion
+    found = {}
+    for name, k in zip(transfer.variables, transfer.places[len(transfer.parameters) :], strict=True):
+        if k not in motion:
+            raise NoClosedForm(Message("[[name]] is not constant on the motion", name=name))
+        found[name] = motion[k]
+    return found
 
 
 def _quotient(transfer: Transfer, names: tuple[str, ...], numbers: Mapping[str, Any], p: Any) -> Quotient:

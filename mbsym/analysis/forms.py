@@ -56,14 +56,14 @@ def _write(analysis: Analysis, ring: Ring) -> None:
         write_as(ring, {one.name: one.latex for one in analysis.system.symbols})
 
 
-def asked(analysis: Analysis) -> tuple[str, ...]:
+def requested_forms(analysis: Analysis) -> tuple[str, ...]:
     """The forms that reports of problem 3 show besides Lagrange's, in their order."""
     return tuple(name for name in FORMS if name in analysis.forms) if 3 in analysis.problems else ()
 
 
 def wanted_checks(analysis: Analysis) -> Iterator[str]:
     """The names of the checks of what is told."""
-    shown = asked(analysis)
+    shown = requested_forms(analysis)
     for check, stage in CHECKED.items():
         if stage in shown or (stage == BRACKETS and "hamilton" in shown and 7 in analysis.problems):
             yield check

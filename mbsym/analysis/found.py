@@ -38,7 +38,7 @@ def found_integrals(analysis: Analysis, values: Mapping[str, Fraction]) -> tuple
     with suppress(Failure):
         found += _of_symmetries(symmetries_of(analysis, numbers))
     with suppress(Failure, ZeroDivisionError):
-        there = with_known(setting(analysis, numbers), found)
+        there = with_known(setting(analysis, numbers, driven=True), found)
         found += _polynomials(there, integrals_of(there, DEGREE))
     return tuple(found)
 
@@ -50,7 +50,7 @@ def beyond(analysis: Analysis) -> tuple[Integral, ...]:
     """
     result = analysis.polynomial_integrals
     found = [] if result.symmetries is None else _of_symmetries(result.symmetries)
-    there = setting(analysis)
+    there = setting(analysis, driven=True)
     if not found:
         return tuple(_polynomials(there, result.found))
     try:

@@ -97,9 +97,10 @@ def decided(word: Word) -> Word | None:
 
 
 def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
-    """Whether the applied forces are zero or have a generalized potential; the cyclic coordinates, on which none acts.
+    """Whether the applied forces are zero or have a generalized potential; the cyclic coordinates, which neither holds.
 
-    Both of the nonlinear system: what only terms of high order hold is not overlooked.
+    Of conservative systems those on which none acts: there their momenta are constant, too.  Both of the nonlinear
+    system: what only terms of high order hold is not overlooked.
     """
     from mbsym.problems.normal_forms.generalized_potential import have_generalized_potential  # few ask for it
 
@@ -108,7 +109,8 @@ def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
     ring, names = analysis.ring, analysis.system.coordinates
     running = (*(item.name for item in analysis.system.prescribed), "t")
     conservative = have_generalized_potential(ring, names, applied, running)
-    cyclic = [name for name in names if name in energies.cyclic and ring.vanishes(applied[name])]
+    free = [name for name in names if not conservative or ring.vanishes(applied[name])]
+    cyclic = [name for name in free if name in energies.cyclic]
     held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
     return conservative, frozenset(cyclic) - held
 

@@ -20,7 +20,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
@@ -29,8 +29,8 @@ from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
-from mbsym.problems.angle_field import in_angles
 from mbsym.problems.normal_forms.dissipative import taylor_field
+from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.graded_rows import graded_rows
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
@@ -40,10 +40,14 @@ from mbsym.problems.small_parameter.oscillations import (
     oscillation,
     tower_over,
 )
-from mbsym.problems.vector_field import in_speeds
+from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
+
+
+#: What the sign of the exponent of a cycle says; None of one that is not known.
+_ATTRACTS: dict[str | None, bool] = {"negative": True, "positive": False}
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,8 @@ class Oscillating:
     ``field``: the equations with their numbers; ``taylor``: it is a Taylor series about the motion, cut off; ``real``:
     by the signs of the parameters the frequency at eps = 0 is real and not zero; ``resonances``: the divisors that are
     not known to be different from zero by them.  ``real_amplitude``: so is a determined amplitude.  ``velocities``:
-    variables that are rates of others.
+    variables that are rates of others.  ``attracts``: whether motions near a single cycle come closer to it for small
+    eps > 0, None where that is not known, or depends.
     """
 
     found: Oscillation
@@ -65,6 +70,7 @@ class Oscillating:
     real: bool = False
     resonances: tuple[Divisor, ...] = ()
     real_amplitude: bool = True
+    attracts: bool | None = None
     velocities: tuple[str, ...] = ()
 
     def formula(self, x: Element, ring: Ring | None = None) -> Formula:
@@ -100,7 +106,7 @@ class Oscillating:
         names = [g.name for g in self.ring.generators if g.kind == "parameter" and g.name != "pi"]
         positive = [name for name in names if self.ring.is_positive(self.ring.generator("parameter", name))]
         return Ring(
-            (), (self.phase,), [*names, *(name for _, name in self.denominators)], {self.phase: 1}, positive, spare=40
+            (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
         )
 
     def wave(self, one: Harmonics, told: Ring | None = None) -> Formula:
@@ -201,12 +207,12 @@ def oscillating(
     scaled = {n: numbers.pop(n) for n, _ in small.powers if numbers.get(n)}  # zero has no power
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
-    for name in system.coordinates:
-        if name in powers and velocity_name(name) in field.variables:
-            powers[velocity_name(name)] = powers[name]
+    for name, power in small.powers:  # the velocity of a cyclic coordinate, too
+        if name in system.coordinates and velocity_name(name) in field.variables:
+            powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
-    kept = [name for name in field.parameters if name != small.name and name not in scaled]
+    kept = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
     others = [name for name in system.parameter_names if name not in left]
@@ -255,6 +261,7 @@ def oscillating(
             if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in one.parts)
         ),
         found.kind is Amplitude.FREE or size == "positive",
+        None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
         () if system.speeds else system.velocities,
     )
 
@@ -265,6 +272,8 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
     Constant values and the small parameter keep their names; the amplitude is that of the new leading variable.
     """
     found, old = told.found, told.found.tower
+    if any(angle_in(name) is not None for name in old.parameters):
+        raise NoClosedForm("sines and cosines of parameters stand in it: it is not told in other variables")
     base = with_parameters(system, scaling)
     shown = {name: internal for internal, name in told.symbols.items()}
     kept = [one.name for one in base.parameters if one.name not in shown and one.name != found.small]
@@ -356,6 +365,7 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
         with_zero=tuple(map(called, found.with_zero)),
         not_known=tuple(map(called, found.not_known)),
         other_amplitudes=None if found.other_amplitudes is None else put(found.other_amplitudes),
+        exponent=None if found.exponent is None else (found.exponent[0], put(found.exponent[1]) * slow),
     )
     return replace(
         told,
@@ -398,18 +408,17 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     """The equations; and whether they are cut off."""
     equations: Any = analysis.equations
     images = relations(analysis.parameters_scene)
-    if analysis.speed_form is not None:
-        return in_speeds(analysis.speed_form, equations, (), images)[0], False
     names = analysis.system.coordinates
     weights = dict(small.powers)
-    if analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
+    in_coordinates = analysis.speed_form is None
+    if in_coordinates and analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
         from mbsym.analysis.higher import ignorable
         from mbsym.problems.normal_forms.expansion import expansion
 
         cyclic = ignorable(analysis)[1]
         jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
         return taylor_field(jets, order + 1), True
-    field = in_angles(analysis.ring, names, equations, (), images)[0]
+    field = vector_field(analysis.system, analysis.ring, analysis.speed_form, equations, (), images)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(
@@ -430,8 +439,11 @@ def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str
 
 
 def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
-    positive = [one.name for one in system.parameters if one.name in kept and one.sign == "positive"]
-    return Ring((), (phase,), [*kept, *symbols.values()], {phase: 1}, [*positive, symbols[AMPLITUDE]], spare=40)
+    angles = {inside[1]: inside[2] for name in kept if (inside := angle_in(name)) is not None}
+    names = [name for name in dict.fromkeys((*kept, *angles)) if angle_in(name) is None]
+    positive = [one.name for one in system.parameters if one.name in names and one.sign == "positive"]
+    positive.append(symbols[AMPLITUDE])
+    return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
 
 
 def in_letters(
@@ -449,8 +461,9 @@ def in_letters(
     def generator(index: int) -> Polynomial:
         if index >= MOST_ROOTS:
             name = tower.parameters[index - MOST_ROOTS]
-            return ring.generator("parameter", symbols.get(name, name))
-        return ring.square_root(carried(tower.squares[MOST_ROOTS - 1 - index]))
+            return letter(ring, symbols.get(name, name))
+        kind = tower.kind(index)
+        return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     def carried(p: Any) -> Polynomial:
         total = ring.zero

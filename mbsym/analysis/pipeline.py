@@ -221,7 +221,7 @@ class Analysis(Stages):
         elif self.system.speeds and name in IN_COORDINATES:
             from mbsym.analysis import deriving
 
-            compute = lambda: deriving.told(self, name)  # noqa: E731
+            compute = lambda: deriving.result_in_coordinates(self, name)  # noqa: E731
         elif self.system.speeds and name not in KNOW_SPEEDS:
             compute = _without_speeds
         elif self.system.linear is not None and name not in given.KNOWN:

@@ -25,13 +25,12 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems import perturbation
-from mbsym.problems.angle_field import in_angles
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.result import Cases, PolynomialIntegrals, Polynomials
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
-from mbsym.problems.vector_field import Transfer, in_speeds
+from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -77,8 +76,10 @@ class Setting:
         return Formula(ring, ring.reduce(ring.times(upper, ring.reciprocal(lower))))
 
 
-def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Setting:
+def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, driven: bool = False) -> Setting:
     """The equations of motion as a polynomial field, with numbers in place of some parameters.
+
+    Phases of the time are variables where they may be ``driven``.
 
     Raises NoClosedForm where they are no such field, ZeroDivisionError where it
     divides by zero at these numbers.
@@ -89,16 +90,16 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     listed = listed if form is None else tuple(_without_aside(form, equations.aside, one) for one in listed)
     also = [one.formula.polynomial for one in listed]
     images = relations(analysis.parameters_scene)
+    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, also, images, driven=driven)
+    angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
+    vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
+    exponentials = tuple(name for name in whole.variables if name.startswith("exp("))
     if form is None:
-        whole, transfer = in_angles(analysis.ring, analysis.system.coordinates, equations, also, images)
-        angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
-        vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
-        speeds: tuple[str, ...] = whole.variables
-        held = [*whole.variables, *(angle.strip("()").split("/")[0] for angle in angles)]
+        speeds: tuple[str, ...] = tuple(name for name in whole.variables if name not in exponentials)
+        held = analysis.ring.dependencies(transfer.back(_product(whole)), analysis.system.coordinates)
         aside = tuple(name for name in analysis.system.coordinates if name not in held)
     else:
-        whole, transfer = in_speeds(form, equations, also, images)
-        vectors, speeds, aside = equations.vectors, equations.speeds, _aside(form, equations.aside)
+        vectors, speeds, aside = [*equations.vectors, *vectors], equations.speeds, _aside(form, equations.aside)
     numbers = {name: rationals.exact(x) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     known = _known(whole, field, numbers, transfer, listed)
@@ -107,8 +108,17 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None) ->
     speeds = tuple(name for name in speeds if name in whole.variables)
     alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
     found = [one for one in grouped_by if one]
-    kinds = (whole.variables,) if form is None else tuple(x for x in (speeds, *dict.fromkeys(found), *alone) if x)
+    apart = (exponentials,) if form is None else (*dict.fromkeys(found), *alone)
+    kinds = tuple(x for x in (speeds, *apart) if x)
     return Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside)
+
+
+def _product(field: PolynomialField) -> Any:
+    """All variables times each other."""
+    total = field.context.constant(1)
+    for name in field.variables:
+        total *= field.generator(name)
+    return total
 
 
 def _aside(form: SpeedForm, aside: Sequence[str]) -> tuple[str, ...]:
@@ -224,7 +234,7 @@ DEGREE = 4
 
 def polynomials_of(analysis: Analysis) -> Polynomials:
     """Problem 9 for the symbols of the description."""
-    there = setting(analysis)
+    there = setting(analysis, driven=True)
     found = integrals_of(there, DEGREE)
     on = [one for one in (on_level(found, level) for level in levels(found)) if one.integrals]
     symmetries = None

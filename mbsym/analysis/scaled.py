@@ -28,7 +28,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.analysis.in_groups import in_groups, product
 from mbsym.expressions.message import Message
-from mbsym.expressions.rates import ENDINGS, without_velocity
+from mbsym.expressions.rates import ENDINGS, velocity_name, without_velocity
 from mbsym.expressions.tree import (
     ONE,
     Call,
@@ -113,7 +113,7 @@ def with_parameters(system: System, scaling: Scaling) -> System:
     assumed = [
         Assumption(images[one.name], _RELATIONS[one.sign], number(0))
         for one in system.parameters
-        if one.name in images and one.sign in _RELATIONS and not _positive(images[one.name], signs)
+        if one.name in images and one.sign in _RELATIONS and not _has_sign(images[one.name], one.sign, signs)
     ]
     small = system.small
     needed = set() if small is None else {name for name, _ in small.powers} or {small.name}
@@ -128,7 +128,15 @@ def with_parameters(system: System, scaling: Scaling) -> System:
     )
 
 
-_RELATIONS = {"positive": ">", "negative": "<", "nonzero": "!="}
+_RELATIONS = {"positive": ">", "negative": "<", "nonzero": "!=", "nonnegative": ">=", "nonpositive": "<="}
+
+
+def _has_sign(x: Expression, sign: str, signs: Mapping[str, str]) -> bool:
+    """Whether it follows from the signs of names."""
+    if sign != "negative" and sign != "nonpositive" and _positive(x, signs):
+        return True
+    own = (name for name in names(x) if signs.get(name) == sign and factor_of(x, name) is not None)
+    return any(_positive(x, {**signs, name: "positive"}) for name in own)
 
 
 def _positive(x: Expression, signs: Mapping[str, str]) -> bool:
@@ -147,19 +155,14 @@ def _positive(x: Expression, signs: Mapping[str, str]) -> bool:
 
 
 def _signs(scaling: Scaling, signs: Mapping[str, str]) -> dict[str, str]:
-    """New names that are positive because what they stand in is, with factors that are."""
+    """New names that have the sign of what is put in for, being a factor of it beside others that are positive."""
     found: dict[str, str] = {}
     for name in scaling.new:
         for old, value in scaling.parameters:
             others = {**signs, **found, name: "positive"}
-            if signs.get(old) == "positive" and name in names(value) and _odd(value, name) and _positive(value, others):
-                found[name] = "positive"
+            if name not in signs and old in signs and factor_of(value, name) is not None and _positive(value, others):
+                found[name] = signs[old]
     return found
-
-
-def _odd(x: Expression, name: str) -> bool:
-    """Whether an odd power of a name is a factor of a product."""
-    return factor_of(x, name) is not None
 
 
 def _solved(scaling: Scaling) -> dict[str, Expression]:
@@ -223,6 +226,11 @@ def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Gr
     exponents = {name: vector(name) for name in free}
     candidates = [name for name in (*preferred, *scaling.units, *free) if signs.get(name) == "positive"]
     units = independent(candidates, exponents)
+    lost = next((name for name in free if len(independent((*units, name), exponents)) > len(units)), None)
+    if lost is not None and lost not in units:
+        raise NoDescription(
+            Message("nothing that is positive measures [[name]]", name=lost), remedy="say what it is in new names"
+        )
     rate = [fmpq(-int(base_ == "s")) for base_ in bases]
     moving = (*base.coordinates, *base.variables, *(one.name for one in base.prescribed), *base.input_names)
     return measured_in(exponents, units, rate, {name: vector(name) for name in moving})
@@ -233,7 +241,10 @@ def proposed(system: System, dimensions: Scaling, preferred: Sequence[str]) -> s
 
     ``dimensions`` are those of a scaling that changes nothing.
     """
-    found = _groups(system, dimensions, preferred)
+    try:
+        found = _groups(system, dimensions, preferred)
+    except NoDescription:
+        return ""
     known = {*system.parameter_names, *system.coordinates, *system.variables}
     items = []
 
@@ -328,20 +339,16 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
     values = {one.name: one.value for one in system.parameters if one.value is not None}
     valued = _valued(factor, values)
 
-    def divided(x: Expression | None, by: Expression | None) -> Expression | None:
-        if x is None or by is None:
-            return None
-        return divide(x, by) if names(by) else _valued(divide(x, by), values) or divide(x, by)
+    def divided(x: Expression | None) -> Expression | None:
+        return None if x is None or valued is None else _valued(divide(x, valued), values) or divide(x, valued)
 
     motion = tuple(
-        replace(x, value=divided(x.value, factor), rate=divided(x.rate, factor)) if x.coordinate == name else x
+        replace(x, value=divide(x.value, factor), rate=divide(x.rate, factor)) if x.coordinate == name else x
         for x in kept["motion"]
     )
     initial, start = (
         tuple(
-            replace(x, position=divided(x.position, valued), velocity=divided(x.velocity, valued))
-            if x.coordinate == name
-            else x
+            replace(x, position=divided(x.position), velocity=divided(x.velocity)) if x.coordinate == name else x
             for x in kept[part]
             if x.coordinate != name or valued is not None
         )
@@ -535,9 +542,20 @@ def _demand_law(old: Analysis, new: Analysis, scaling: Scaling, groups: Groups) 
 
 
 def _rows(analysis: Analysis) -> Iterator[list[Formula]]:
-    """Terms that sum up to zero along every motion of the open tree; rates of the positions, and constraints."""
+    """Terms that sum up to zero along every motion of the open tree; rates of the positions, and constraints.
+
+    What the unperturbed motion is, where prescribed motions begin, and inputs that are held, too.
+    """
     found = analysis.equations
     ring = found.forcing[0].ring
+    lower, system = analysis.scene.lower, analysis.system
+    known = ring_environment(system, ring)
+    given = [(one.coordinate, one.value) for one in system.motion]
+    given += [(velocity_name(one.coordinate), one.rate) for one in system.motion]
+    given += [(one.name, one.initial) for one in system.prescribed if one.initial is not None]
+    given += [(one.name, one.held) for one in system.inputs]
+    for name, value in given:
+        yield [Formula(ring, known[name]), Formula(ring, lower(value))]
     speeds = cast("SpeedEquations", found).speeds if found.in_speeds else ()
     rates = [_rate(ring, name) for name in speeds] or [
         Formula(ring, ring.generator("acceleration", name)) for name in analysis.system.coordinates

@@ -22,7 +22,7 @@ import threading
 from contextlib import suppress
 from typing import IO
 
-from mbsym.batch.transport import Asked, Task, task_text
+from mbsym.batch.transport import BatchOptions, Task, task_text
 from mbsym.batch.worker import SINGLE, attend
 
 #: A worker gets: its task, where the answer goes, where complaints go, its lifeline; its nurse, where to report.
@@ -154,7 +154,7 @@ def main() -> None:
     with suppress(Exception):  # whoever comes will see it again
         from mbsym.batch.work import work
 
-        work(Task("pendulum.yaml", "", _PENDULUM, Asked(tuple(sys.argv[2:]))))
+        work(Task("pendulum.yaml", "", _PENDULUM, BatchOptions(tuple(sys.argv[2:]))))
     line.send(b"!")
     gc.collect()
     gc.freeze()  # what is there stays: nobody looks at it again, so that it stays shared

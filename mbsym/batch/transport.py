@@ -29,7 +29,7 @@ def read_task(text: str) -> Task:
         found["file"],
         found["folder"],
         base64.b64decode(found["data"]),
-        Asked(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
+        BatchOptions(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
         found["known"],
     )
 
@@ -88,7 +88,7 @@ def read_row(found: Mapping[str, Any]) -> Row:
 
 
 @dataclass(frozen=True)
-class Asked:
+class BatchOptions:
     """What is asked of every description of a batch.
 
     ``problems`` None: those that the formats show.  ``angles`` is ``products``, ``sums``, ``shorter``, or None: what
@@ -113,7 +113,7 @@ class Task:
     file: str
     folder: str
     data: bytes
-    asked: Asked
+    asked: BatchOptions
     known: str = ""
 
 

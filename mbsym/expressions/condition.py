@@ -35,7 +35,8 @@ _EXAMPLE = 'write for example "theta = 0", "r < 1/10", "theta = pi/2 mod 2*pi ri
 class Condition:
     """``difference`` = left - right passes zero (or, with a ``period``, any multiple of it) in a ``direction``.
 
-    ``text`` is what was written; ``side`` is -1 for ``<``, 1 for ``>``, 0 for ``=``.
+    ``text`` is what was written; ``side`` is -1 for ``<``, 1 for ``>``, 0 for ``=``; ``closed``: it holds with
+    equality, too.
     """
 
     title: str
@@ -44,6 +45,7 @@ class Condition:
     side: int = 0
     direction: str = BOTH
     period: Expression | None = None
+    closed: bool = False
 
 
 def parse_condition(text: str, known: Collection[str], complaints: Complaints, span_of: SpanOf) -> Condition | None:
@@ -98,8 +100,10 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
             direction = word.group()
     if complaints.error_count > before or left is None or right is None:
         return None
-    written = text[begin:].strip()
-    return Condition(title.strip() if colon else written, written, subtract(left, right), side, direction, period)
+    written, closed = text[begin:].strip(), "=" in relation.group()
+    return Condition(
+        title.strip() if colon else written, written, subtract(left, right), side, direction, period, closed
+    )
 
 
 def _expression(

@@ -32,12 +32,17 @@ class Dialect:
     cosine of a name, if the language has a nice way.  ``tables``: whether ``call`` can write those.
     """
 
-    call: Callable[[str, str], str]
-    local: Callable[[int], str]
+    call: Callable[[str, str], str] = lambda function, argument: f"{function}({argument})"
+    local: Callable[[int], str] = lambda count: f"s{count}"
     number: Callable[[Fraction], str] = str
     times: str = "*"
     angle: Callable[[str, str], str] | None = None
     tables: bool = False
+
+
+def angle_name(function: str, name: str) -> str:
+    """``sin_theta``."""
+    return f"{function}_{name}"
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ def box_map(
     except Unfit as unfit:
         if not irrational(unfit) or of is not Of.STABILITY:
             raise
-        functions, because = IrrationalSection(analysis, axes, settings, unfit.complaints), because or told(unfit)
+        functions, because = IrrationalSection(analysis, axes, settings, unfit.complaints), because or unfit_text(unfit)
         there = functions.plain
     kept = kept_in(analysis, there)
     watch("boundaries", 0, 1)
@@ -299,7 +299,7 @@ def irrational(error: Failure) -> bool:
     return isinstance(error, Unfit) and {one.fault for one in error.complaints} == {Fault.IRRATIONAL}
 
 
-def told(error: Unfit) -> str:
+def unfit_text(error: Unfit) -> str:
     """``the matrices hold what is no rational number there: sin(a)``."""
     return "the matrices hold what is no fraction of polynomials: " + ", ".join(
         dict.fromkeys(one.name for one in error.complaints)

@@ -30,7 +30,7 @@ from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.maps.boundaries import Boundaries
-from mbsym.maps.branches_curve import Curve, CurvePoint, Found, curves, joined
+from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
 from mbsym.maps.branches_events import named
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece, Remark
 from mbsym.maps.branches_stability import decided_throughout, is_undamped, stability_changes
@@ -120,7 +120,7 @@ def branches(
         return made()
 
 
-def _doubts(bifurcating: Found, leaving: Found, changing: Found) -> list[Remark]:
+def _doubts(bifurcating: CurvePoints, leaving: CurvePoints, changing: CurvePoints) -> list[Remark]:
     found = [Remark(Doubt.UNFINISHED, x) for one in (bifurcating, leaving) for x in one.unfinished]
     if bifurcating.throughout:
         found.append(Remark(Doubt.THROUGHOUT))

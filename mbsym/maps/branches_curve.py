@@ -178,7 +178,7 @@ class CurvePoint:
 
 
 @dataclass(frozen=True)
-class Found:
+class CurvePoints:
     """Isolated points with p in the range, numbers p over which there are infinitely many, and what was not done.
 
     ``throughout``: there are infinitely many on a set along which p varies.
@@ -219,7 +219,7 @@ class Curve(Varied):
 
     # --- places on the curve ---
 
-    def where(self, further: Sequence[Polynomial], at: Number | None = None) -> Found:
+    def where(self, further: Sequence[Polynomial], at: Number | None = None) -> CurvePoints:
         """The points of the curve, p within the range, at which ``further`` vanish, or at one number p."""
         given = [self.ring.fraction(x)[0] for x in further]
         table = self.table(given)
@@ -228,22 +228,22 @@ class Curve(Varied):
             wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
         return self._solved(table, [*wanted, *table.relations()], at)
 
-    def where_on_components(self, further: Sequence[Polynomial]) -> Found:
+    def where_on_components(self, further: Sequence[Polynomial]) -> CurvePoints:
         """As ``where``, component by component of the curve: longer polynomials are short on one."""
         given = [self.ring.fraction(x)[0] for x in further]
         table = self.table(given)
         equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         whole = solve(equations, usable, table.bounded(), self.limits)
-        found = [Found((), (), False, whole.unfinished)]
+        found = [CurvePoints((), (), False, whole.unfinished)]
         wanted = [table.polynomial(x) for x in given]
         for family in whole.families:
             if any(part.dimension > 1 for part in whole.families):
-                return Found((), (), True, ())
+                return CurvePoints((), (), True, ())
             found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None))
         return joined(found)
 
-    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> Found:
+    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> CurvePoints:
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         result = solve(equations, usable, table.bounded(), self.limits)
         points = []
@@ -261,7 +261,7 @@ class Curve(Varied):
                     shown = self._shown_at(table, family, p)
                     continua += [p] if shown else []
                     unfinished += [] if shown else ["whether infinitely many equilibria at one value are real"]
-        return Found(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
+        return CurvePoints(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
 
     def _conjugates(self, table: Unknowns, family: Family) -> list[Number]:
         """The numbers in the range that p may have on a family, as it has one of them at the sample."""
@@ -301,33 +301,34 @@ class Curve(Varied):
 
     # --- places that are no points ---
 
-    def borders(self) -> Found:
+    def borders(self) -> CurvePoints:
         """Where a square root vanishes, a denominator does, or a length goes to infinity."""
         parts = [self._without_conditions([x]) for x in self.undefined()]
         parts += [
-            Found((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one) for one in self.at_infinity()
+            CurvePoints((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one)
+            for one in self.at_infinity()
         ]
         return joined([*parts, self._massless()])
 
-    def _massless(self) -> Found:
+    def _massless(self) -> CurvePoints:
         """Where det M = 0: the coordinates are singular, and what is found there is not counted.
 
         Where it vanishes all along a branch, other branches meet that one in singular points only.
         """
         if self.mass is None:
-            return Found((), (), False, (MASS_OPEN,))
+            return CurvePoints((), (), False, (MASS_OPEN,))
         if self.mass.is_constant():
-            return Found((), (), False, ())
+            return CurvePoints((), (), False, ())
         return replace(self.where([self.mass]), throughout=False)
 
-    def _without_conditions(self, further: Sequence[Polynomial]) -> Found:
+    def _without_conditions(self, further: Sequence[Polynomial]) -> CurvePoints:
         kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
         try:
             return self.where(further)
         finally:
             self.search.nonzero = kept
 
-    def _gone(self, table: Unknowns, equations: Sequence[Any]) -> Found:
+    def _gone(self, table: Unknowns, equations: Sequence[Any]) -> CurvePoints:
         """The values of p at which a length may go to infinity."""
         result = solve(equations, (), table.bounded(), self.limits)
         numbers = [self._number(table, one, None) for one in result.points]
@@ -337,12 +338,12 @@ class Curve(Varied):
                 numbers += self._conjugates(table, family)
             else:
                 unfinished.append("whether branches go to infinity is not decided")
-        return Found((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
+        return CurvePoints((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
 
 
-def joined(parts: Sequence[Found]) -> Found:
+def joined(parts: Sequence[CurvePoints]) -> CurvePoints:
     """What several searches found, together."""
-    return Found(
+    return CurvePoints(
         tuple(x for one in parts for x in one.points),
         tuple(x for one in parts for x in one.continua),
         any(one.throughout for one in parts),

@@ -18,7 +18,7 @@ from mbsym.algebra.characteristic import characteristic_polynomial, discriminant
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial
-from mbsym.maps.branches_curve import Curve, Found, joined
+from mbsym.maps.branches_curve import Curve, CurvePoints, joined
 from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest
@@ -32,24 +32,24 @@ MOST_TERMS = 4000
 BY_INERTIA = frozenset({"Lagrange-Dirichlet", "Lagrange-Dirichlet, Routh", "Kelvin-Chetaev"})
 
 
-def stability_changes(curve: Curve) -> Found:
+def stability_changes(curve: Curve) -> CurvePoints:
     """The points of the curve at which a condition of stability besides det K is an equality."""
     linear = curve.search._linear
     if isinstance(linear, str) or linear.varying:
-        return Found((), (), False, ("no linear equations",))
+        return CurvePoints((), (), False, ("no linear equations",))
     try:
         conditions = _conditions(curve, linear)
     except Failure as reason:
-        return Found((), (), False, (str(reason),))
+        return CurvePoints((), (), False, (str(reason),))
     if conditions is None:
-        return Found((), (), False, (f"more than {MOST_COORDINATES} coordinates, or polynomials too long",))
+        return CurvePoints((), (), False, (f"more than {MOST_COORDINATES} coordinates, or polynomials too long",))
     found = []
     for x in conditions:
         try:
             one = curve.where_on_components([x])
             found.append(curve.where([x]) if one.unfinished else one)
         except Failure as reason:
-            found.append(Found((), (), False, (str(reason),)))
+            found.append(CurvePoints((), (), False, (str(reason),)))
     return joined(found)
 
 

@@ -87,7 +87,14 @@ def falling_scene(scene: Scene[S]) -> Scene[S]:
     """The same system seen from its falling frames: their origins are at rest and their weight is gone."""
     frames = frozenset(falling_frames(scene.system))
     return Scene(
-        scene.system, scene.algebra, scene.environment, scene.ring, scene.frozen, falling=frames, given=scene.given
+        scene.system,
+        scene.algebra,
+        scene.environment,
+        scene.ring,
+        scene.frozen,
+        falling=frames,
+        given=scene.given,
+        in_speeds=scene.in_speeds,
     )
 
 

@@ -19,7 +19,7 @@ from mbsym.model.linear import LinearModel
 from mbsym.model.system import System
 
 
-class Given(NamedTuple, Generic[S]):
+class GivenMatrices(NamedTuple, Generic[S]):
     """M, C = D + G, S = K + N (n x n) and B (n x m)."""
 
     mass: ScalarMatrix[S]
@@ -28,7 +28,7 @@ class Given(NamedTuple, Generic[S]):
     inputs: ScalarMatrix[S]
 
 
-def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
+def given_matrices(scene: Scene[S], linear: LinearModel) -> GivenMatrices[S]:
     """M, C, S, B as ``scene`` lowers formulas."""
     size, given = len(linear.coordinates), linear.matrix("B")
     inputs = 0 if given is None else len(given.rows[0])
@@ -50,8 +50,8 @@ def given_matrices(scene: Scene[S], linear: LinearModel) -> Given[S]:
 
     if linear.of_first_order:
         nothing = lowered("D", size)
-        return Given(nothing, lowered("M", size), -lowered("A", size), lowered("B", inputs))
-    return Given(lowered("M", size), total(("D", "G", "C")), total(("K", "N", "S")), lowered("B", inputs))
+        return GivenMatrices(nothing, lowered("M", size), -lowered("A", size), lowered("B", inputs))
+    return GivenMatrices(lowered("M", size), total(("D", "G", "C")), total(("K", "N", "S")), lowered("B", inputs))
 
 
 WITHOUT_BODIES = Message("the system is given by its matrices, and has no bodies")

@@ -50,7 +50,7 @@ class Kane:
                 own = self._projected({wrench.body: (wrench.force, wrench.moment)})
                 totals = [a + b for a, b in zip(totals, own, strict=True)]
             for name, force in action.generalized.items():
-                velocity = self.form.velocities[name]
+                velocity = self.form.velocity(name)
                 for r, u in enumerate(self.form.speeds):
                     totals[r] = totals[r] + ring.times(force, ring.derivative(velocity, u.name))
         return [ring.reduce(x) for x in totals]

@@ -21,7 +21,7 @@ from mbsym.algebra.vectors import Tensor, Vector, axis_vector, tensor_of, zero_v
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.mechanics.frames import Turn, back, forward, given_rotation
 from mbsym.mechanics.variables import time_derivative
-from mbsym.model.system import INERTIAL, Body, System
+from mbsym.model.system import INERTIAL, Body, Load, System
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,8 @@ class Scene(Generic[S]):
 
     ``ring`` is the system's exact ring; formulas that simplify only there (the distance of an orbit point) are made in
     it and carried over.  With ``frozen`` the prescribed quantities and t stand still;
-    without ``bodies`` only expressions are lowered.  What is ``given`` of bodies is taken as it is.
+    without ``bodies`` only expressions are lowered.  What is ``given`` of bodies is taken as it is; where ``in_speeds``
+    speeds and unit vectors have values, and loads are taken as they were written.
     Seen from frames that are ``falling`` their origins are at rest,
     and gravity is what it is beyond that at the origin (``mbsym.mechanics.falling``).
     """
@@ -76,8 +77,10 @@ class Scene(Generic[S]):
         bodies: bool = True,
         falling: frozenset[str] = frozenset(),
         given: Mapping[str, Given[S]] | None = None,
+        in_speeds: bool = False,
     ) -> None:
         self.system = system
+        self.in_speeds = in_speeds
         self.given = given or {}
         self.algebra = algebra
         self.ring = ring
@@ -89,6 +92,11 @@ class Scene(Generic[S]):
         self.motions: dict[str, BodyMotion[S]] = {}
         for body in system.bodies if bodies else ():
             self.motions[body.name] = self._motion(body)
+
+    @property
+    def loads(self) -> tuple[Load, ...]:
+        """The loads in formulas that have values here."""
+        return tuple(x.written for x in self.system.loads) if self.in_speeds else self.system.loads
 
     def _motion(self, body: Body) -> BodyMotion[S]:
         algebra, lower, name, before = self.algebra, self.lower, body.name, body.attached_to

@@ -98,7 +98,7 @@ def _residuals(form: SpeedForm, scene: Scene, inputs: Mapping[str, Node]) -> lis
             generalized[name] = generalized.get(name, program.zero) + value
     powers = [(x, v) for name, (force, moment) in wrenches.items() for x, v in _pairs(scene, name, force, moment)]
     carry = Carrier(form.ring, program, inputs)
-    powers += [(-force, carry(form.velocities[name])) for name, force in generalized.items()]
+    powers += [(-force, carry(form.velocity(name))) for name, force in generalized.items()]
     rows = jacobian(program, [velocity for _, velocity in powers], speeds)
     totals = [program.zero for _ in speeds]
     for (needed, _), row in zip(powers, rows, strict=True):

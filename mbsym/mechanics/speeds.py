@@ -200,6 +200,11 @@ class SpeedForm:
         own, rate = self.ring.index("velocity", name), self.ring.index("acceleration", name)
         return Variable(velocity_name(name), acceleration_name(name), own, rate)
 
+    def velocity(self, name: str) -> Polynomial:
+        """What a generalised force on a coordinate or speed of that name works on, in (s, u, t)."""
+        found = self.velocities.get(name)
+        return self.ring.generator("coordinate", name) if found is None else found
+
     # --- scenes ------------------------------------------------------------------------------------------------------
 
     def _given(self, algebra: Algebra, values: Mapping[str, Scalar], only_vectors: bool) -> dict[str, Given]:
@@ -231,7 +236,7 @@ class SpeedForm:
             first, second = own if carry is None else (carry(own[0]), carry(own[1]))
             environment |= {velocity_name(name): first, acceleration_name(name): second}
         given = self._given(algebra, values, only_vectors=False)
-        return Scene(self.system, algebra, environment, self.ring, bodies=bodies, given=given)
+        return Scene(self.system, algebra, environment, self.ring, bodies=bodies, given=given, in_speeds=True)
 
     @cached_property
     def _gone(self) -> frozenset[str]:

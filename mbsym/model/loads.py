@@ -44,6 +44,11 @@ class Acting:
     along_line: ClassVar[bool] = False
 
     @property
+    def written(self) -> Self:
+        """As it stands in the file: with speeds and unit vectors where those were written."""
+        return self
+
+    @property
     def coordinates(self) -> tuple[str, ...]:
         """The coordinates on which it acts directly."""
         return ()
@@ -97,6 +102,19 @@ class Acting:
     def measured(self) -> Iterator[Measured]:
         """Its formulas and what they measure, those of its points apart."""
         return iter(())
+
+
+class _Free(Acting):
+    """A load of free formulas.  Where these hold speeds or unit vectors of bodies it is kept ``as_written``, and stands
+    beside as the same load in coordinates and velocities."""
+
+    __slots__ = ()
+
+    as_written: Self | None
+
+    @property
+    def written(self) -> Self:
+        return self if self.as_written is None else self.as_written
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,12 +290,11 @@ class IsotropicDamper(_BetweenPoints):
 
 
 @dataclass(frozen=True, slots=True)
-class ForceFunction(Acting):
+class ForceFunction(_Free):
     """A free force function U(q, t), added to L; a ``potential`` in the description is stored as U = -potential.
 
     ``spelled`` remembers which of the two the description used ("force function" or "potential") and is only for
-    writing it back; ``expression`` is what stands in the file.  Where that holds unit vectors of bodies it is kept as
-    ``in_vectors``, and ``expression`` is the same function of the angles that these replace.
+    writing it back; ``expression`` is what stands in the file.
     """
 
     conservative = True
@@ -285,23 +302,19 @@ class ForceFunction(Acting):
     expression: Expression
     spelled: str = "force function"
     span: Span | None = _span()
-    in_vectors: Expression | None = None
-
-    @property
-    def written(self) -> Expression:
-        """What stands in the file."""
-        return self.expression if self.in_vectors is None else self.in_vectors
+    as_written: ForceFunction | None = None
 
     def measured(self) -> Iterator[Measured]:
         yield Measured(self.expression, ENERGY, f"a {self.spelled}")
 
 
 @dataclass(frozen=True, slots=True)
-class Rayleigh(Acting):
+class Rayleigh(_Free):
     """A free dissipation function R(q, q'); its generalised forces are -dR/dq'."""
 
     expression: Expression
     span: Span | None = _span()
+    as_written: Rayleigh | None = None
 
     @property
     def dissipation_function(self) -> Expression:
@@ -312,11 +325,12 @@ class Rayleigh(Acting):
 
 
 @dataclass(frozen=True, slots=True)
-class GeneralizedForce(Acting):
+class GeneralizedForce(_Free):
     """Q for some coordinates, as expressions in coordinates, velocities, parameters and t."""
 
     components: tuple[tuple[str, Expression], ...]
     span: Span | None = _span()
+    as_written: GeneralizedForce | None = None
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -328,11 +342,13 @@ class GeneralizedForce(Acting):
 
     def without(self, held: Container[str]) -> Self | None:
         kept = tuple((name, force) for name, force in self.components if name not in held)
-        return replace(self, components=kept) if kept else None
+        written = None if self.as_written is None else self.as_written.without(held)
+        return replace(self, components=kept, as_written=written) if kept else None
 
     def simplified(self) -> Self | None:
         kept = tuple((name, force) for name, force in self.components if rational(force) != 0)
-        return replace(self, components=kept) if kept else None
+        written = None if self.as_written is None else self.as_written.simplified()
+        return replace(self, components=kept, as_written=written) if kept else None
 
     def measured(self) -> Iterator[Measured]:
         for name, force in self.components:
@@ -340,13 +356,14 @@ class GeneralizedForce(Acting):
 
 
 @dataclass(frozen=True, slots=True)
-class PointForce(Acting):
+class PointForce(_Free):
     """A force on a point of a body, with components in the axes of ``axes`` (the body itself: a follower force)."""
 
     point: Point
     components: Vector
     axes: str
     span: Span | None = _span()
+    as_written: PointForce | None = None
 
     @property
     def points(self) -> tuple[Point]:
@@ -366,7 +383,7 @@ class PointForce(Acting):
 
 
 @dataclass(frozen=True, slots=True)
-class Torque(Acting):
+class Torque(_Free):
     """A torque on a body, with components in the axes of ``axes``; ``reaction_on`` feels the opposite one."""
 
     body: str
@@ -374,6 +391,7 @@ class Torque(Acting):
     axes: str
     reaction_on: str | None = None
     span: Span | None = _span()
+    as_written: Torque | None = None
 
     @property
     def bodies(self) -> tuple[str, ...]:
@@ -394,6 +412,8 @@ class Torque(Acting):
             yield Measured(x, ENERGY, "a torque")
 
 
+#: What is made of formulas that may hold speeds and unit vectors.
+Free = ForceFunction | Rayleigh | GeneralizedForce | PointForce | Torque
 Load = (
     NewtonianGravity
     | UniformGravity
@@ -402,9 +422,5 @@ Load = (
     | CoordinateDamper
     | PointDamper
     | IsotropicDamper
-    | ForceFunction
-    | Rayleigh
-    | GeneralizedForce
-    | PointForce
-    | Torque
+    | Free
 )

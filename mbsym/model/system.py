@@ -37,7 +37,7 @@ from mbsym.model.basics import rational as rational
 from mbsym.model.claims import Abbreviation, Claim
 from mbsym.model.inputs import Input, Output
 from mbsym.model.linear import LinearModel
-from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
+from mbsym.model.loads import Free, Load, NewtonianGravity, UniformGravity
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.units import Units
 
@@ -304,9 +304,10 @@ class System(GuessesNames):
     def without_speeds(self) -> System:
         """The same system in generalised coordinates and their derivatives; claims and abbreviations left out."""
         bodies = tuple(replace(body, speeds=(), orientation=()) for body in self.bodies)
+        loads = tuple(replace(x, as_written=None) if isinstance(x, Free) else x for x in self.loads)
         named = {*self.coordinates}  # a dependent speed is none of the coordinates'
         dependent = tuple(name for name in self.dependent if name in named)
-        return replace(self, bodies=bodies, claims=(), abbreviations=(), dependent=dependent)
+        return replace(self, bodies=bodies, loads=loads, claims=(), abbreviations=(), dependent=dependent)
 
     @property
     def claimable(self) -> tuple[str, ...]:

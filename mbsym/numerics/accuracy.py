@@ -136,7 +136,7 @@ def estimated(
     ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
     runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.planning.prices``).
     """
-    if not found.whole:
+    if not found.whole or found.times[-1] == found.times[0]:
         return NoEstimate(Lacking.NOT_WHOLE)
     if len(found.times) < 2:
         return NoEstimate(Lacking.NOTHING)

@@ -1,19 +1,33 @@
-"""The equations of motion in speeds as a polynomial vector field: Euler-Poisson's, Kirchhoff's and their like."""
+"""The equations of motion as one polynomial vector field x' = X(x), whatever a description says its state by.
+
+    det(M) u' = adj(M) f,      s' = g(s, u),      g' = dg/dx . x'    for every g that stands in X
+
+Variables are the velocities or speeds u and what X holds of positions, by itself or in functions: coordinates, unit
+vectors and quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the
+exponent, and the relation between those whose exponents are dependent; phases that are driven at a rate.  Each variable
+brings in what its own derivative holds.  Positions on which nothing depends are left out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from math import gcd, lcm
 from typing import Any
 
-from flint import Ordering, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpz_mat
 
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.mechanics.variables import ring_environment
+from mbsym.model.system import System
+from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 #: No relations between parameters.
@@ -22,57 +36,202 @@ NOTHING: Mapping[int, Polynomial] = {}
 SINGULAR = "the mass matrix is singular everywhere, so that the equations do not determine all accelerations"
 
 
-def in_speeds(
-    form: SpeedForm,
-    equations: SpeedEquations,
+def vector_field(
+    system: System,
+    ring: Ring,
+    form: SpeedForm | None,
+    equations: Equations,
     also: Sequence[Polynomial] = (),
     images: Mapping[int, Polynomial] = NOTHING,
+    driven: bool = False,
 ) -> tuple[PolynomialField, Transfer]:
-    """(u, s)' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
+    """x' over QQ[parameters], with det(M) as a part of the denominator, and the way from the ring there.
 
-    Variables are the speeds and the positions on which the equations depend; parameters are those that occur in the
-    equations and in ``also``, where ``images`` (by generator) take the place of dependent ones.  Raises NoClosedForm
-    where M is singular, the time, roots or functions occur, or angles do: their sines and cosines are no variables
-    here.
+    Parameters are those that occur in the equations and in ``also``, where ``images`` (by generator) take the place of
+    dependent ones; phases are variables where they may be ``driven``.  Raises NoClosedForm where M is singular, and
+    where the time, inputs, roots or functions other than exponentials occur.
     """
-    ring = form.ring
-    field = Field(form, equations)
-    if ring.vanishes(field.determinant):
-        raise NoClosedForm(SINGULAR)
-    positions = [one for one in form.positions if one.name not in equations.aside]
-    numerators = [*field.scaled, *(ring.times(field.determinant, form.rates[one.name]) for one in positions)]
-    scaled = [put_in(ring, p, images) for p in (field.determinant, *numerators)]
-    variables = [*form.speeds, *positions]
-    relations = []
-    names = {one.name for one in positions}
-    for first, second in (pair for pair in equations.products):
-        (name, components), (other, others) = first, second
-        if not names.issuperset((*components, *others)):
-            continue
-        total = ring.zero if name != other else -ring.one
-        for a, b in zip(components, others, strict=True):
-            total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
-        relations.append(total)
-    places = {one.index: one.name for one in variables}
-    fractions = [ring.fraction(p) for p in scaled]
+    state = _State(system, ring, form, equations, images, driven)
+    variables = state.variables()
+    relations = state.relations(variables)
+    polynomials = [state.determinant, *variables.values()]
+    fractions = [ring.fraction(p, state.kept) for p in polynomials]
     held = [factor for _, factors in fractions for factor, _ in factors]
     also = [put_in(ring, x, images) for x in also]
     also = [p for x in also for p in (ring.fraction(x)[0], *(f for f, _ in ring.fraction(x)[1]))]
-    transfer = transfer_of(ring, places, [*(p for p, _ in fractions), *held, *relations, *also], images)
-    tops, bottoms = zip(*(transfer.fraction(p) for p in scaled), strict=True)
-    common = bottoms[0]
+    places = {k: state.name(k) for k in variables}
+    parameters = occurring([*(p for p, _ in fractions), *held, *relations, *also])
+    parameters = [k for k in parameters if k not in places and ring.generators[k].kind == "parameter"]
+    transfer = Transfer(ring, places, parameters, images, state.kept)
+    tops, bottoms = zip(*(transfer.fraction(p) for p in polynomials), strict=True)
+    common: Any = bottoms[0]
     for bottom in bottoms[1:]:
         common = common * (bottom / bottom.gcd(common))
     cleared = [top * (common / bottom) for top, bottom in zip(tops, bottoms, strict=True)]
     moved, denominator = in_lowest_terms(cleared[1:], cleared[0])
-    return PolynomialField(
+    field = PolynomialField(
         transfer.context,
         transfer.parameters,
         transfer.variables,
         tuple(moved),
         denominator,
-        tuple(transfer(p) for p in relations),
-    ), transfer
+        tuple(map(transfer, relations)),
+    )
+    return field, transfer
+
+
+class _State:
+    """Generators of the ring as variables: how each moves, how it is called, what ties it to others."""
+
+    def __init__(
+        self,
+        system: System,
+        ring: Ring,
+        form: SpeedForm | None,
+        equations: Equations,
+        images: Mapping[int, Polynomial],
+        driven: bool,
+    ) -> None:
+        self.system, self.ring, self.form, self.equations = system, ring, form, equations
+        self.images, self.driven = images, driven
+        mass, forcing = equations.mass_matrix.polynomials, [x.polynomial for x in equations.forcing]
+        whole = determinant(ring, mass)
+        if ring.vanishes(whole):
+            raise NoClosedForm(SINGULAR)
+        self.determinant, *scaled = (put_in(ring, p, images) for p in (whole, *cramer(ring, mass, forcing)))
+        if form is None:
+            self.unknowns = {ring.index("velocity", name): f"{name}_dot" for name in system.coordinates}
+            self.rates = {name: ring.generator("velocity", name) for name in system.coordinates}
+        else:
+            self.unknowns = {u.index: u.name for u in form.speeds}
+            self.rates = dict(form.rates)
+        self.accelerations = dict(zip(self.unknowns, scaled, strict=True))
+        lower = Lowering(ring, ring_environment(system, ring))
+        self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
+
+    @property
+    def kept(self) -> list[int]:
+        """Reciprocals of exponentials: variables, and no denominators."""
+        ring = self.ring
+        return [
+            k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal" and self._exponent(k) is not None
+        ]
+
+    def _exponent(self, k: int) -> Any:
+        """a, where the generator is exp(a) and a is made of positions and parameters; else None."""
+        ring, sign = self.ring, 1
+        g = ring.generators[k]
+        if g.kind == "reciprocal":
+            inner, sign = occurring([g.argument])[0], -1
+            if g.argument != ring.context.gen(inner):
+                return None
+            g = ring.generators[inner]
+        if g.kind != "function" or g.name != "exp":
+            return None
+        held = [(i, ring.generators[i]) for i in occurring([g.argument])]
+        moved = [i for i, one in held if self._follows(i)]
+        return sign * g.argument if moved and all(i in moved or one.kind == "parameter" for i, one in held) else None
+
+    def _follows(self, k: int) -> bool:
+        """Whether it is a position, a sine or a cosine that moves as ``rates`` say."""
+        g = self.ring.generators[k]
+        return g.kind in ("coordinate", "sine", "cosine", "prescribed") and g.name in self.rates
+
+    def variables(self) -> dict[int, Polynomial]:
+        """det(M) times the derivative of every variable, in the order in which they are told."""
+        ring, found, waiting = self.ring, dict(self.accelerations), [self.determinant, *self.accelerations.values()]
+        while waiting:
+            fractions = [ring.fraction(p, self.kept) for p in waiting]
+            held = occurring([*(p for p, _ in fractions), *(f for _, factors in fractions for f, _ in factors)])
+            new = {
+                i for k in held for i in (k, self._partner(k)) if ring.generators[i].kind != "parameter"
+            } - found.keys()
+            waiting = [found.setdefault(k, self._rate(k)) for k in sorted(new)]
+        return {k: found[k] for k in sorted(found, key=self._order)}
+
+    def _partner(self, k: int) -> int:
+        """The cosine of a sine, and the other way round."""
+        g = self.ring.generators[k]
+        other = {"sine": "cosine", "cosine": "sine"}.get(g.kind)
+        return k if other is None or not self.ring.has(other, g.name) else self.ring.index(other, g.name)
+
+    def _order(self, k: int) -> tuple[int, int]:
+        """Velocities, pairs of sine and cosine, positions, functions."""
+        g, names = self.ring.generators[k], [*self.rates]
+        if k in self.unknowns:
+            return 0, list(self.unknowns).index(k)
+        if g.kind in ("sine", "cosine"):
+            return 1, 2 * names.index(g.name) + (g.kind == "cosine")
+        return (2, names.index(g.name)) if g.name in names else (3, -k)
+
+    def _rate(self, k: int) -> Polynomial:
+        """det(M) dg/dt of a generator g."""
+        ring, own = self.ring, self.ring.context.gen(k)
+        if not self._follows(k) and self._exponent(k) is None:
+            raise no_variable(ring, k)
+        slopes = [ring.times(ring.derivative(own, x), self.rates[x]) for x in ring.dependencies(own, self.rates)]
+        return ring.reduce(ring.times(self.determinant, put_in(ring, ring.reduce(sum(slopes, ring.zero)), self.images)))
+
+    def name(self, k: int) -> str:
+        """``theta_dot``, ``sin(theta/2)``, ``exp(x - y)``."""
+        g, exponent = self.ring.generators[k], self._exponent(k)
+        if k in self.unknowns:
+            return self.unknowns[k]
+        if exponent is not None:
+            return f"exp({Formula(self.ring, exponent)})"
+        if g.kind in ("sine", "cosine"):
+            angle = g.name if g.denominator == 1 else f"{g.name}/{g.denominator}"
+            return f"{g.kind[:3]}({angle})"
+        return str(g.name)
+
+    def relations(self, variables: Collection[int]) -> list[Polynomial]:
+        """What vanishes on all states."""
+        ring, found = self.ring, []
+        for k in variables:
+            if ring.generators[k].kind == "sine":
+                found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
+        names = {ring.generators[k].name for k in variables}
+        if isinstance(self.equations, SpeedEquations):
+            for (name, components), (other, others) in self.equations.products:
+                if names.issuperset((*components, *others)):
+                    total = ring.zero if name != other else -ring.one
+                    for a, b in zip(components, others, strict=True):
+                        total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
+                    found.append(total)
+        return [*found, *self._between_exponentials([k for k in variables if self._exponent(k) is not None])]
+
+    def _between_exponentials(self, places: Sequence[int]) -> list[Polynomial]:
+        """exp(a)^m exp(b)^n ... = exp(c)^k ... for the integers with  m a + n b + ... = k c + ...
+
+        Raises NoClosedForm where only constants are left of such a sum, or several are zero.
+        """
+        if not places:
+            return []
+        ring, exponents = self.ring, [self._exponent(k) for k in places]
+        free = [
+            x if g.kind == "parameter" else ring.zero for g, x in zip(ring.generators, ring.context.gens(), strict=True)
+        ]
+        moving = [(a - a.compose(*free)).to_dict() for a in exponents]
+        rows = [[a.get(m, fmpq(0)) for a in moving] for m in sorted({m for a in moving for m in a})]
+        rows = [[x * lcm(*(int(y.q) for y in row)) for x in row] for row in rows]
+        columns, count = fmpz_mat([[int(x.p) for x in row] for row in rows]).nullspace()
+        if not count:
+            return []
+        column = [int(columns[k, 0]) for k in range(len(places))]
+        powers = [x // gcd(*column) for x in column]
+        if count > 1 or not ring.vanishes(ring.dot(exponents, [ring.number(n) for n in powers])):
+            raise NoClosedForm(
+                Message(
+                    "the exponentials [[names]] are related in several ways, or by a constant factor",
+                    names=", ".join(map(self.name, places)),
+                ),
+                remedy="write them as powers of fewer exponentials",
+            )
+        sides = [ring.one, ring.one]
+        for k, n in zip(places, powers, strict=True):
+            sides[int(n < 0)] = sides[int(n < 0)] * ring.context.gen(k) ** abs(n)
+        difference = sides[0] - sides[1]
+        return [difference / difference.leading_coefficient()]
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:
@@ -81,7 +240,10 @@ def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polyn
 
 
 class Transfer:
-    """Polynomials of a ring over a context of parameters and variables alone.  Raises NoClosedForm for others."""
+    """Polynomials of a ring over a context of parameters and variables alone.  Raises NoClosedForm for others.
+
+    ``places``: generators of the ring that are variables, by name; ``kept`` those that are reciprocals.
+    """
 
     def __init__(
         self,
@@ -89,8 +251,9 @@ class Transfer:
         places: dict[int, str],
         parameters: Sequence[int],
         images: Mapping[int, Polynomial] = NOTHING,
+        kept: Collection[int] = (),
     ) -> None:
-        self.ring, self.images = ring, images
+        self.ring, self.images, self.kept = ring, images, kept
         self.parameters = tuple(ring.generators[k].name for k in parameters)
         self.variables = tuple(places.values())
         self.places = (*parameters, *places)
@@ -100,17 +263,12 @@ class Transfer:
         degrees = p.degrees()
         for k, degree in enumerate(degrees):
             if degree > 0 and k not in self.places:  # of 0 they are all -1
-                raise NoClosedForm(
-                    Message(
-                        "[[what]] occurs: the equations are not polynomial in speeds and positions",
-                        what=_told(self.ring, k),
-                    )
-                )
+                raise no_variable(self.ring, k)
         return self.context.from_dict({tuple(m[k] for k in self.places): c for m, c in p.to_dict().items()})
 
     def fraction(self, p: Polynomial) -> tuple[Any, Any]:
         """(P, Q) with p = P/Q, for p with reciprocals of polynomials in the parameters; relations are used."""
-        top, factors = self.ring.fraction(put_in(self.ring, p, self.images))
+        top, factors = self.ring.fraction(put_in(self.ring, p, self.images), self.kept)
         bottom = self.context.constant(1)
         for factor, exponent in factors:
             bottom *= self(factor) ** exponent
@@ -127,22 +285,20 @@ class Transfer:
         return self.ring.context.from_dict(total)
 
 
-def transfer_of(
-    ring: Ring, places: dict[int, str], polynomials: Sequence[Polynomial], images: Mapping[int, Polynomial] = NOTHING
-) -> Transfer:
-    """With the parameters that occur; ``places``: generators of the ring that are variables, by name."""
-    parameters = [k for k in occurring(polynomials) if k not in places and ring.generators[k].kind == "parameter"]
-    return Transfer(ring, places, parameters, images)
-
-
-def _told(ring: Ring, k: int) -> str:
+def no_variable(ring: Ring, k: int) -> NoClosedForm:
+    """Why a generator cannot be one of a polynomial field, and what to write in its place."""
     g = ring.generators[k]
-    if g.kind == "prescribed":  # an input, too
-        return Message("[[name]], a function of the time,", name=g.name)
-    if g.kind == "time":
-        return Message("the time")
-    if not g.name or g.name.startswith("#"):
-        return Message(g.kind)
-    if g.kind == "function":
-        return Message("the function [[name]]", name=g.name)
-    return Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)
+    what, remedy = Message(g.kind), ""
+    if g.argument is not None and not any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
+        what = Message("the constant [[formula]]", formula=str(Formula(ring, ring.context.gen(k))))
+        remedy = "write a parameter in its place: its value may be any number"
+    elif g.kind == "prescribed":  # an input, too
+        what = Message("[[name]], a function of the time,", name=g.name)
+    elif g.kind == "time":
+        what = Message("the time")
+    elif g.kind == "function" and g.name:
+        what = Message("the function [[name]]", name=g.name)
+    elif g.name and not g.name.startswith("#"):
+        what = Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)
+    told = Message("[[what]] occurs: the equations are not polynomial in speeds and positions", what=what)
+    return NoClosedForm(told, remedy=remedy) if remedy else NoClosedForm(told)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.analysis.forms import BRACKETS, asked
+from mbsym.analysis.forms import BRACKETS, requested_forms
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
@@ -59,7 +59,7 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     """What a report of these problems shows."""
     if 3 not in problems:
         return Forms()
-    wanted = list(asked(analysis))
+    wanted = list(requested_forms(analysis))
     if "hamilton" in wanted and 7 in problems:
         wanted.append(BRACKETS)
     stages = {name: analysis.stage_of(name) for name in wanted}

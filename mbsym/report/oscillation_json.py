@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from msgspec import UNSET
+from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
 
 from mbsym.formulas.formula import Formula
@@ -40,6 +40,7 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
         leading=found.leading,
         phase=told.phase,
         amplitude=_amplitude(told),
+        exponent=_exponent(told),
         constants=[doc.Constant(variable=name, value=str(told.formula(x))) for name, x in found.constants],
         frequency=str(told.formula(found.frequency)),
         corrections=[str(told.formula(x)) for x in found.corrections],
@@ -79,6 +80,13 @@ def _amplitude(told: Oscillating) -> doc.AmplitudeValue:
     found, others = told.found, told.found.other_amplitudes
     value = str(told.formula(found.amplitude))
     return doc.AmplitudeValue(found.kind, value, UNSET if others is None else str(told.formula(others)))
+
+
+def _exponent(told: Oscillating) -> doc.CycleExponent | UnsetType:
+    if told.found.exponent is None:
+        return UNSET
+    power, x = told.found.exponent
+    return doc.CycleExponent(power, str(told.formula(x)), UNSET if told.attracts is None else told.attracts)
 
 
 def _positive(told: Oscillating) -> Iterator[Formula]:

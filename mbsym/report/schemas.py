@@ -25,7 +25,7 @@ from mbsym.report.documents.base import Named, headed
 
 Schema = dict[str, Any]
 
-#: What each kind of file is: it has a module of this name here, with a type of this name.
+#: What each kind of file is: a type of this name, in a module of this name unless another one has it.
 TITLES = {
     "branches": "mbsym equilibria --vary: branches.json",
     "diff": "mbsym diff --format json",
@@ -48,6 +48,8 @@ TITLES = {
     "symmetries": "What mbsym symmetries --json prints",
 }
 
+_MODULES = {"equilibria_map": "branches", "floquet": "orbit", "lyapunov": "orbit", "sweep": "ensemble"}
+
 _SIMPLE: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
 _BOUNDS = {
     "ge": {"integer": "minimum", "number": "minimum"},
@@ -67,7 +69,7 @@ def document(name: str) -> type[Struct]:
     """The type of a kind of file.  Raises KeyError for a name that is not among ``names()``."""
     if name not in TITLES:
         raise KeyError(name)
-    module = import_module(f"mbsym.report.documents.{name}")
+    module = import_module(f"mbsym.report.documents.{_MODULES.get(name, name)}")
     for kind, where in getattr(module, "LATER", {}).items():
         setattr(module, kind, _later(f"{module.__name__}.{where}", kind))
     found: type[Struct] = getattr(module, "".join(word.title() for word in name.split("_")))

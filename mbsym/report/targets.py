@@ -176,11 +176,11 @@ TARGETS = {
 }
 
 
-def _exported(language: str) -> Callable[[Analysis, Sequence[int]], str]:
+def _exported(language: str, render: str = "render") -> Callable[[Analysis, Sequence[int]], str]:
     def text(analysis: Analysis, problems: Sequence[int]) -> str:
         from importlib import import_module
 
-        written: str = import_module(f"mbsym.report.exports.{language}").render(analysis, problems)
+        written: str = getattr(import_module(f"mbsym.report.exports.{language}"), render)(analysis, problems)
         return written
 
     return text
@@ -205,8 +205,15 @@ def _fmu_remark() -> str:
 EXPORTS = {
     target.name: target
     for target in (
-        Target("casadi", "model_casadi.py", (7,), "functions for CasADi", _exported("casadi_module"), program=True),
-        Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("jax_module"), program=True),
+        Target(
+            "casadi",
+            "model_casadi.py",
+            (7,),
+            "functions for CasADi",
+            _exported("python_functions", "casadi"),
+            program=True,
+        ),
+        Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("python_functions", "jax"), program=True),
         Target("octave", "model.m", (7,), "functions for MATLAB and Octave", _exported("octave"), program=True),
         Target("julia", "model.jl", (7,), "a module for Julia", _exported("julia"), program=True),
         Target("modelica", "model.mo", (7,), "a model in Modelica", _exported("modelica"), program=True),

@@ -63,7 +63,7 @@ def derive_all(
     made as ``writing`` has them.
     """
     from mbsym.analysis import PROBLEMS
-    from mbsym.analysis.forms import asked
+    from mbsym.analysis.forms import requested_forms
     from mbsym.analysis.second_routes import carried_out
     from mbsym.report.canonical import TITLES
     from mbsym.report.content import Said
@@ -84,7 +84,7 @@ def derive_all(
     helped = beside is not unhelped
     with analysis.unvouched():
         derive(late=False)
-        for name in asked(analysis):
+        for name in requested_forms(analysis):
             say(write.said(Said(TITLES[name])))
             analysis.optional(name)
         if any(FORMATS[name].program for name in formats):

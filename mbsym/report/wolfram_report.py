@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 DIALECT = Dialect(
     call=wolfram_call,
-    local=lambda count: f"s{count}",
     number=wolfram_number,
     tables=True,
 )
@@ -114,12 +113,12 @@ def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tup
 
     if found.slow is not None:
         listed_ones = list(coefficients(found.slow))
-        for name, rate in (("slowManifold", False), ("slowFlow", True)):
-            kept = (x for x in listed_ones if x.rate is rate)
-            yield name, listed(f"{{{string(x.variable)}, {x.order}, {x.formula.wolfram()}}}" for x in kept)
+        for name, flow in (("slowManifold", False), ("slowFlow", True)):
+            kept = ((x.variable + chr(39) * (x.rate - flow), x) for x in listed_ones if x.flow is flow)
+            yield name, listed(f"{{{string(told)}, {x.order}, {x.formula.wolfram()}}}" for told, x in kept)
     if found.oscillation is not None:
         told = (
-            f"{{{string(x.variable + (chr(39) if x.rate else ''))}, {x.order}, {x.formula.wolfram()}}}"
+            f"{{{string(x.variable + chr(39) * x.rate)}, {x.order}, {x.formula.wolfram()}}}"
             for x in oscillation_words.coefficients(found.oscillation)
         )
         yield "periodicSolution", listed(told)

@@ -25,11 +25,11 @@ MOST_KEPT, MOST_CHARACTERS = 1_000, 8_000_000
 ALIVE = 15.0
 
 Event = dict[str, Any]
-Queue = asyncio.Queue["Told | None"]
+Queue = asyncio.Queue["SentEvent | None"]
 
 
 @dataclass(frozen=True)
-class Told:
+class SentEvent:
     """An event as it is sent; ``number`` counts from 1."""
 
     number: int
@@ -47,7 +47,7 @@ class Events:
     def __init__(self) -> None:
         self._server = secrets.token_hex(4)
         self._count = 0
-        self._kept: deque[Told] = deque()
+        self._kept: deque[SentEvent] = deque()
         self._size = 0
         self._pages: set[Queue] = set()
 
@@ -67,7 +67,7 @@ class Events:
     def tell(self, text: str) -> None:
         """To every page, now or when it connects again."""
         self._count += 1
-        told = Told(self._count, text)
+        told = SentEvent(self._count, text)
         self._kept.append(told)
         self._size += len(text)
         while len(self._kept) > MOST_KEPT or (self._size > MOST_CHARACTERS and len(self._kept) > 1):
@@ -106,7 +106,7 @@ class Events:
         try:
             yield "retry: 1000\n\n"
             if lost:
-                yield self._lines(Told(after, encoded({"kind": "lost"})))
+                yield self._lines(SentEvent(after, encoded({"kind": "lost"})))
             for told in missed:
                 yield self._lines(told)
             while queue in self._pages:
@@ -121,5 +121,5 @@ class Events:
         finally:
             self._pages.discard(queue)
 
-    def _lines(self, told: Told) -> str:
+    def _lines(self, told: SentEvent) -> str:
         return f"id: {self._name(told.number)}\ndata: {told.text}\n\n"

@@ -11,7 +11,7 @@
 """
 
 from mbsym.simulation.request import TOLERANCE, Request, read_values
-from mbsym.simulation.result import Chosen, Kept, Simulation
+from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.run import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, SOON_DONE, integrated_system, simulate
 from mbsym.simulation.sampling import SAMPLES, sample_times
 from mbsym.simulation.watching import NoEvent, Watch, read_watch
@@ -25,7 +25,7 @@ __all__ = [
     "SOON_DONE",
     "TOLERANCE",
     "Chosen",
-    "Kept",
+    "FollowedIntegral",
     "NoEvent",
     "Request",
     "Simulation",

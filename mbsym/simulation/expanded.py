@@ -81,7 +81,8 @@ def measured(
     """
     assert system.small is not None
     overrides: dict[str, Expression] = {name: number(value) for name, value in (values or {}).items()}
-    base = scenario_in_states(scenario(system, overrides, declared=True))
+    begins = scenario(system, overrides, declared=True)
+    base = scenario_in_states(begins) if system.speeds else begins
     names = (*base.system.coordinates, *base.system.velocities)
     start = {name: Fraction(float(value)) for name, value in zip(names, base.state, strict=True)}
     manifold = found.manifold
@@ -97,7 +98,11 @@ def measured(
         if time is None:
             time = _span(flow, np.array(first, dtype=float))
         begun = start | dict(zip(manifold.fast, here.on_manifold(first), strict=True))
-        whole = _whole(replace(own, declared=tuple(begun[name] for name in names)), time, manifold.slow)
+        if system.speeds:
+            own = replace(own, declared=tuple(begun[name] for name in names))
+        else:
+            own = scenario(system, overrides | scaled | {name: number(x) for name, x in begun.items()})
+        whole = _whole(own, time, manifold.slow)
         reduced = _reduced(flow, np.array(first, dtype=float), time)
         size = np.abs(reduced).max(axis=1)
         size[size == 0] = 1.0

@@ -17,7 +17,7 @@ from flint import arb, arb_series, ctx, fmpq
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.algebra.tower import Element
+from mbsym.algebra.tower import Element, angle_in
 from mbsym.analysis.oscillating import Oscillating
 from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
@@ -122,8 +122,8 @@ def symbol_values(
         state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))
     else:
         state = dict(zip((*given.system.coordinates, *given.system.velocities), given.state, strict=True))
-        for entry in given.system.motion if told.taylor else ():
-            state[entry.coordinate] -= value_of(entry.value, given)
+        for name, value in on_the_motion(given.system, told, given).items():
+            state[name] -= value
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
     values = {f"#{name}": scaled[name] for name, _ in found.constants if name in scaled}
     values[AMPLITUDE] = scaled[found.leading]
@@ -131,6 +131,15 @@ def symbol_values(
     if needed and values[AMPLITUDE] == 0:
         raise NoClosedForm(f"{found.leading} begins at zero: the initial state gives no amplitude")
     return values
+
+
+def on_the_motion(system: System, told: Oscillating, given: Scenario) -> dict[str, Fraction]:
+    """What deviations are of: coordinates and velocities on the unperturbed motion; nothing where none is asked for."""
+    found: dict[str, Fraction] = {}
+    for entry in system.motion if told.taylor else ():
+        found[entry.coordinate] = value_of(entry.value, given)
+        found[velocity_name(entry.coordinate)] = value_of(entry.rate, given)
+    return found
 
 
 def value_of(x: Expression, given: Scenario) -> Fraction:
@@ -144,7 +153,8 @@ class Numeric:
     def __init__(self, told: Oscillating, values: Mapping[str, Fraction], eps: Fraction) -> None:
         self.found, tower = told.found, told.found.tower
         balls = {name: rationals.ball(x) for name, x in values.items()}
-        self._values = {name: balls.get(name, arb(0)) for name in tower.parameters}
+        plain = [name for name in tower.parameters if angle_in(name) is None]
+        self._values = dict.fromkeys(plain, arb(0)) | balls
         self.eps = rationals.ball(eps)
         with ctx.workprec(BITS):
             speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.found.corrections)), arb(1))
@@ -202,7 +212,7 @@ def _simulated(
     eps = whole * part
     changed = {told.found.small, *powers}
     chosen = {**put, **{name: number(x) for name, x in numbers.items() if name in changed}}
-    shift = {entry.coordinate: value_of(entry.value, given) for entry in system.motion} if told.taylor else {}
+    shift = on_the_motion(system, told, given)
     start = {}
     for name in told.found.names:
         start[name] = Fraction(float(series.at(0.0, name))) * eps ** powers.get(name, 0)
@@ -213,7 +223,9 @@ def _simulated(
     columns = {
         name: np.asarray(run.coordinates)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.coordinates)
     }
-    columns |= {velocity_name(name): np.asarray(run.velocities)[k] for k, name in enumerate(system.coordinates)}
+    columns |= {
+        name: np.asarray(run.velocities)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.velocities)
+    }
     return [[arb(float(columns[name][k])) for name in told.found.names] for k in range(1, len(times) + 1)]
 
 

@@ -26,7 +26,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.states import scenario_in_states
-from mbsym.simulation.oscillating import Numeric, symbol_values, value_of
+from mbsym.simulation.oscillating import Numeric, on_the_motion, symbol_values
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 
@@ -102,7 +102,7 @@ def _in_coordinates(
     times: Floats,
 ) -> dict[str, Floats]:
     """(q, q') of the motion, from the rest that deviations are of."""
-    shift = {x.coordinate: value_of(x.value, given) for x in system.motion} if told.taylor else {}
+    shift = on_the_motion(system, told, given)
     begun = {name: number(value + shift.get(name, 0)) for name, value in start.items()}
     run = simulate(
         scenario(system, {**put, **begun}),
@@ -111,7 +111,7 @@ def _in_coordinates(
     if not run.whole:
         raise NoClosedForm("the motion ends early")
     return {
-        name: np.array([run[name] - float(shift.get(name, 0)), run[velocity_name(name)]], dtype=float)
+        name: np.array([run[x] - float(shift.get(x, 0)) for x in (name, velocity_name(name))], dtype=float)
         for name in system.coordinates
         if name in start
     }

@@ -60,7 +60,7 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class Kept:
+class FollowedIntegral:
     """A first integral along a run: its column, its values (m,), how far it is conserved, its unit if that is known."""
 
     column: str
@@ -88,7 +88,7 @@ class Simulation:
     trajectory: Trajectory
     conservation: Conservation
     energy_conservation: Conservation
-    invariants: tuple[Kept, ...]
+    invariants: tuple[FollowedIntegral, ...]
     error: ErrorEstimate | NoEstimate
     no_invariants: str = ""
     certificate: Certificate | None = None

@@ -48,7 +48,7 @@ from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
 from mbsym.numerics.unseen import between_rows, nearest_to_singular
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
-from mbsym.simulation.result import Chosen, Kept, Simulation
+from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.sampling import chosen_for
 from mbsym.simulation.watching import Watching
 
@@ -275,7 +275,7 @@ def _near(found: Trajectory) -> list[list[float]]:
 
 def kept_integrals(
     dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
-) -> tuple[Kept, ...]:
+) -> tuple[FollowedIntegral, ...]:
     """First integrals at the rows of ``found``; judged along ``dense``, the same run with places between its rows.
 
     One that is not proved is looked at where the run goes.
@@ -290,6 +290,8 @@ def kept_integrals(
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
             state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, course), held, _near(dense))
         kept.append(
-            Kept(item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit)
+            FollowedIntegral(
+                item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit
+            )
         )
     return tuple(kept)

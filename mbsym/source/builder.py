@@ -46,7 +46,7 @@ from mbsym.source.settings import (
     read_relations,
 )
 from mbsym.source.small import read_small
-from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, read_speeds, vectors_in_angles
+from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, in_coordinates, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -87,7 +87,6 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         for body, own, draft in zip(bodies, speeds, drafts, strict=True)
     ]
     loads = read_loads(fields.get("loads"), [body.name for body in bodies], reading)
-    loads = tuple(vectors_in_angles(load, bodies) for load in loads)
     constraints, dependent = _constraints(fields, bodies, reading)
     matrices = None if linear is None else read_linear(*linear, len(inputs), reading)
     parameters += declared_by_use(reading)
@@ -126,6 +125,8 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         linear=matrices,
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
+    if any(body.speeds or body.orientation for body in bodies):
+        system = replace(system, loads=tuple(in_coordinates(load, system) for load in loads))
     small = read_small(fields.get("small parameter"), reading, in_formulas(system))
     system = replace(system, small=small)
     names = [body.name for body in bodies]

@@ -180,9 +180,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
         )
 
 
-def _check_numbers(
-    system: System, body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading
-) -> bool:
+def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], span: Span, reading: Reading) -> bool:
     """Whether something was said of the numbers: rounding is a warning, more is an error unless it is accepted.
 
     A body about a fixed point has the kinetic energy w.J_O w/2, which needs no tensor about the mass centre.

@@ -67,7 +67,7 @@ def read(text: str, filename: str = "<string>", folder: Path | None = None) -> t
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class ReadResult:
     """What reading gives: ``tree`` is what the text says before it is understood, ``editor`` whether in editor text."""
 
     system: System | None
@@ -82,7 +82,7 @@ def read_placed(
     folder: Path | None = None,
     extents: dict[int, Extent] | None = None,
     understand: bool = True,
-) -> Found:
+) -> ReadResult:
     """The same with the placed tree, and where each node of a YAML text stands.
 
     ``understand`` False: the tree alone.
@@ -98,7 +98,7 @@ def read_placed(
                 system = build(node, complaints, editor=editor, folder=folder)
     except TooManyComplaints:
         system, stopped = None, True
-    return Found(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
+    return ReadResult(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
 
 
 def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, bool]:

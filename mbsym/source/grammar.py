@@ -181,7 +181,7 @@ class Way:
         """What it was made of."""
         if self.parts is not None:
             return self.parts(made)
-        apart = ("span", *dict(self.fixed))
+        apart = ("span", "as_written", *dict(self.fixed))
         return tuple(getattr(made, one.name) for one in fields(made) if one.name not in apart)
 
 

@@ -309,10 +309,6 @@ def _of_force(load: Any) -> tuple[Any, ...]:
     return load.point.body, load.point.position, load.components, load.axes
 
 
-def _written(load: Any) -> tuple[Any, ...]:
-    return (load.written,)
-
-
 LOADS: dict[str, Kind] = {
     "newtonian gravity": Kind(
         "Newtonian field of a centre: expanded about a point of the orbit, or exact",
@@ -401,22 +397,22 @@ LOADS: dict[str, Kind] = {
         ways=(Way(IsotropicDamper, ("between", "coefficient")),),
     ),
     "rayleigh": Kind(
-        "a dissipation function R(q, q'); its generalised forces are -dR/dq'",
+        "a dissipation function R(q, q'), or of speeds; its generalised forces are -dR/dq'",
         Formula(DISSIPATION),
         ways=(Way(Rayleigh),),
     ),
     "force function": Kind(
         "a force function U = -potential, added to the Lagrangian",
         Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),), parts=_written),),
+        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),)),),
     ),
     "potential": Kind(
         "a potential energy V, subtracted from the Lagrangian",
         Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),), parts=_written),),
+        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),)),),
     ),
     "generalized force": Kind(
-        "{coordinate: expression in coordinates, velocities, parameters and t}",
+        "{coordinate: expression in coordinates, velocities or speeds, parameters and t}",
         Named(Formula(FORCE), "coordinate"),
         ways=(Way(GeneralizedForce),),
     ),

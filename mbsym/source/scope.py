@@ -77,6 +77,7 @@ _PLURALS = {
 }
 #: Kinds of names that are told where the description has some.
 _RARE = (
+    "speed",
     "input",
     "input abbreviation",
     "unit vector",
@@ -107,8 +108,12 @@ VELOCITY = Allowed("a relative velocity", ("coordinate", "velocity", "prescribed
 POTENTIAL = Allowed(
     "a force function or potential", ("coordinate", "unit vector", "prescribed", "parameter", "time"), ("abs",)
 )
-DISSIPATION = Allowed("a dissipation function", ("coordinate", "velocity", "prescribed", "parameter", "time"), ("abs",))
-FORCE = Allowed("a force", ("coordinate", "velocity", "prescribed", "parameter", "time", "input"), KINKED)
+DISSIPATION = Allowed(
+    "a dissipation function", ("coordinate", "velocity", "speed", "prescribed", "parameter", "time"), ("abs",)
+)
+FORCE = Allowed(
+    "a force", ("coordinate", "velocity", "speed", "unit vector", "prescribed", "parameter", "time", "input"), KINKED
+)
 ASSUMPTION = Allowed("an assumption", ("parameter", "notation"))
 
 

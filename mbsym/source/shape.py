@@ -198,7 +198,7 @@ def inferred_coordinates(system: System) -> list[tuple[str, ...]]:
 
 def load_shape(load: Load) -> tuple[str, Shape]:
     """The kind of a load and its data.  Raises TypeError for anything else."""
-    return _of_kind(load, LOADS)
+    return _of_kind(load.written, LOADS)
 
 
 def constraint_shape(constraint: Constraint) -> tuple[str, Shape]:

@@ -25,9 +25,9 @@ from mbsym.expressions.tree import (
     substitute,
 )
 from mbsym.model.constraints import Constraint, Relation, Rolling, as_written
-from mbsym.model.loads import ForceFunction, Load
+from mbsym.model.loads import Load
 from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
-from mbsym.model.substitution import folded
+from mbsym.model.substitution import folded, put
 from mbsym.model.system import INERTIAL, Body, System, Vector, velocity_name
 from mbsym.source import placed
 from mbsym.source.bodies import Draft, read_body_name
@@ -239,14 +239,18 @@ def angular_velocity(system: System, body: str) -> Vector:
     return spin[0], spin[1], spin[2]
 
 
-def vectors_in_angles(load: Load, bodies: Sequence[Body]) -> Load:
-    """A force function of unit vectors with these as functions of the angles beside: e = C_a3 C_a2 C_a1 e_axis."""
-    if not isinstance(load, ForceFunction):
-        return load
-    images = _in_angles(names(load.expression), bodies)
-    if not images:
-        return load
-    return replace(load, expression=folded(load.expression, images), in_vectors=load.expression)
+def in_coordinates(load: Load, system: System) -> Load:
+    """A load of speeds and unit vectors as one of coordinates and velocities, with what was written beside.
+
+    e = C_a3 C_a2 C_a1 e_axis;  u = S q' + s0.
+    """
+    held = _held(load)
+    images = _in_angles(held, system.bodies)
+    for speed in system.speeds:
+        if speed.name in held:
+            spin = angular_velocity(system, speed.body) if speed.turns else ()
+            images[speed.name] = substitute(speed.form, dict(zip(OMEGA, spin, strict=False)))
+    return replace(put(load, images, folded), as_written=load) if images else load
 
 
 def constraint_in_angles(constraint: Constraint, bodies: Sequence[Body]) -> Constraint:
@@ -326,8 +330,7 @@ _LOAD, _FORCE = "a load", "a load on bodies"
 
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
-    loads = (replace(x, expression=x.written) if isinstance(x, ForceFunction) else x for x in system.loads)
-    found = [(name, _FORCE if load.bodies else _LOAD) for load in loads for name in _held(load)]
+    found = [(name, _FORCE if load.bodies else _LOAD) for load in system.loads for name in _held(load.written)]
     found += [(name, "a constraint") for one in system.constraints for name in _held(as_written(one))]
     found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:

@@ -125,6 +125,8 @@ Formulas in a description
     in loads      {kinked}
     tables        {tabulated}
     velocities    x_dot of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
+    speeds        the names under 'speeds': where velocities may stand in loads; components of unit vectors in a force,
+                  a torque, a potential
     accelerations x_ddot: in claims of equations of motion and of values
     time          t: in loads and claims
 

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 class Request:
     """Expand the slow integral manifold of FILE in powers of its small parameter, exactly.
 
-    FILE names the parameter ('small parameter: eps') and has its equations in speeds (key 'speeds').  Fast variables
+    FILE names the parameter ('small parameter: eps') and has equations that are polynomial in
+    speeds, velocities and positions.  Fast variables
     are found, or declared under that key.  The functions that express them by the slow ones, and the flow on the
     manifold, are found by comparing coefficients and put into the equations; about the unperturbed motion it is said
     whether the manifold attracts, and what the flow on it needs for asymptotic stability.  Where the description gives

@@ -17,7 +17,7 @@ from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
 from mbsym.batch.isolation import isolated
 from mbsym.batch.outcome import Outcome, Row
-from mbsym.batch.transport import Asked, Budget, Task
+from mbsym.batch.transport import BatchOptions, Budget, Task
 from mbsym.batch.work import work
 from mbsym.report.exports import fmu
 from mbsym_cli.batch.store import FolderStore
@@ -80,7 +80,7 @@ def test_a_warning_is_said_again_and_where_it_stands_now(tmp_path: Path) -> None
     assert batch("in", "-o", "out", *QUICK, cwd=tmp_path).stderr == moved.stderr
 
 
-ASKED = Asked(("json",), (1, 2, 3))
+ASKED = BatchOptions(("json",), (1, 2, 3))
 
 
 @pytest.mark.parametrize(
@@ -99,7 +99,7 @@ ASKED = Asked(("json",), (1, 2, 3))
     ],
     ids=["the same", "expression", "name", "load", "problems", "all problems", "format", "terms", "angles", "detail"],
 )
-def test_another_description_or_option_is_derived(place: Path, text: str, asked: Asked, kept: bool) -> None:
+def test_another_description_or_option_is_derived(place: Path, text: str, asked: BatchOptions, kept: bool) -> None:
     file = place / "in" / "a.yaml"
     file.write_text(text, encoding="utf-8")
     found = FolderStore(place / "out", asked, digests.derivation()).look(Place(str(file), "a"))
@@ -194,7 +194,7 @@ def test_a_compiler_that_came_since_is_used(tmp_path: Path, monkeypatch: pytest.
     if fmu.compiler() is None:
         pytest.skip("there is no C compiler")
     file = folder_of(tmp_path / "in", a=pendulum()) / "a.yaml"
-    place, asked = Place(str(file), "a"), Asked(("fmu2",), (1,))
+    place, asked = Place(str(file), "a"), BatchOptions(("fmu2",), (1,))
 
     def look() -> Row | Task:
         return FolderStore(tmp_path / "out", asked, "d").look(place)

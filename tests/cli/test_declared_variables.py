@@ -49,6 +49,44 @@ def test_coordinates_are_integrated_where_they_are_asked_for(tmp_path: Path) -> 
     assert "coordinates and their velocities; speeds are computed from them" in result.stdout
 
 
+@pytest.mark.parametrize("model", [("--gravity", "3"), ("--gravity", "exact")])
+def test_a_model_is_the_same_in_both_kinds_of_variables(model: tuple[str, str], tmp_path: Path) -> None:
+    """The quaternion's columns of a run in angles: computed from these, by the same field of gravity."""
+    rows = []
+    for kind in ("declared", "coordinates"):
+        where = tmp_path / kind
+        how = ("--variables", kind, "--time", 300, "--samples", 4, "-f", "csv", "--tolerance", 1e-12, *model)
+        result = called(SATELLITE, *how, "--out", where)
+        assert result.exit_code == 0, result.output
+        rows.append(list(csv.DictReader((where / "trajectory.csv").read_text(encoding="utf-8").splitlines()))[-1])
+    for name in ("e0", "e1", "e2", "e3", "p", "q", "r"):
+        assert float(rows[0][name]) == pytest.approx(float(rows[1][name]), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("words", "table"),
+    [
+        (("--accuracy", "1e-6"), "trajectory.csv"),
+        (("--sensitivity", "A"), "sensitivity.csv"),
+        (("--vary", "theta=0.05:0.06:2"), "ensemble.csv"),
+        (("--certify", "1e-6"), "enclosure.csv"),
+    ],
+)
+def test_what_knows_declared_variables_speaks_them(words: tuple[str, ...], table: str, tmp_path: Path) -> None:
+    result = called(SATELLITE, "--time", 10, "--samples", 11, "-f", "csv", *words, "--out", tmp_path)
+    assert result.exit_code == 0, result.output
+    head = (tmp_path / table).read_text(encoding="utf-8").splitlines()[0]
+    assert "e0" in head
+    assert "psi" not in head
+
+
+def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
+    """The initial velocities are those of angles: one speed besides is no state."""
+    result = called(SATELLITE, "--time", 10, "--vary", "p=0.01:0.02:3", "--out", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "no motion begins with p = 0.01: no value for q" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("option", "words"),
     [

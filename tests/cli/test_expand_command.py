@@ -101,4 +101,5 @@ def test_a_manifold_that_repels_makes_its_steady_states_unstable(tmp_path):
     assert "reduction principle" not in driven
     assert "A fast root has a positive real part: this motion is unstable for all sufficiently small e > 0." in driven
     (tmp_path / "plain.yaml").write_text(HEAVY_DAMPING.replace(", speeds: {v: x_dot}", ""))
-    assert "speeds: {v: x_dot}" in run(str(tmp_path / "plain.yaml")).output
+    plain = " ".join(run(str(tmp_path / "plain.yaml"), "--order", "1").stdout.split())  # without speeds it is the same
+    assert plain.partition("Put into")[2] == damped.partition("Put into")[2]

@@ -16,8 +16,10 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods import bridge
 from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS
 from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, simulate
+from mbsym.simulation.accurate import simulate_accurately
 from mbsym.source import load, read
 
 TESTS = Path(__file__).parents[1]
@@ -71,6 +73,18 @@ def test_the_squeezer_at_three_hundredths_of_a_second(tolerance: float, error: f
     published = [float(x) for x in truth["lam"]]
     assert sorted(np.abs(forces)) == pytest.approx(sorted(np.abs(published)), rel=1e-7 if error < 1e-11 else 1e-3)
     assert found.conservation.standing is Standing.CHANGING  # the motor works
+
+
+def test_an_accuracy_of_the_squeezer_is_kept() -> None:
+    """At t = 0.03, beside the published state: within the bound of the plan, each of its size in the motion."""
+    truth = reference("andrews_squeezer")["reference"]["recomputed_t003"]
+    found = simulate_accurately(shipped("andrews-squeezer"), Request(0.03, samples=301), Accuracy(1e-6))
+    assert found.plan is not None
+    assert found.plan.reached
+    bound = found.plan.bound.total
+    for place, name in enumerate(ANGLES):
+        for key, value in ((name, truth["q"][place]), (f"{name}_dot", truth["v"][place])):
+            assert abs(found[key][-1] - float(value)) <= bound * np.max(np.abs(found[key]))
 
 
 # --- a constraint with a prescribed motion ---

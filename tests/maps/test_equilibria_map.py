@@ -20,7 +20,7 @@ from mbsym.maps.equilibria_map import EquilibriaMap, equilibria_map
 from mbsym.maps.result import Cell, Counted, Lack
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
-from mbsym.report.documents.equilibria_map import STANDINGS
+from mbsym.report.documents.branches import STANDINGS
 from mbsym.report.latex.reading import read_latex
 from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages

@@ -13,11 +13,19 @@ import mbsym
 from mbsym.numerics.accuracy import Lacking, NoEstimate
 from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Measure, Standing, confronted
 from mbsym.report.figures.animation_page import run_sentences
-from mbsym.report.runs.simulation_words import conservation_json, conservation_line, warnings
+from mbsym.report.runs.simulation_words import conservation_json, conservation_line, energy_lines, warnings
 from mbsym.report.runs.summary import method_lines, result_lines
 from mbsym.simulation import Simulation
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
+
+FORCED = """
+mbsym: 1
+name: An oscillator without a spring
+bodies: [{name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}]
+loads: [{generalized force: {x: -x}}]
+initial: {x: 1}
+"""
 
 PARTICLE = """
 mbsym: 1
@@ -167,6 +175,15 @@ def test_words_of_each_standing() -> None:
     assert said[Standing.VERIFIED] == f"conserved (verified numerically along this run); largest drift {of}"
     assert said[Standing.CHANGING] == f"not conserved; largest change {of}"
     assert said[Standing.UNDECIDED] == f"undecided; largest change {of}"
+
+
+def test_an_oscillator_whose_spring_is_a_given_force_is_not_simply_told_to_lose_energy() -> None:
+    """x'' = -x conserves x'^2/2 + x^2/2; T - U is x'^2/2 where -x is no spring but a generalised force."""
+    spring = mbsym.simulate(CASES / "osc.yaml", 1)
+    assert [str(what).startswith("conserved (proved)") for _, what in energy_lines(spring)] == [True]
+    ((_, what),) = energy_lines(mbsym.simulate(mbsym.loads(FORCED), 1))
+    assert str(what).startswith("not conserved")
+    assert str(what).endswith("(U has no part of forces that are given as such)")
 
 
 def test_what_a_change_is_divided_by_is_said() -> None:

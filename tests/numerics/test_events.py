@@ -6,10 +6,12 @@ import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import acos, asin, pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.expressions.condition import Condition, parse_condition
@@ -19,6 +21,7 @@ from mbsym.numerics.events.events import Occurrences, Watcher
 from mbsym.numerics.events.surfaces import Action, Direction, event, known_names
 from mbsym.numerics.methods.interface import Piece
 from mbsym.numerics.scenario import scenario
+from mbsym_cli.main import main
 
 OSCILLATOR = """
 mbsym: 1
@@ -178,6 +181,9 @@ def test_what_holds_at_the_start_stops_there_and_a_start_on_the_surface_does_not
     later = watched(oscillator, [], sine, STEPS, stop=["x = 0"])
     assert later.ended is not None
     assert later.ended.time == pytest.approx(pi, abs=1e-14)
+    equal = watched(oscillator, [], sine, STEPS, stop=["x <= 0"])
+    assert equal.ended is not None
+    assert equal.ended.time == 0
     below = watched(oscillator, [], sine, STEPS, stop=["x < 0"])
     assert below.ended is not None
     assert below.ended.time == pytest.approx(pi, abs=1e-14)
@@ -217,3 +223,31 @@ def test_an_event_at_the_end_counts(oscillator: Dynamics) -> None:
     found = watched(oscillator, ["x = 0"], sine, [0.0, 2.0, pi])
     assert found.times == pytest.approx([0, pi], abs=1e-15)
     assert list(found.turns) == [1, -1]
+
+
+def test_what_stops_at_once_or_does_not_is_told(tmp_path: Path) -> None:
+    """x = cos t: x <= 1 holds at the start, x = 1 is met there and touched later, which stops nothing."""
+    path = tmp_path / "oscillator.yaml"
+    path.write_text(COSINE)
+    told = " ".join(invoked(path, "x <= 1", tmp_path).split())
+    assert "stopped at t = 0 by x <= 1" in told
+    assert "breaks down" not in told
+    told = " ".join(invoked(path, "x = 1", tmp_path).split())
+    assert "touching, or at the start, it stops nothing" in told
+
+
+COSINE = """
+mbsym: 1
+name: Oscillator
+bodies: [{name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}]
+loads: [{spring: {coordinate: x, stiffness: 1}}]
+initial: {x: 1}
+"""
+
+
+def invoked(path: Path, stop: str, folder: Path) -> str:
+    done = CliRunner().invoke(
+        main, ["simulate", str(path), "--time", "7", "--stop", stop, "--out", str(folder / "out")]
+    )
+    assert done.exit_code == 0, done.output
+    return done.output

@@ -15,7 +15,7 @@ import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger import table
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, Saving
-from mbsym.numerics.ledger.work import Wanted, Work
+from mbsym.numerics.ledger.work import AccuracyGoal, Work
 from mbsym.numerics.planning import model_choice
 from mbsym.numerics.planning.kinds import GRAVITY, MASSES
 from mbsym.numerics.planning.models import Model, emptied, parted
@@ -61,7 +61,7 @@ def difference() -> float:
 
 
 def gravity(accuracy: float | None) -> Saving:
-    wanted = None if accuracy is None else Wanted(accuracy, TIME)
+    wanted = None if accuracy is None else AccuracyGoal(accuracy, TIME)
     (found,) = table.gravity_orders(Work(mbsym.loads(DUMBBELL, ()), wanted=wanted))
     return found
 
@@ -147,7 +147,7 @@ def test_a_light_rod_is_left_out_by_the_plan_and_told_by_the_ledger() -> None:
     assert set(plan.model.without) == {"m1", "J1"}
     (item,) = (item for item in plan.items if item.kind == MASSES)
     assert item.what == ("rod",)
-    (found,) = table.simpler_model(Work(analysis, wanted=Wanted(1e-5, 2.0)))
+    (found,) = table.simpler_model(Work(analysis, wanted=AccuracyGoal(1e-5, 2.0)))
     assert (found.kind, found.what, found.standing) == (MASSES, ("rod",), NOT_NEEDED)
     assert found.measures[0].saved > 0
 

@@ -8,7 +8,7 @@ import pytest
 import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.plane import skew_plane
-from mbsym.numerics.ledger.work import Wanted, Work
+from mbsym.numerics.ledger.work import AccuracyGoal, Work
 from mbsym.numerics.planning.kinds import SKEW
 
 #: Hangs straight down at first, and is turned at the rate 3 about (0.6, 0.8, 0).
@@ -36,7 +36,7 @@ POINT = (
 
 
 def directions(text: str, time: float = 3.0) -> list[str]:
-    found = list(skew_plane(Work(mbsym.loads(text, ()), wanted=Wanted(1e-6, time))))
+    found = list(skew_plane(Work(mbsym.loads(text, ()), wanted=AccuracyGoal(1e-6, time))))
     assert all((item.kind, item.how) == (SKEW, Certainty.VERIFIED) for item in found)
     return [item.why for item in found]
 

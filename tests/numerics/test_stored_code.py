@@ -136,4 +136,4 @@ def test_the_oldest_goes_where_room_is_needed(cache: Path, monkeypatch: pytest.M
         os.utime(cache / key, (k, k))
     stored.keep("d", b"x" * 10)
     assert {one.name for one in cache.iterdir()} == {"c", "d"}
-    assert stored.found("d") == b"x" * 10
+    assert stored.load("d") == b"x" * 10

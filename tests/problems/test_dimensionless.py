@@ -142,11 +142,50 @@ loads: [{uniform gravity: {acceleration: g, direction: [0, -1, 0]}}]
 """
 
 
-def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones() -> None:
-    system, _ = read(LITERAL)
+#: r = 1/2 and an input that is held at 3 are numbers with a dimension.
+MOTION = """
+mbsym: 1
+name: Literal rest
+parameters: {m: {sign: positive}, k: {sign: positive}, l: {sign: positive}, c: {sign: nonnegative}}
+bodies: [{name: bob, attached to: 0, connection point: [r, 0, 0], mass: m, coordinates: [r]}]
+loads:
+  - spring: {coordinate: r, stiffness: k, rest: l}
+  - damper: {coordinate: r, coefficient: c}
+motion: {r: REST}
+"""
+
+
+@pytest.mark.parametrize("text", [LITERAL, MOTION.replace("REST", "1/2")])
+def test_a_number_with_a_dimension_has_no_place_among_dimensionless_ones(text: str) -> None:
+    system, _ = read(text)
     assert system is not None
+    if text is not LITERAL:
+        with pytest.raises(NoDescription, match="numbers that have a dimension"):
+            in_variables(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
+        return
     with pytest.raises(NoDescription, match="numbers that have a dimension"):
         in_variables(system, scaling(system, "t=tau/w,g=l*w**2"))
+
+
+def test_what_nothing_measures_is_named() -> None:
+    """The sleigh's speed v may have either sign, and no other name holds the time."""
+    system = mbsym.load(SYSTEMS / "chaplygin-sleigh.yaml").system
+    with pytest.raises(NoDescription, match="measures v"):
+        in_variables(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j"))
+    assert in_scale(system, scaling(system, "x=a*x1,y=a*y1,J=m*a**2*j,t=tau*a/u,v=u*w"))
+
+
+def test_signs_go_over_to_what_is_put_in() -> None:
+    """d = c/(m w) has the sign of c; where the sign of a name does not follow it is assumed of the expression."""
+    system, _ = read(MOTION.replace("REST", "l"))
+    assert system is not None
+    found = in_scale(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2,c=m*w*d"))
+    assert [(one.name, one.sign) for one in found.parameters] == [("d", "nonnegative")]
+    assert found.assumptions == ()
+    other = in_scale(system, scaling(system, "r=l*x,t=tau/w,k=m*w**2*(1-e)"))
+    assert [(one.name, one.sign) for one in other.parameters] == [("c", "nonnegative"), ("e", "real")]
+    (assumed,) = other.assumptions
+    assert assumed.relation == ">"
 
 
 @pytest.mark.parametrize(

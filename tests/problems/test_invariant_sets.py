@@ -15,7 +15,7 @@ import mbsym
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
 from mbsym.problems.invariant_sets.arena import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
-from mbsym.problems.vector_field import in_speeds
+from mbsym.problems.vector_field import vector_field
 from mbsym.report.language import Language
 
 HEAVY = """
@@ -219,7 +219,8 @@ def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
 def test_a_wrong_sign_in_the_equations_is_seen():
     """The integrals, and so the sets, are those of other equations: what is not invariant is never called so."""
     loaded = mbsym.load("systems/clebsch-poisson.yaml")
-    field, transfer = in_speeds(loaded.speed_form, loaded.equations, [x.formula.polynomial for x in loaded.integrals])
+    known = [x.formula.polynomial for x in loaded.integrals]
+    field, transfer = vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations, known)
     known = [(x.name, transfer.fraction(x.formula.polynomial)[0]) for x in loaded.integrals]
     signs = {x.name: x.sign for x in loaded.system.parameters}
     further = field.numerators[3] + field.generator("r") * field.generator("gamma3")  # gamma1' with a term too many

@@ -1,19 +1,23 @@
-"""Equations in speeds as polynomial vector fields, against Euler's and Poisson's equations written by hand."""
+"""Equations of motion as polynomial vector fields: laws, and equations written by hand."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
-from flint import fmpq
+from flint import ctx, fmpq
 
 import mbsym
-from mbsym.problems.vector_field import in_speeds
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.problems.vector_field import vector_field
 
 
 def _field(path):
     loaded = mbsym.load(path)
-    return in_speeds(loaded.speed_form, loaded.equations, [x.formula.polynomial for x in loaded.integrals]), loaded
+    known = [x.formula.polynomial for x in loaded.integrals]
+    return vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations, known), loaded
 
 
 def test_clebsch_is_the_field_of_the_book():
@@ -57,3 +61,155 @@ def test_numbers_take_the_place_of_parameters():
         field.at({"D": 1})
     with pytest.raises(ZeroDivisionError):
         field.at({"A": 0})
+
+
+TODA = """
+mbsym: 1
+name: Toda's lattice of three particles on a ring
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+  - {name: two, attached to: 0, connection point: [y, 0, 0], mass: 1, coordinates: [y]}
+  - {name: three, attached to: 0, connection point: [z, 0, 0], mass: 1, coordinates: [z]}
+loads:
+  - potential: exp(x - y) + exp(y - z) + exp(z - x)
+"""
+#: On a line: of the three exponentials two are independent, and the third is 1 over none of them.
+OPEN = TODA.replace(" + exp(z - x)", "")
+MORSE = """
+mbsym: 1
+name: a particle between Morse's walls, with the sine of an angle beside
+parameters: {m: positive, k: positive, b: positive}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: two, attached to: one, connection point: [0, 0, 0], rotation: {axes: [3, 0, 0], angles: [phi, 0, 0]},
+     mass: m, mass centre: [1, 0, 0]}
+loads:
+  - potential: k*cosh(b*x) + exp(cos(phi))
+"""
+DRIVEN = """
+mbsym: 1
+name: an oscillator that is driven
+parameters: {k: positive, w: positive, a: real, m: positive}
+prescribed: {phi: w}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - generalized force: {x: a*cos(phi)}
+"""
+#: A speed of its own and an angle: what was refused in speeds.
+ROLLED = """
+mbsym: 1
+name: a sledge on a slope
+parameters: {m: positive, J: positive, g: positive}
+bodies:
+  - name: sledge
+    connection point: [x, y, 0]
+    rotation: {axes: [3, 0, 0], angles: [phi, 0, 0]}
+    coordinates: [x, y, phi]
+    mass: m
+    inertia about: mass centre
+    inertia: [0, 0, J]
+    speeds: {v: x_dot*cos(phi) + y_dot*sin(phi), w: -x_dot*sin(phi) + y_dot*cos(phi), r: phi_dot}
+loads:
+  - uniform gravity: {vector: [g, 0, 0]}
+"""
+
+
+@pytest.mark.parametrize("text", [TODA, OPEN, MORSE, DRIVEN, ROLLED, Path("systems/heavy-top.yaml").read_text()])
+def test_it_is_the_equations_of_motion(text):
+    """M u' = f with u' out of the field, in the ring; g' along a straight line of the configurations, in balls."""
+    loaded = mbsym.loads(text)
+    ring, form, equations = loaded.ring, loaded.speed_form, loaded.equations
+    field, transfer = vector_field(loaded.system, ring, form, equations, driven=True)
+    n = len(equations.forcing)
+    rates, den = [transfer.back(p) for p in field.numerators[:n]], transfer.back(field.denominator)
+    for row, f in zip(equations.mass_matrix.polynomials, equations.forcing, strict=True):
+        assert ring.is_zero(ring.dot(row, rates) - ring.times(den, f.polynomial))
+    for relation in field.relations:
+        assert field.reduced(field.derivative(relation)) == 0
+        assert ring.evaluate(transfer.back(relation), {x: fmpq(k, 7) for k, x in enumerate(ring.names())}).contains(0)
+    if form is None:
+        with ctx.workprec(400):
+            state = {name: fmpq(k + 3, 7) for k, name in enumerate(ring.names())}
+            step = fmpq(1, 10**40)
+            ends = [dict(state), dict(state)]
+            for name in loaded.system.coordinates:
+                for end, sign in zip(ends, (1, -1), strict=True):
+                    end[name] = state[name] + sign * step * state[f"{name}_dot"]
+            for item in loaded.system.prescribed:
+                for end, sign in zip(ends, (1, -1), strict=True):
+                    end[item.name] = state[item.name] + sign * step * state["w"]
+            for k, top in zip(transfer.places[len(field.parameters) + n :], field.numerators[n:], strict=True):
+                g = ring.context.gen(k)
+                slope = (ring.evaluate(g, ends[0]) - ring.evaluate(g, ends[1])) / (2 * step)
+                told = ring.evaluate(transfer.back(top), state) / ring.evaluate(den, state)
+                assert abs(slope - told) < 1e-30
+
+
+def test_exponentials_have_one_relation():
+    """exp(x - y) exp(y - z) exp(z - x) = 1; on a line there is none; 1/exp is a variable, no denominator."""
+    loaded = mbsym.loads(TODA)
+    field, _ = vector_field(loaded.system, loaded.ring, None, loaded.equations)
+    one, two, three = map(field.generator, ("exp(x - y)", "exp(y - z)", "exp(z - x)"))
+    assert field.relations == (one * two * three - 1,)
+    loaded = mbsym.loads(OPEN)
+    assert vector_field(loaded.system, loaded.ring, None, loaded.equations)[0].relations == ()
+    loaded = mbsym.loads(MORSE)
+    field, _ = vector_field(loaded.system, loaded.ring, None, loaded.equations)
+    up, down = (field.generator(name) for name in field.variables if name.startswith("exp(") and "phi" not in name)
+    assert up * down - 1 in field.relations
+    assert not any(field.denominator.degrees()[k] for k in field.places if "exp" in field.context.names()[k])
+
+
+@pytest.mark.parametrize(
+    ("potential", "why"),
+    [
+        ("exp(x) + exp(x + a)", "constant factor"),
+        ("exp(x) + exp(y) + exp(x + y) + exp(x - y) + exp(2*x)", "several ways"),
+        ("x*log(1 + x**2)", "function log"),
+        ("sqrt(2)*x**2", "constant sqrt(2) occurs"),
+        ("exp(a)*x**2", "constant exp(a) occurs"),
+    ],
+)
+def test_what_is_left_is_refused_with_its_reason(potential, why):
+    text = OPEN.replace("exp(x - y) + exp(y - z)", potential).replace("bodies:", "parameters: {a: real}\nbodies:")
+    loaded = mbsym.loads(text)
+    with pytest.raises(NoClosedForm, match=re.escape(why)):
+        vector_field(loaded.system, loaded.ring, None, loaded.equations)
+
+
+def test_todas_integrals():
+    """Henon (1974): p1 p2 p3 - p1 e^(x2 - x3) - p2 e^(x3 - x1) - p3 e^(x1 - x2), beside momentum and energy."""
+    loaded = mbsym.loads(TODA)
+    found = loaded.polynomial_integrals.found
+    assert [(one.weight, one.is_new) for one in found.generators] == [(1, False), (2, False), (3, True)]
+    assert found.complete
+    field = found.field
+    x, y, z, a, b, c = map(field.generator, field.variables)
+    henon = x * y * z - x * b - y * c - z * a
+    assert field.derivative(henon) == 0
+    assert found.generators[-1].polynomial in (henon, -henon)
+
+
+def test_a_driven_oscillator_has_the_energy_of_its_difference_from_the_forced_motion():
+    """X = a cos(phi)/(k - m w^2): m (x' - X')^2 + k (x - X)^2, times (k - m w^2)^2, is a polynomial in them all."""
+    loaded = mbsym.loads(DRIVEN)
+    found = loaded.polynomial_integrals.found
+    (new,) = found.new
+    field = found.field
+    k, w, a, m, v, s, c, x = map(field.generator, ("k", "w", "a", "m", "x_dot", "sin(phi)", "cos(phi)", "x"))
+    d = k - m * w**2
+    by_hand = m * (d * v + a * w * s) ** 2 + k * (d * x - a * c) ** 2
+    assert field.derivative(by_hand) == 0
+    assert by_hand - d * new.polynomial == m * w**2 * a**2 * (s**2 + c**2)
+
+
+def test_in_speeds_an_angle_is_a_pair():
+    """m (v' - r w) = m g cos(phi): the field of ROLLED by hand."""
+    loaded = mbsym.loads(ROLLED)
+    field, _ = vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations)
+    assert field.variables == ("v", "w", "r", "sin(phi)", "cos(phi)")
+    g, v, w, r, s, c = map(field.generator, ("g", *field.variables))
+    by_hand = [r * w + g * c, -r * v - g * s, 0 * r, r * c, -r * s]
+    assert [p - q * field.denominator for p, q in zip(field.numerators, by_hand, strict=True)] == [0] * 5

@@ -10,7 +10,7 @@ from urllib.parse import unquote
 import pytest
 from click.testing import CliRunner
 
-from mbsym.report.words.findings import Finding, found, github_annotations, json_lines, sarif
+from mbsym.report.words.findings import Finding, findings_of, github_annotations, json_lines, sarif
 from mbsym.source import read
 from mbsym_cli.main import main
 
@@ -59,7 +59,7 @@ def test_json_lines_hold_every_field() -> None:
 
 def test_the_place_is_that_of_the_complaint() -> None:
     _, complaints = read(UNDECLARED, "p.yaml")
-    (finding,) = found("p.yaml", complaints.sorted())
+    (finding,) = findings_of("p.yaml", complaints.sorted())
     line = UNDECLARED.splitlines()[(finding.line or 0) - 1]
     start = (finding.column or 0) - 1
     assert line[start : start + finding.length] == "M"

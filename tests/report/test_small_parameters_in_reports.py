@@ -82,7 +82,10 @@ def test_a_small_parameter_in_coordinates_says_what_is_missing():
     analysis = Analysis(mbsym.loads(f"{source}\nsmall parameter: {name}\n").system, (12,))
     slow, further = told(analysis, 12)
     assert further.startswith(f"No periodic solution was expanded in powers of {name}: the equations are not quasi-li")
-    assert slow == f"No slow manifold was found in powers of {name}: expansions are made of equations in speeds."
+    assert slow == (
+        f"No slow manifold was found in powers of {name}: sin(theta), cos(theta) are variables: slow manifolds are "
+        "expanded in positions and velocities that stand by themselves."
+    )
 
 
 def test_latex_html_and_wolfram_hold_the_coefficients(damper):

@@ -8,6 +8,7 @@ from truth.independent.scenes import LIGHT as FREE
 from truth.test_accuracy_constrained import BALL, LIGHT, SLEIGH, sleigh
 
 import mbsym
+from mbsym.algebra.failures import Failure
 
 
 def test_derivatives_are_those_without_the_constraints() -> None:
@@ -49,6 +50,12 @@ def test_derivatives_by_a_speed_of_what_is_told_by_a_quaternion() -> None:
     expected = by * (np.cos(half) * t / 2 * s / w - np.sin(half) * s / w**2) + np.sin(half) / w
     assert found["e3", "s"][-1] == pytest.approx(expected, rel=1e-8)
     assert found.error < 1e-7  # what rests but for rounding is no error
+
+
+def test_a_component_that_cannot_change_alone_is_refused() -> None:
+    """e0 alone has no derivative: the norm of the quaternion would not be 1."""
+    with pytest.raises(Failure, match="no motion begins with another e1 alone: the norm squared of e is"):
+        mbsym.sensitivities(mbsym.loads(BALL), 1, ["e1"])
 
 
 def test_a_parameter_at_the_end_of_its_range_is_differentiated_to_one_side() -> None:

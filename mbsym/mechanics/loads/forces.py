@@ -21,20 +21,14 @@ from mbsym.model.speeds import UnitVector
 from mbsym.model.system import INERTIAL
 
 
-def _formula(load: ForceFunction, scene: Scene[S]) -> Expression:
-    """What stands in the file where unit vectors are variables of the scene, otherwise the same in angles."""
-    given = any(one.cosines is not None for one in scene.given.values())
-    return load.written if given else load.expression
-
-
 def _force_function(load: ForceFunction, scene: Scene[S]) -> S:
-    value = scene.lower(_formula(load, scene))
+    value = scene.lower(load.expression)
     return -value if load.spelled == "potential" else value
 
 
 def _force_function_action(load: ForceFunction, scene: Scene[S]) -> Action[S]:
     """Q = dU/dq and L = sum dU/de x e, differentiated as written."""
-    formula = _formula(load, scene)
+    formula = load.expression
     held = names(formula)
     sign = scene.algebra.number(-1 if load.spelled == "potential" else 1)
     forces = {

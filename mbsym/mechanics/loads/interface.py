@@ -29,7 +29,7 @@ class Wrench(Generic[S]):
 
 @dataclass(frozen=True, slots=True)
 class Action(Generic[S]):
-    """What a load does: wrenches on bodies, and generalised forces Q on coordinates."""
+    """What a load does: wrenches on bodies, and generalised forces Q on coordinates, in speeds on these, too."""
 
     wrenches: tuple[Wrench[S], ...] = ()
     generalized: dict[str, S] = field(default_factory=dict)

@@ -32,7 +32,7 @@ KINDS: dict[type, Kind[Any]] = {
 def force_function(scene: Scene[S]) -> S:
     """U = sum of the force functions of all loads that have one."""
     total = scene.algebra.zero
-    for load in scene.system.loads:
+    for load in scene.loads:
         own = KINDS[type(load)].force_function
         if own is not None:
             total = total + own(load, scene)
@@ -41,14 +41,14 @@ def force_function(scene: Scene[S]) -> S:
 
 def actions(scene: Scene[S], potential: bool = True) -> list[Action[S]]:
     """What the loads do to the bodies; with ``potential`` false, only those that have no force function."""
-    loads = [load for load in scene.system.loads if potential or not load.conservative]
+    loads = [load for load in scene.loads if potential or not load.conservative]
     return [KINDS[type(load)].action(load, scene) for load in loads]
 
 
 def base_acceleration(scene: Scene[S]) -> Vector[S]:
     """-sum of g: the acceleration of a base that stands for all uniform fields, in inertial axes."""
     base = scene.zero(INERTIAL)
-    for load in scene.system.loads:
+    for load in scene.loads:
         field = KINDS[type(load)].field
         if field is not None:
             base = base - field(load, scene)
@@ -60,7 +60,7 @@ def actions_beyond_fields(scene: Scene[S], falling: Scene[S]) -> Iterator[Action
 
     ``falling`` is the scene seen from its falling frames, or the same scene where none falls.
     """
-    for load in scene.system.loads:
+    for load in scene.loads:
         kind = KINDS[type(load)]
         if kind.field is None:
             yield kind.action(load, falling if kind.falls else scene)

@@ -172,14 +172,12 @@ ISOTROPIC_DAMPER = Kind(_isotropic_damper_action, notes=noted)
 
 
 def _rayleigh_action(load: Rayleigh, scene: Scene[S]) -> Action[S]:
-    """Q = -dR/dq'.  A kink of R in a velocity is dry friction, which holds there: its table becomes moduli."""
+    """Q = -dR/dq', or -dR/du.  A kink in a velocity is dry friction, which holds there: its table becomes moduli."""
     present = names(load.expression)
     potential = without_tables(load.expression, sticks)
-    forces = {
-        name: -scene.lower(differentiate(potential, velocity_name(name)))
-        for name in scene.system.coordinates
-        if velocity_name(name) in present
-    }
+    rates = {name: velocity_name(name) for name in scene.system.coordinates}
+    rates |= {one.name: one.name for one in scene.system.speeds if scene.in_speeds}
+    forces = {name: -scene.lower(differentiate(potential, rate)) for name, rate in rates.items() if rate in present}
     return Action(generalized=forces)
 
 

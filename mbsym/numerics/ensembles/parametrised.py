@@ -15,7 +15,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.states import InStates, described
 from mbsym.model.system import System, velocity_name
@@ -96,15 +98,15 @@ class Parametrised(Dynamics):
         """dx(0)/dc: of an initial value or a parameter c, through everything that follows from it and constraints.
 
         By differences of order 4 of states in many bits, each fitted to constraints from the state at c; to one side
-        where c has no room on the other.  Raises Failure, Incomplete.
+        where c has no room on the other.  Raises Failure.
         """
-        given = fitted(self._given({}), self.in_states)
-        states = (*given.system.coordinates, *given.system.velocities)
-        center = closed(given, self.fixed).scenario
-        told = {**given.parameters, **dict(zip(states, given.state, strict=True))}
         plain = self._given({})
-        told = {**dict(zip((*plain.system.coordinates, *plain.system.velocities), plain.state, strict=True)), **told}
-        step = STEP * max(1, abs(told[name]))
+        given = fitted(plain, self.in_states)
+        center = closed(given, self.fixed).scenario
+        told = dict(given.parameters)
+        for one in (plain, given, shown(given, self.in_states)):
+            told |= dict(zip((*one.system.coordinates, *one.system.velocities), one.state, strict=True))
+        step = STEP * max(Fraction(1), abs(told[name]))
         p = len(given.positions)
 
         def state(offset: int) -> tuple[Fraction, ...]:
@@ -118,12 +120,12 @@ class Parametrised(Dynamics):
             whole = zip(*([weight * x for x in values] for values, weight in known), strict=True)
             return tuple(sum(parts, Fraction(0)) / (12 * step) for parts in whole)
 
-        for sides in (CENTRAL, FORWARD):
+        for sides in (CENTRAL, FORWARD, {-offset: -weight for offset, weight in FORWARD.items()}):
             try:
                 return slope(sides)
-            except Incomplete:
-                continue
-        return slope({-offset: -weight for offset, weight in FORWARD.items()})
+            except Incomplete as reason:
+                why = str(reason)
+        raise NoClosedForm(Message("no motion begins with another [[name]] alone: [[why]]", name=name, why=why))
 
     @cached_property
     def parameters(self) -> Code:

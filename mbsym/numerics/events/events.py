@@ -130,7 +130,8 @@ class Watcher:
         self._start = time
         for place, event in enumerate(self.events):
             value = float(self._slopes[place](np.concatenate(([time], state)))[0])
-            if event.action is Action.STOP and event.side and value * event.side > 0 and self.ended is None:
+            holds = value * event.side > 0 or (event.closed and value == 0)
+            if event.action is Action.STOP and event.side and holds and self.ended is None:
                 self.ended = Occurrence(place, time, event.side, np.array(state, dtype=float))
                 self._found.append(self.ended)
         return self.ended is not None

@@ -50,7 +50,8 @@ class Action(Enum):
 class Event:
     """``code`` is (t, q, q') -> (g, o); it happens where g o^(+-1) passes zero in the ``direction``.
 
-    ``side`` is -1 where it stands for g < 0, 1 for g > 0, 0 for g = 0; ``text`` is what was written.
+    ``side`` is -1 where it stands for g < 0, 1 for g > 0, 0 for g = 0; ``closed``: for g = 0, too; ``text`` is what was
+    written.
     """
 
     name: str
@@ -59,6 +60,7 @@ class Event:
     action: Action = Action.RECORD
     text: str = ""
     side: int = 0
+    closed: bool = False
 
 
 def known_names(system: System) -> tuple[str, ...]:
@@ -80,7 +82,9 @@ def event(dynamics: Dynamics, condition: Condition, action: Action = Action.RECO
         turns = program.divide(difference * program.input("pi"), node(dynamics, condition.period))
         difference, orientation = program.sin_cos_of(turns)
     code = Code(program, dynamics.inputs, (difference, orientation))
-    return Event(condition.title, code, Direction(condition.direction), action, condition.text, condition.side)
+    return Event(
+        condition.title, code, Direction(condition.direction), action, condition.text, condition.side, condition.closed
+    )
 
 
 def node(dynamics: Dynamics, expression: Expression) -> Node:

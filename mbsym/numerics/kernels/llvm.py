@@ -659,7 +659,7 @@ class Library:
         versions = (_PASSES, llvmlite.__version__, *map(str, llvm.llvm_version_info))
         key = stored.key_of([*versions, machine.triple, cpu, features, str(level), str(thorough), text])
         lasting = _IN_MEMORY not in text  # addresses are this process's own
-        code = stored.found(key) if lasting else None
+        code = stored.load(key) if lasting else None
         module = llvm.parse_assembly(text if code is None else "")
         module.triple = machine.triple
         module.data_layout = str(machine.target_data)

@@ -26,7 +26,7 @@ def key_of(parts: Sequence[str]) -> str:
     return sha256("".join(f"{len(part)}:{part}" for part in parts).encode()).hexdigest()
 
 
-def found(key: str) -> bytes | None:
+def load(key: str) -> bytes | None:
     """What was kept under a key; None where there is nothing, or it is not whole."""
     with suppress(OSError):
         folder = _folder()

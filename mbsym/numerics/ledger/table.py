@@ -14,7 +14,7 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.message import Message, joined
 from mbsym.numerics.ledger import code, described, formulas, motion, plane
 from mbsym.numerics.ledger.entry import OPERATIONS, Ledger, Measure, Saving
-from mbsym.numerics.ledger.work import BUDGET, TooDear, Wanted, Work
+from mbsym.numerics.ledger.work import BUDGET, AccuracyGoal, TooDear, Work
 from mbsym.numerics.methods.interface import Breakdown
 from mbsym.numerics.planning.kinds import (
     AXES,
@@ -93,7 +93,7 @@ def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]
         yield LEFT_OUT, others
 
 
-def _scene(work: Work, wanted: Wanted) -> Scene | None:
+def _scene(work: Work, wanted: AccuracyGoal) -> Scene | None:
     """The motion in outline; None without numbers, or where it does not come to the end."""
     if work.scenario is None:
         return None
@@ -104,7 +104,7 @@ def _scene(work: Work, wanted: Wanted) -> Scene | None:
         return None
 
 
-def _held(saving: Saving, tried: Tried, wanted: Wanted) -> Saving:
+def _held(saving: Saving, tried: Tried, wanted: AccuracyGoal) -> Saving:
     """A saving with what it changes of the motion, beside what a model may change at this accuracy."""
     tolerable = PART * wanted.accuracy
     if not isfinite(tried.worst):
@@ -151,7 +151,7 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
 OF_ANY_SYSTEM = frozenset((MASSLESS, POINTS, AXES, TURNS, ENTRIES, SUBSYSTEMS, NOT_ASKED))
 
 
-def ledger(analysis: Analysis, budget: float = BUDGET, wanted: Wanted | None = None) -> Ledger:
+def ledger(analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> Ledger:
     """What this run left out, why that is safe, and what it saved; call it when the run itself is over.
 
     ``budget`` bounds the counterfactuals together: counted work, and none is begun that would probably exceed it.  What

@@ -64,7 +64,7 @@ class Counted:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class AccuracyGoal:
     """An ``accuracy`` (relative, of every coordinate and velocity) that a motion from 0 to ``time`` is to have."""
 
     accuracy: float
@@ -74,7 +74,7 @@ class Wanted:
 class Work:
     """The model of an analysis and its counterfactuals."""
 
-    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: Wanted | None = None) -> None:
+    def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> None:
         self.analysis = analysis
         self.wanted = wanted
         self.system = analysis.system

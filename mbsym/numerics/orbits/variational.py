@@ -81,10 +81,6 @@ class Variational(Dynamics):
         self.size = len(self.system.coordinates) * (1 + len(self.directions))
         # Its flow leaves constraints alone: states and columns are led back where a passage ends (``flow``).
         self.__dict__["constraints"] = None
-        if base.constraints is not None:
-            found, fresh = base.pivots, self._specialised
-            pivots = tuple(substituted(found.program, found.outputs, fresh))
-            self.__dict__["pivots"] = Code(fresh, self.inputs, pivots)
 
     @property
     def dimension(self) -> int:
@@ -94,6 +90,12 @@ class Variational(Dynamics):
     @cached_property
     def _specialised(self) -> Specialised:
         return bound(self.scenario)
+
+    @cached_property
+    def pivots(self) -> Code:
+        """Those of the motion's own matrices."""
+        found = self.base.pivots
+        return Code(self._specialised, self.inputs, tuple(substituted(found.program, found.outputs, self._specialised)))
 
     @cached_property
     def right_hand_side(self) -> Code:

@@ -74,12 +74,16 @@ class Propagated(Dynamics):
         self.inputs = (*simple.inputs, *self.differences)
         # Rates keep what is on constraints there, and nothing leads back: small errors of steps are no matter here.
         self.__dict__["constraints"] = None
-        self.__dict__["pivots"] = Code(simple.pivots.program, self.inputs, simple.pivots.outputs)
 
     @property
     def dimension(self) -> int:
         """Of x~ and y."""
         return len(self.inputs) - 1
+
+    @cached_property
+    def pivots(self) -> Code:
+        """Those of the simpler model's matrices."""
+        return Code(self._simple.pivots.program, self.inputs, self._simple.pivots.outputs)
 
     @cached_property
     def _specialised(self) -> Specialised:

@@ -42,7 +42,7 @@ _OTHER_SYMBOLS = "with another amplitude, other constants or another phase it ma
 _NOT_SURE = "with square roots in it the difference is not told from zero"
 
 
-class Told(Protocol):
+class SolutionInRing(Protocol):
     """A solution with the ring in which it is told; ``symbols``: their names there by those in the solution."""
 
     @property
@@ -111,7 +111,7 @@ def _where(difference: Harmonics, phase: str, terms: int) -> str:
     return Message("in what stands before [[names]]", names=names)
 
 
-def _formulas(derived: Derived, told: Told) -> WaveFormulas:
+def _formulas(derived: Derived, told: SolutionInRing) -> WaveFormulas:
     system, tower = derived.system, told.found.tower
     known = {name: tower.parameter(name) for name in system.parameter_names if name in tower.parameters}
     constants = {f"#{name}": value for name, value in told.found.constants}
@@ -129,7 +129,7 @@ def _frequencies(found: Oscillation) -> list[Harmonics]:
     return [Harmonics.constant(found.tower, x) for x in values]
 
 
-def _series(told: Told, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
+def _series(told: SolutionInRing, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
     """The coefficients of powers of eps of a polynomial in variables."""
     assert of is not None
     return _Polynomial(told, formulas).series(of)[1]
@@ -141,7 +141,7 @@ class _Polynomial:
     Terms of a sum have to have the same power: else nobody can say which coefficient is meant.
     """
 
-    def __init__(self, told: Told, formulas: WaveFormulas) -> None:
+    def __init__(self, told: SolutionInRing, formulas: WaveFormulas) -> None:
         found = told.found
         self.found, self.formulas = found, formulas
         self.powers = dict(found.powers)

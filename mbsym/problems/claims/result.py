@@ -31,7 +31,7 @@ from mbsym.problems.stability import Stability
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.canonical.canonical import Routh
-    from mbsym.problems.claims.oscillations import Told, ToldManifold
+    from mbsym.problems.claims.oscillations import SolutionInRing, ToldManifold
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.state_space import StateSpace
 
@@ -94,7 +94,7 @@ class Derived(Protocol):
     @property
     def trials(self) -> Trials: ...
     @property
-    def claimed_oscillation(self) -> Told: ...
+    def claimed_oscillation(self) -> SolutionInRing: ...
     @property
     def claimed_manifold(self) -> ToldManifold: ...
 

@@ -22,7 +22,7 @@ from flint import ctx
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Constrained, Failure, NoClosedForm
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Matrix, column
@@ -201,11 +201,8 @@ class TiedField:
     @cached_property
     def scaled(self) -> list[Polynomial]:
         """D u', by Cramer's rule."""
-        ring, mass = self.form.ring, self.embedded.mass_matrix.polynomials
-        right, own = [x.polynomial for x in self.embedded.forcing], []
-        for k in range(len(right)):
-            replaced = [[*row[:k], f, *row[k + 1 :]] for row, f in zip(mass, right, strict=True)]
-            own.append(determinant(ring, replaced))
+        ring, right = self.form.ring, [x.polynomial for x in self.embedded.forcing]
+        own = cramer(ring, self.embedded.mass_matrix.polynomials, right)
         found = []
         for i, shift in enumerate(self.solved.acceleration_shift):
             row = [self.solved.transformation[i, k].polynomial for k in range(len(own))]

@@ -28,7 +28,7 @@ from functools import cached_property
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import determinant
+from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -55,13 +55,8 @@ class Field:
     @cached_property
     def scaled(self) -> list[Polynomial]:
         """det(M) u' by Cramer's rule."""
-        ring, mass = self.form.ring, self.equations.mass_matrix.polynomials
         forcing = [x.polynomial for x in self.equations.forcing]
-        found = []
-        for column in range(len(forcing)):
-            replaced = [[*row[:column], f, *row[column + 1 :]] for row, f in zip(mass, forcing, strict=True)]
-            found.append(determinant(ring, replaced))
-        return found
+        return cramer(self.form.ring, self.equations.mass_matrix.polynomials, forcing)
 
     def rate(self, x: Polynomial) -> Polynomial:
         """det(M) dx/dt on the motion."""

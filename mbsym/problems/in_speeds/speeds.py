@@ -116,7 +116,7 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
 
     What ``rows`` of constraints depend on is not aside either.
     """
-    ring, loads = form.ring, scene.system.loads
+    ring, loads = form.ring, scene.loads
     kane = Kane(form, scene)
     needed, supplied = list(map(form.shortened, kane.inertia())), list(map(form.shortened, kane.active(loads)))
     others = list(map(form.shortened, kane.active([load for load in loads if not load.conservative])))

@@ -12,7 +12,6 @@ from typing import Any
 
 from flint import Ordering, acb_poly, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
-from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
@@ -170,26 +169,33 @@ def taylor_field(found: Expansion, order: int = 3) -> PolynomialField:
     in the deviations of the coordinates that are not cyclic, and of all velocities; the Lagrangian is expanded to one
     order more.  Coefficients are rational functions of the parameters, brought over one denominator.
 
-    Variables are named like what deviates: ``theta``, ``theta_dot``.  Raises NoClosedForm where coefficients hold
-    square roots or functions of parameters, SingularPoint where det M = 0 on the motion.
+    Variables are named like what deviates: ``theta``, ``theta_dot``.  Square roots, and sines of parameters beside
+    their cosines, are constants of the field.  Raises NoClosedForm where coefficients hold other functions of
+    parameters, SingularPoint where det M = 0 on the motion.
     """
     tower = Tower(occurring_parameters(found))
     rows, positions = state_field(over_tower(found, tower, {}), order)
-    if tower.squares:
-        raise NoClosedForm("coefficients of the Taylor field hold square roots")
     variables = (*positions, *(velocity_name(name) for name in found.coordinates))
-    context = fmpq_mpoly_ctx.get([*tower.parameters, *variables], Ordering.degrevlex)
-    images = [context.constant(0)] * MOST_ROOTS + [context.gen(k) for k in range(len(tower.parameters))]
+    kinds = [tower.kind(MOST_ROOTS - 1 - k) for k in range(len(tower.squares))]
+    roots = [kind if isinstance(kind, str) else f"#{k}" for k, kind in enumerate(kinds)]
+    parameters = (*tower.parameters, *roots)
+    context = fmpq_mpoly_ctx.get([*parameters, *variables], Ordering.degrevlex)
+    own = [context.gen(k) for k in range(len(parameters))]
+    free = len(tower.parameters)
+    images = [context.constant(0)] * (MOST_ROOTS - len(roots)) + own[free:][::-1] + own[:free]
     common = context.constant(1)
     entries = []
     for row in rows:
         terms = []
         for key, value in row.coefficients.items():
-            product = context.term(exp_vec=(*(0 for _ in tower.parameters), *key))
+            product = context.term(exp_vec=(*(0 for _ in parameters), *key))
             top, bottom = (x.compose(*images, ctx=context) for x in (value.top, value.bottom))
             common = common * (bottom / common.gcd(bottom))
             terms.append((product * top, bottom))
         entries.append(terms)
     numerators = [sum((top * (common / bottom) for top, bottom in terms), context.constant(0)) for terms in entries]
     shared, denominator = in_lowest_terms(numerators, common)
-    return PolynomialField(context, tower.parameters, variables, tuple(shared), denominator)
+    squares = tuple(
+        (name, square.compose(*images, ctx=context)) for name, square in zip(roots, tower.squares, strict=True)
+    )
+    return PolynomialField(context, parameters, variables, tuple(shared), denominator, roots=squares)

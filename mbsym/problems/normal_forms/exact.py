@@ -15,7 +15,7 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, message_of
 from mbsym.algebra.matrices import dot, faddeev
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.tower import Element, Tower
+from mbsym.algebra.tower import Element, Tower, angle_in
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
@@ -37,8 +37,20 @@ def occurring_parameters(found: Expansion) -> list[str]:
         fresh = set(occurring([pending.pop()])) - seen
         seen |= fresh
         pending += [argument for k in fresh if (argument := ring.generators[k].argument) is not None]
-    held = {ring.generators[k].name for k in seen if ring.generators[k].argument is None}
-    return [parameter.name for parameter in found.scene.system.parameters if parameter.name in held]
+    held = [ring.generators[k] for k in sorted(seen) if ring.generators[k].argument is None]
+    plain = {g.name for g in held if g.kind == "parameter"}
+    names = [parameter.name for parameter in found.scene.system.parameters]
+    angles = {g.name: g.denominator for g in held if g.kind in ("sine", "cosine") and g.name in names}
+    cosines = [f"cos({name if share == 1 else f'{name}/{share}'})" for name, share in angles.items()]
+    return [*(name for name in names if name in plain), *cosines]
+
+
+def letter(ring: Ring, name: str) -> Polynomial:
+    """A parameter of a tower in the ring, a sine or cosine of one, too."""
+    inside = angle_in(name)
+    if inside is None:
+        return ring.generator("parameter", name)
+    return ring.generator({"cos": "cosine", "sin": "sine"}[inside[0]], inside[1])
 
 
 class Resonant:
@@ -149,7 +161,7 @@ def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:
 
     def generator(index: int) -> Polynomial:
         kind = tower.kind(index)
-        return ring.generator("parameter", kind) if isinstance(kind, str) else ring.square_root(carried(kind))
+        return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     return ring.reduce(ring.times(carried(x.top), ring.reciprocal(carried(x.bottom))))
 

@@ -164,7 +164,7 @@ def other_levels_of(
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
     if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        lengths = [one for one in usual.generators if one.name.startswith("length of ")]
+        lengths = [one for one in usual.generators if one.by_itself]
         if usual.field.relations and not lengths:  # its weight is beyond the degree: with any length there is nothing
             return other_levels(usual, None)
         return other_levels(usual, lengths[0] if lengths else None)

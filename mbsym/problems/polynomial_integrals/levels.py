@@ -51,7 +51,7 @@ def levels(found: PolynomialIntegrals) -> tuple[Generator, ...]:
     """
     if not found.grading.homogeneous or (found.field.relations and not found.grading.free):
         return ()
-    return tuple(one for one in found.generators if not one.name.startswith("length of ") and one.name != UNITY)
+    return tuple(one for one in found.generators if not one.by_itself and one.name != UNITY)
 
 
 def on_level(found: PolynomialIntegrals, level: Generator) -> OnLevel:

@@ -39,6 +39,11 @@ class Generator:
     certainty: Certainty
 
     @property
+    def by_itself(self) -> bool:
+        """Whether it has its value by what the variables are: a length, sine and cosine, exponentials."""
+        return self.name.startswith(("length of ", "identity between "))
+
+    @property
     def is_new(self) -> bool:
         return not self.name
 

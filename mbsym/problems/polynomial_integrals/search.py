@@ -142,7 +142,7 @@ class Search:
         apart = self.grading.homogeneous and not self.modulo
         listed = [(name, f, apart) for name, f in known]
         if self.grading.free:  # norms are integrals by themselves; their constant is no part of them
-            listed = [(Message("length of [[name]]", name=_stem(field, r)), r, False) for r in field.relations] + listed
+            listed = [(_length(field, r), r, False) for r in field.relations] + listed
         if self.grading.frames:
             listed = [(_constant_by_itself(field, r), r, False) for r in field.relations] + listed
         for name, f, in_parts in listed:
@@ -203,6 +203,15 @@ def _stem(field: PolynomialField, relation: Any) -> str:
     degrees = relation.degrees()
     names = [name for name, k in zip(field.variables, field.places, strict=True) if degrees[k]]
     return names[0].rstrip("0123456789") or names[0]
+
+
+def _length(field: PolynomialField, relation: Any) -> str:
+    """What is constant by itself."""
+    degrees = relation.degrees()
+    names = [name for name, k in zip(field.variables, field.places, strict=True) if degrees[k]]
+    if names[0].startswith(("sin(", "exp(")):
+        return Message("identity between [[names]]", names=", ".join(names))
+    return Message("length of [[name]]", name=_stem(field, relation))
 
 
 def _whole(field: PolynomialField, f: Any, grading: Grading) -> list[tuple[int, Any]]:

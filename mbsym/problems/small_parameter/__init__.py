@@ -1,7 +1,7 @@
 """Problem 12: small parameters: slow integral manifolds, and motions averaged over a fast phase, exactly.
 
 A description that says  small parameter: eps  (or gives powers of a name eps by which parameters are multiplied) and
-has its equations in speeds:
+has equations that are polynomial in positions and velocities:
 
     D x' = N(s, z, eps),      z = h_0(s) + h_1(s) eps + ... + h_n(s) eps^n,      s' = f_0(s) + f_1(s) eps + ...
 

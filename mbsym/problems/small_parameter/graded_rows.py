@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
+from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
+from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Terms
 
@@ -80,10 +82,12 @@ def _graded(
 ) -> _Graded:
     names = field.context.names()
     first = len(field.parameters)
-    aside = {small, *numbers}
+    roots = adjoined(tower, field)
+    at = {n: k for k, n in enumerate(field.parameters)}
+    aside = {small, *numbers, *roots}
     places = [None if n in aside else MOST_ROOTS + tower.parameters.index(n) for n in field.parameters]
     weights = [1 if n == small else powers.get(n, 0) for n in names]
-    parts: dict[int, dict[tuple[int, ...], dict[tuple[int, ...], Any]]] = {}
+    parts: dict[int, dict[tuple[int, ...], dict[tuple[int, ...], dict[tuple[int, ...], Any]]]] = {}
     width = len(tower.context.names())
     for monomial, c in p.to_dict().items():
         order = sum(w * int(e) for w, e in zip(weights, monomial, strict=True) if e)
@@ -94,10 +98,50 @@ def _graded(
             elif name in numbers and e:
                 c = c * numbers[name] ** int(e)
         state = tuple(int(e) for e in monomial[first:])
-        terms = parts.setdefault(order, {}).setdefault(state, {})
+        held = tuple(int(monomial[at[name]]) for name in roots)
+        terms = parts.setdefault(order, {}).setdefault(state, {}).setdefault(held, {})
         terms[tuple(exponents)] = terms.get(tuple(exponents), 0) + c
     one = tower.context.constant(1)
-    return {
-        k: {m: tower.made(tower.context.from_dict(terms), one) for m, terms in part.items()}
-        for k, part in parts.items()
-    }
+
+    def coefficient(shares: Mapping[tuple[int, ...], dict[tuple[int, ...], Any]]) -> Element:
+        total = tower.zero
+        for held, terms in shares.items():
+            product = tower.made(tower.context.from_dict(terms), one)
+            for root, e in zip(roots.values(), held, strict=True):
+                for _ in range(e):
+                    product = product * root
+            total = total + product
+        return total
+
+    return {k: {m: coefficient(shares) for m, shares in part.items()} for k, part in parts.items()}
+
+
+def adjoined(tower: Tower, field: PolynomialField) -> dict[str, Element]:
+    """The square roots among the field's parameters, in the tower.
+
+    Raises NoClosedForm where a square is one in the parameters that are left: of which sign its root is nobody says.
+    """
+    found: dict[str, Element] = {}
+    for name, square in field.roots:
+        inside = angle_in(name)
+        if inside is not None:
+            found[name] = tower.sin_cos(LinearForm(((inside[1], Fraction(1, inside[2])),)))[0]
+            continue
+        total = tower.zero
+        for monomial, c in square.to_dict().items():
+            product = tower.element(c)
+            for other, e in zip(field.parameters, monomial, strict=False):
+                for _ in range(int(e)):
+                    product = product * (found[other] if other in found else tower.parameter(other))
+            total = total + product
+        root = tower.square_root(total)
+        number = tower.rational(root)
+        if number is not None:
+            root = tower.element(abs(number))
+        elif not any(root.top.degrees()[:MOST_ROOTS]):
+            raise NoClosedForm(
+                "a square root in the coefficients becomes rational, and its sign is not known",
+                remedy="put in numbers for the parameters under it",
+            )
+        found[name] = root
+    return found

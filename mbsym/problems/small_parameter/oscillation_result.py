@@ -79,6 +79,8 @@ class Oscillation:
     residuals: tuple[int | None, ...] = ()
     #: What is zero for other amplitudes at which secular terms are removed, too; in the symbol of the amplitude.
     other_amplitudes: Element | None = None
+    #: Of a single cycle in a plane: (m, c), so that motions near it come closer or part like exp(c eps^m t).
+    exponent: tuple[int, Element] | None = None
 
     @property
     def verified(self) -> bool:

@@ -19,7 +19,7 @@ from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
 from mbsym.problems.small_parameter.oscillation_checks import residual_orders
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Oscillation
+from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 
 #: A condition on the amplitude may first appear in this order.
 LATEST = 4
@@ -144,7 +144,42 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         not_known=_named(there, system.not_known),
         other_amplitudes=others,
     )
-    return replace(found, residuals=residual_orders(there.rows, there.names, found))
+    return replace(
+        found, residuals=residual_orders(there.rows, there.names, found), exponent=_exponent(there, found, names)
+    )
+
+
+def _exponent(there: Equations, found: Oscillation, names: Sequence[int]) -> tuple[int, Element] | None:
+    """Poincare's characteristic exponent of a cycle of two variables: the mean of div X over the period, first term.
+
+    The phase runs evenly, so that it is the mean over the phase of  sum_i dX_i/dx_i  on the series.  None of families,
+    of more variables, and where it vanishes in all orders that are known.
+    """
+    if found.kind is Amplitude.FREE or len(names) != 2 or found.drifts:
+        return None
+    tower, series = found.tower, dict(zip(names, found.series, strict=True))
+    one = Harmonics.constant(tower, tower.one)
+    total = [Harmonics(tower, {}) for _ in range(found.order + 1)]
+    for i in names:
+        for k, terms in there.rows[i].items():
+            for exponents, c in terms.items():
+                if not exponents[i] or k > found.order:
+                    continue
+                product = {k: one.scaled(c * exponents[i])}
+                for j in (place for place, e in enumerate(exponents) for _ in range(e - (place == i))):
+                    product = _times(product, series[j], found.order)
+                for n, part in product.items():
+                    total[n] = total[n] + part
+    return next(((n, part.mean) for n, part in enumerate(total) if not part.mean.is_zero()), None)
+
+
+def _times(a: Mapping[int, Harmonics], b: Sequence[Harmonics], most: int) -> dict[int, Harmonics]:
+    """A product of series in eps, up to eps^most."""
+    found: dict[int, Harmonics] = {}
+    for n, x in a.items():
+        for k, y in enumerate(b[: most - n + 1]):
+            found[n + k] = found[n + k] + x * y if n + k in found else x * y
+    return found
 
 
 def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:

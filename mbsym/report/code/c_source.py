@@ -18,7 +18,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
-from mbsym.formulas.straight_line import Dialect
+from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.mechanics.programs import generalized_energy
 from mbsym.model.quantities import marked, told_units
 from mbsym.model.speeds import Quaternion
@@ -84,9 +84,8 @@ def call(function: str, argument: str) -> str:
 
 DIALECT = Dialect(
     call=call,
-    local=lambda count: f"s{count}",
     number=number,
-    angle=lambda function, name: f"{function}_{name}",
+    angle=angle_name,
     tables=True,
 )
 

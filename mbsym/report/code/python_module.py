@@ -23,7 +23,7 @@ from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import injective
-from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.straight_line import Dialect, angle_name, listing
 from mbsym.mechanics.programs import Programs, generalized_energy
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.quantities import told_units, unit_of
@@ -87,8 +87,7 @@ def _called(function: str) -> str:
 
 DIALECT = Dialect(
     call=lambda function, argument: f"{_called(function)}({argument})",
-    local=lambda count: f"s{count}",
-    angle=lambda function, name: f"{function}_{name}",
+    angle=angle_name,
     tables=True,
 )
 

@@ -36,7 +36,7 @@ class Singular(Part, frozen=True):
     sets: Annotated[list[Set], "singular sets"]
 
 
-class Found(Part, frozen=True):
+class SingularPosition(Part, frozen=True):
     place: Annotated[dict[str, float], "values of the coordinates"]
     labels: Annotated[dict[str, str], "the same as text, exact where that is proved"]
     rank: Annotated[int, "rows that are independent there"]
@@ -50,7 +50,7 @@ class SingularPositions(Part, frozen=True):
 
     starts: Annotated[int, "random positions that the search began from"]
     more: Annotated[bool, "whether more were found than are listed"]
-    found: Annotated[list[Found], "the positions"]
+    found: Annotated[list[SingularPosition], "the positions"]
 
 
 class Eigenvalue(Part, frozen=True):

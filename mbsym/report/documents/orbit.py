@@ -1,10 +1,12 @@
-"""``orbit.json`` of ``mbsym orbit``."""
+"""``orbit.json``, ``floquet.json``, ``lyapunov.json`` of the commands of these names."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
-from mbsym.report.documents.base import ASIDE, Hashed, Part
+from mbsym.numerics.orbits.floquet import Word
+from mbsym.numerics.orbits.lyapunov import Parting
+from mbsym.report.documents.base import ASIDE, Hashed, Part, words
 
 
 class Verified(Part, frozen=True):
@@ -53,3 +55,59 @@ class Orbit(Hashed, frozen=True, kw_only=True):
     determinant: Annotated[float, "of the monodromy matrix"]
     trivial: Trivial
     monodromy: Annotated[list[Annotated[list[Annotated[float, "entry"]], "row"]], "the monodromy matrix, row by row"]
+
+
+class PeriodicMultiplier(Part, frozen=True):
+    """one of them"""
+
+    real: Annotated[str, "real part, midpoint and radius"]
+    imaginary: Annotated[str, "imaginary part, midpoint and radius"]
+    size_at_least: Annotated[float, "proved lower bound of its absolute value"]
+    size_at_most: Annotated[float, "proved upper bound"]
+    on_unit_circle: Annotated[bool, "whether it is proved to be on the unit circle"]
+
+
+class Floquet(Hashed, frozen=True, kw_only=True):
+    """What the multipliers of a time-periodic first approximation prove."""
+
+    verdict: Annotated[
+        str, words(Word), "what is proved of the unperturbed motion; of the first approximation only where it says so"
+    ]
+    motion: Annotated[
+        Literal["proved", "verified numerically"],
+        "how far it is known that the unperturbed motion satisfies the equations",
+    ]
+    lagrangian: Annotated[
+        bool,
+        "whether the equations are known to follow from a Lagrangian, so that multipliers come in pairs mu, 1/conj(mu)",
+    ]
+    frequency: Annotated[str, "2 pi over the period, an exact fraction of the numbers as they are computed with"]
+    period: Annotated[str, "a period of the coefficients, 30 digits"]
+    multipliers: Annotated[list[PeriodicMultiplier], "multipliers as balls, the largest first"]
+    simple: Annotated[bool, "whether all multipliers are proved to be simple"]
+    monodromy: Annotated[
+        list[Annotated[list[Annotated[str, "entry, midpoint and radius"]], "row"]],
+        "a matrix of balls that contains the monodromy matrix, row by row",
+    ]
+    steps: Annotated[int, "steps of the enclosure", ASIDE]
+
+
+class Exponent(Part, frozen=True):
+    """one of them"""
+
+    value: Annotated[float | None, "its value"]
+    uncertainty: Annotated[
+        float | None,
+        "half of the 95 % interval of the mean, statistics only; null where there was too little to average",
+    ]
+
+
+class Lyapunov(Hashed, frozen=True, kw_only=True):
+    """Lyapunov exponents over a finite time; they prove nothing about all times."""
+
+    time: Annotated[float, "over how long"]
+    exponents: Annotated[list[Exponent], "exponents, the largest first"]
+    largest: Annotated[str | None, "what the largest one says over this time", words(Parting)]
+    divergence: Annotated[float | None, "mean of the trace of the Jacobian along the motion"]
+    sum_error: Annotated[float | None, "how far the sum of all exponents is from it; null where not all were measured"]
+    ended: Annotated[str | None, "why it ended early"]

@@ -82,6 +82,14 @@ class Measured(Part, frozen=True):
     errors: Annotated[list[Error] | UnsetType, "by variable, in scaled variables", told_apart_by("variable")] = UNSET
 
 
+class CycleExponent(Part, frozen=True):
+    """Poincare's exponent of a single cycle of two variables, in its lowest order"""
+
+    power: Annotated[int, "power of the small parameter"]
+    value: Annotated[str, "its coefficient"]
+    attracts: Annotated[bool | UnsetType, "whether it is negative; left out where signs do not tell"] = UNSET
+
+
 class Oscillation(Part, frozen=True, kw_only=True):
     """a periodic solution in powers of the small parameter"""
 
@@ -91,6 +99,7 @@ class Oscillation(Part, frozen=True, kw_only=True):
     leading: Annotated[str, "the variable whose oscillation leads"]
     phase: Annotated[str, "what the phase is called in formulas"]
     amplitude: AmplitudeValue
+    exponent: Annotated[CycleExponent | UnsetType, "of a single cycle: how motions near it come closer or part"] = UNSET
     constants: Annotated[
         list[Constant],
         "variables that are constant where the small parameter is zero, and their values at the phase 0",

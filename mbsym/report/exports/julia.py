@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from mbsym.formulas.straight_line import Dialect
+from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
 from mbsym.report.numbers import number
@@ -33,12 +33,7 @@ def proposed(name: str) -> str:
 
 
 LANGUAGE = Language(
-    Dialect(
-        call=lambda function, argument: f"{function}({argument})",
-        local=lambda count: f"s{count}",
-        number=number,
-        angle=lambda function, name: f"{function}_{name}",
-    ),
+    Dialect(number=number, angle=angle_name),
     RESERVED,
     proposed,
 )

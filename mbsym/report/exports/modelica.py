@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.program import Choice
 from mbsym.formulas.names import free_name
-from mbsym.formulas.straight_line import Dialect
+from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.model.system import System, velocity_name
 from mbsym.model.units import ENERGY, LENGTH, TIME, Units
 from mbsym.report.environment import rendered
@@ -54,9 +54,8 @@ LANGUAGE = Language(
         call=lambda function, argument: (
             f"noEvent({function}({argument}))" if isinstance(function, Choice) else f"{function}({argument})"
         ),
-        local=lambda count: f"s{count}",
         number=number,
-        angle=lambda function, name: f"{function}_{name}",
+        angle=angle_name,
     ),
     RESERVED,
     proposed,

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.table import Tabulated
-from mbsym.formulas.straight_line import Dialect
+from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.report.code.functions import identifier, python_definition
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
@@ -29,16 +29,28 @@ def language(module: str, called: Callable[[str], str], tables: bool = False) ->
         call=lambda function, argument: (
             f"{identifier(function) if isinstance(function, Tabulated) else f'{module}.{called(function)}'}({argument})"
         ),
-        local=lambda count: f"s{count}",
         number=number,
-        angle=lambda function, name: f"{function}_{name}",
+        angle=angle_name,
         tables=tables,
     )
     return Language(dialect, RESERVED, lambda name: name + "_" if name in RESERVED else name)
 
 
-def render(template: str, spoken: Language, analysis: Analysis, problems: Sequence[int]) -> str:
-    """The module's text."""
+CASADI = language("ca", lambda function: {"abs": "fabs"}.get(function, function))
+JAX = language("jnp", lambda function: {"atan": "arctan"}.get(function, function), tables=True)
+
+
+def casadi(analysis: Analysis, problems: Sequence[int]) -> str:
+    """``model_casadi.py``: functions of CasADi's symbols, for optimal control and estimation."""
+    return _module("exports/casadi.py.j2", CASADI, analysis, problems)
+
+
+def jax(analysis: Analysis, problems: Sequence[int]) -> str:
+    """``model_jax.py``: functions of JAX, for jit, vmap and grad."""
+    return _module("exports/jax.py.j2", JAX, analysis, problems)
+
+
+def _module(template: str, spoken: Language, analysis: Analysis, problems: Sequence[int]) -> str:
     model = export(analysis, problems, spoken, further_too=True)
     lookups = [python_definition(table, "jnp", typed=False) for table in model.tables]
     return rendered(template, {"plain": plain}, model=model, lookups=lookups)

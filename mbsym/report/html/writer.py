@@ -45,7 +45,7 @@ from mbsym.report.words.passages import Passage
 
 _DOTS = ("", "\u02d9", "\u00a8")
 _PLAIN = PlainWriter()
-_DIALECT = Dialect(call=lambda function, argument: f"{function}({argument})", local=lambda count: f"s{count}")
+_DIALECT = Dialect()
 _SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 

@@ -21,7 +21,7 @@ from mbsym.maps.equilibria_map import EquilibriaMap
 from mbsym.maps.result import Cell, Counted, Lack, Map
 from mbsym.maps.slices import Layer, Picture, Stack
 from mbsym.model.system import System
-from mbsym.report.documents import branches, equilibria_map, parts
+from mbsym.report.documents import branches, parts
 from mbsym.report.documents import map as doc
 from mbsym.report.documents.base import written
 from mbsym.report.maps.equilibria_json import coordinate_value
@@ -174,23 +174,23 @@ def _layer(found: Stack, one: Layer) -> doc.Slice:
     )
 
 
-def _equilibria(system: System, found: EquilibriaMap) -> equilibria_map.EquilibriaMap:
+def _equilibria(system: System, found: EquilibriaMap) -> branches.EquilibriaMap:
     boundaries = zip(found.boundaries.factors, found.boundaries.conditions, strict=True)
-    return equilibria_map.EquilibriaMap(
+    return branches.EquilibriaMap(
         **_head(system, found),
         unfinished=list(found.unfinished),
         curves=[
-            equilibria_map.Curve(number=k, polynomial=str(p), origins=[x.origin.value for x in conditions])
+            branches.Curve(number=k, polynomial=str(p), origins=[x.origin.value for x in conditions])
             for k, (p, conditions) in enumerate(boundaries)
         ],
         regions=[_numbered(one, area) for one, (area, _) in zip(found.regions, found.areas, strict=True)],
     )
 
 
-def _numbered(one: Cell, area: float) -> equilibria_map.Region:
-    known = equilibria_map.PROVED if one.certainty is Certainty.PROVED else equilibria_map.SAMPLE
+def _numbered(one: Cell, area: float) -> branches.Region:
+    known = branches.PROVED if one.certainty is Certainty.PROVED else branches.SAMPLE
     said = one.said if isinstance(one.said, Counted) else Counted(())
-    return equilibria_map.Region(
+    return branches.Region(
         number=one.number,
         sample=[str(x) for x in (one.sample.x, one.sample.y)],
         standing=one.lack or known,

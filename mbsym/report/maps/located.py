@@ -133,7 +133,7 @@ class Locating:
         if cell is None:
             return f"outside of the {'interval' if isinstance(self.found.ground, Line) else 'box'}", ""
         white = "white " if cell.lack is Lack.UNPROVED else ""
-        return f"{white}{cell.shape}{'' if white else f' {cell.number}'}", told(self.found, cell)
+        return f"{white}{cell.shape}{'' if white else f' {cell.number}'}", place_text(self.found, cell)
 
     def judged(self, *values: Fraction) -> Cell | None:
         """The cell of a rational point; an arc's verdict is found at the point itself.  None outside."""
@@ -164,11 +164,11 @@ class Locating:
         if layer.z == z and layer.plane is not None:
             cell = layer.plane.at(*values[:2])
             assert cell is not None
-            return f"slice {layer.number}, {cell.shape} {cell.number}", told(found, cell)
+            return f"slice {layer.number}, {cell.shape} {cell.number}", place_text(found, cell)
         beside = f"slice {layer.number}" if layer.z == z else f"beside slice {layer.number}"
         judge, broken = self._judge_at(z)
         cell = Cell(Shape.REGION, 0, lack=Lack.OUTSIDE) if broken else judge(Shape.REGION, 0, Point(x, y))
-        return beside + _region(found, layer, (x, y, z)), told(found, cell)
+        return beside + _region(found, layer, (x, y, z)), place_text(found, cell)
 
     def _new_judge(self, z: Any) -> tuple[Judge, bool]:
         assert self.found.section is not None
@@ -176,7 +176,7 @@ class Locating:
         return Judge(cut, kept), bool(kept.broken)
 
 
-def told(found: Map, cell: Cell) -> str:
+def place_text(found: Map, cell: Cell) -> str:
     """The word of the verdict, numbers of equilibria, or why there is nothing."""
     if cell.lack is not None:
         return cell.lack.value

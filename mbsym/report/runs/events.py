@@ -11,7 +11,7 @@ from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import marked, time_unit, unit_of, with_unit
 from mbsym.model.system import System
 from mbsym.numerics.events.events import MOST, Occurrence, Occurrences
-from mbsym.numerics.events.surfaces import Event
+from mbsym.numerics.events.surfaces import Action, Event
 from mbsym.report.documents import simulation as doc
 from mbsym.report.runs.trajectory_csv import text_table
 from mbsym.report.unit_text import pretty
@@ -85,6 +85,9 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         if touches:
             text = "[[count]] of them touch only, as far as this run can tell: two passages or none"
             told.append(Message(text, count=touches))
+        idle = event.action is Action.STOP and (touches or (len(times) and times[0] == run.trajectory.times[0]))
+        if idle and found.ended is None:
+            told.append(Message("touching, or at the start, it stops nothing"))
         yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(told, "; "))
     if found.ended is not None:
         time = with_unit(f"{found.ended.time:.9g}", unit)

@@ -140,7 +140,7 @@ def _singular(found: Singularities | None) -> doc.Singular | None:
 def _positions(found: SingularPositions) -> doc.SingularPositions:
     """Where constraints lose their rank."""
     listed = [
-        doc.Found(
+        doc.SingularPosition(
             place=dict(one.place),
             labels=dict(one.labels),
             rank=one.rank,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from mbsym.expressions.message import Counted, Message, joined
 from mbsym.model.system import System
 from mbsym.numerics.orbits.floquet import Judged, Multiplier, Word
-from mbsym.report.documents import floquet as doc
+from mbsym.report.documents import orbit as doc
 from mbsym.report.documents.base import written
 from mbsym.source.yaml_writer import meaning
 
@@ -50,8 +50,8 @@ def floquet_json(system: System, found: Judged) -> str:
     return written(content)
 
 
-def _multiplier(one: Multiplier) -> doc.Multiplier:
-    return doc.Multiplier(
+def _multiplier(one: Multiplier) -> doc.PeriodicMultiplier:
+    return doc.PeriodicMultiplier(
         real=one.ball.real.str(DIGITS),
         imaginary=one.ball.imag.str(DIGITS),
         size_at_least=one.least,

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
-from mbsym.report.documents import lyapunov as doc
+from mbsym.report.documents import orbit as doc
 from mbsym.report.documents.base import finite
 from mbsym.report.documents.base import written as document
 from mbsym.report.figures.drawing import BLUE, GREY, pictures

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import text
+from mbsym.model.loads import GeneralizedForce, PointForce, Torque
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
 from mbsym.numerics.conservation import Conservation, Standing
@@ -50,9 +51,17 @@ def _measured(found: Conservation) -> Message:
 
 def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
+    given = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
+
+    def told(found: Conservation) -> Message:
+        line = conservation_line(found)
+        if found.standing is not Standing.CHANGING or not given:
+            return line
+        return Message("[[line]] (U has no part of forces that are given as such)", line=line)
+
     if not run.dynamics.natural:
-        yield "T2 - T0 - U", conservation_line(run.conservation)
-    yield "T - U", conservation_line(run.energy_conservation)
+        yield "T2 - T0 - U", told(run.conservation)
+    yield "T - U", told(run.energy_conservation)
 
 
 def invariant_line(found: Conservation) -> Message:

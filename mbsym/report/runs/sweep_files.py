@@ -13,7 +13,7 @@ import numpy as np
 
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
-from mbsym.report.documents import sweep as doc
+from mbsym.report.documents import ensemble as doc
 from mbsym.report.documents.base import finite, written
 from mbsym.report.runs.trajectory_csv import header, rows
 from mbsym.source.yaml_writer import meaning
@@ -122,10 +122,10 @@ def sweep_json(
     return written(content)
 
 
-def _variation(one: Variation) -> doc.Varied:
+def _variation(one: Variation) -> doc.Swept:
     if isinstance(one, Grid):
-        return doc.Varied(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
-    return doc.Varied(name=one.name, kind=one.kind, first=one.first, second=one.second)
+        return doc.Swept(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
+    return doc.Swept(name=one.name, kind=one.kind, first=one.first, second=one.second)
 
 
 def _share(one: Share) -> doc.Share:

@@ -111,10 +111,10 @@ def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Form
     """What each formula is, and the formula: those that model.py has."""
     if found.slow is not None:
         for one in coefficients(found.slow):
-            yield f"{one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+            yield f"{one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
     if found.oscillation is not None:
         for one in oscillation_words.coefficients(found.oscillation):
-            yield f"periodic solution: {one.variable}{chr(39) if one.rate else ''}, order {one.order}", one.formula
+            yield f"periodic solution: {one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
     for each in averages(found, system):
         if each.found is not None:
             over = f"averaged over {each.found.phase} ({each.found.scaling})"

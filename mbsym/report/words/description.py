@@ -65,7 +65,7 @@ def load(value: Load) -> tuple[Block, ...]:
     """A load with its data, and the formula by which it acts."""
     if isinstance(value, NewtonianGravity):
         return tuple(_newtonian(value))
-    return (Paragraph(tuple(_load(value))),)
+    return (Paragraph(tuple(_load(value.written))),)
 
 
 def _load(value: Load) -> Iterator[Inline]:
@@ -101,7 +101,7 @@ def _load(value: Load) -> Iterator[Inline]:
             )
             ends = {"first": point(first), "second": point(second)}
             yield say(text, **ends, c=coefficient, r=_dissipation(coefficient, "v"))
-        case ForceFunction(spelled=spelled, written=written):
+        case ForceFunction(written, spelled):
             potential = spelled == "potential"
             title, left = ("Potential", Notation("-U")) if potential else ("Force function", Symbol("U"))
             yield from (Said(title), ": ", content.Relation(left, "=", written), ".")

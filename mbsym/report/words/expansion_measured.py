@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure, message_of
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
     from mbsym.simulation.oscillating import MeasuredOrders
+
+M = TypeVar("M")
 
 NO_NUMBERS = "the description does not give all numbers and an initial state"
 DIVIDED = "a denominator vanishes at the given numbers"
@@ -69,17 +71,9 @@ def measured_or_why(
     system: System, found: Expansion, time: float | None = None, values: Mapping[str, Fraction] | None = None
 ) -> Measured | str:
     """The error of the flow over ``time``, with ``values`` in place of the description's; why it was not measured."""
-    from mbsym.numerics.scenario import Incomplete
-    from mbsym.simulation.expanded import NotMeasured, measured
+    from mbsym.simulation.expanded import measured
 
-    try:
-        return measured(system, found, time, values)
-    except Incomplete:
-        return NO_NUMBERS
-    except ZeroDivisionError:
-        return DIVIDED
-    except (NotMeasured, Failure, ValueError, OverflowError) as reason:
-        return message_of(reason)
+    return _or_why(lambda: measured(system, found, time, values))
 
 
 def oscillation_measured(found: SmallParameters, system: System) -> MeasuredOrders | str:
@@ -94,17 +88,9 @@ def orders_or_why(
     system: System, told: Oscillating, values: Mapping[str, Fraction] | None = None
 ) -> MeasuredOrders | str:
     """The same of any periodic solution, with the ``values`` that it was made with."""
-    from mbsym.numerics.scenario import Incomplete
     from mbsym.simulation.oscillating import measured_orders
 
-    try:
-        return measured_orders(system, told, values)
-    except Incomplete:
-        return NO_NUMBERS
-    except ZeroDivisionError:
-        return DIVIDED
-    except (Failure, ValueError, OverflowError) as reason:
-        return message_of(reason)
+    return _or_why(lambda: measured_orders(system, told, values))
 
 
 def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
@@ -126,14 +112,21 @@ def average_or_why(
     system: System, averaged: System, found: Averaged, time: float | None = None
 ) -> MeasuredAverage | str:
     """The distance of the motion from the averaged one; why it was not measured."""
-    from mbsym.numerics.scenario import Incomplete
     from mbsym.simulation.averaged import measured
 
+    return _or_why(lambda: measured(system, averaged, found, time))
+
+
+def _or_why(measure: Callable[[], M]) -> M | str:
+    """What is measured; why it was not."""
+    from mbsym.numerics.scenario import Incomplete
+    from mbsym.simulation.expanded import NotMeasured
+
     try:
-        return measured(system, averaged, found, time)
+        return measure()
     except Incomplete:
         return NO_NUMBERS
     except ZeroDivisionError:
         return DIVIDED
-    except (Failure, ValueError, OverflowError) as reason:
+    except (NotMeasured, Failure, ValueError, OverflowError) as reason:
         return message_of(reason)

@@ -11,6 +11,7 @@ from mbsym.algebra.signs import Condition
 from mbsym.analysis.expanding import Expansion
 from mbsym.analysis.small import Averaging, SmallParameters
 from mbsym.expressions.message import worded
+from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.result import Outcome
 from mbsym.problems.stability import Stability
@@ -50,16 +51,20 @@ def too_slow(orders: Sequence[float], expected: int) -> bool:
 
 @dataclass(frozen=True)
 class Coefficient:
-    """The coefficient of eps^``order`` in the series of a variable, or of its rate."""
+    """The coefficient of eps^``order`` in the series of a variable, of its ``rate`` (1), or of that one's (2).
+
+    ``flow``: it is one of the flow on the manifold.
+    """
 
     variable: str
-    rate: bool
+    rate: int
     order: int
     formula: Formula
+    flow: bool = False
 
     @property
     def equation(self) -> Relation:
-        return Relation(Raised(Name(self.variable, int(self.rate)), self.order), "=", self.formula)
+        return Relation(Raised(Name(self.variable, self.rate), self.order), "=", self.formula)
 
 
 _FAST = {
@@ -99,8 +104,11 @@ def coefficients(found: Expansion) -> Iterator[Coefficient]:
     manifold = found.manifold
     for rate, names, series in ((False, manifold.fast, manifold.functions), (True, manifold.slow, manifold.flow)):
         for name, one in zip(names, series, strict=True):
+            if rate and any(without_velocity(other) == name for other in {*manifold.fast} & {*found.velocities}):
+                continue  # its rate is a fast variable
             for k, formula in of_series(found, one):
-                yield Coefficient(name, rate, k, formula)
+                plain = without_velocity(name) if name in found.velocities else name
+                yield Coefficient(plain, rate + (plain != name), k, formula, rate)
 
 
 def of_series(found: Expansion, one: Series) -> Iterator[tuple[int, Formula]]:
@@ -115,8 +123,12 @@ def opening(found: Expansion) -> Iterator[Said]:
     manifold = found.manifold
     small = Name(manifold.field.small)
     yield from scaled(manifold.field.powers, manifold.field.small)
-    fast, slow = named(manifold.fast), named(manifold.slow)
+    fast, slow = (tuple(_variable(found, name) for name in names) for names in (manifold.fast, manifold.slow))
     yield say(SERIES, order=str(manifold.order), small=small, fast=fast, slow=slow)
+
+
+def _variable(found: Expansion, name: str) -> Name:
+    return Name(without_velocity(name), 1) if name in found.velocities else Name(name)
 
 
 def scaled(powers: Iterable[tuple[str, int]], small: str) -> Iterator[Said]:

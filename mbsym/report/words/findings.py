@@ -40,7 +40,7 @@ class Finding:
         return safe(self.message) + (f"; hint: {safe(self.hint)}" if self.hint else "")
 
 
-def found(path: str, complaints: Iterable[Complaint]) -> tuple[Finding, ...]:
+def findings_of(path: str, complaints: Iterable[Complaint]) -> tuple[Finding, ...]:
     """The complaints about a file as findings."""
     return tuple(
         Finding(

@@ -71,6 +71,15 @@ _NOTHING_OF_TAYLOR = (
     "Put into the equations cut off so, at random rational parameters, it leaves nothing (verified); of those that are "
     "not cut off it may leave terms of order [[next]] of [[small]]."
 )
+_EXPONENT = {
+    True: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is asymptotically orbitally stable.",
+    False: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is unstable.",
+    None: "Poincare's exponent of this cycle is [[exponent]] times the power [[power]] of [[small]] in the lowest "
+    "order: for all sufficiently small [[small]] > 0 it is asymptotically orbitally stable where that is negative, "
+    "unstable where it is positive.",
+}
 _REAL = "The frequency without [[small]] is real and not zero where [[condition]]."
 _NONZERO = "It holds where the frequency without [[small]] is not zero: [[condition]]."
 _RESONANCE = (
@@ -174,6 +183,9 @@ def sentences(told: Oscillating) -> Iterator[Said]:
             yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
         if found.other_amplitudes is not None:
             yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(found.other_amplitudes), "=", 0))
+    if found.exponent is not None:
+        power, x = found.exponent
+        yield say(_EXPONENT[told.attracts], **values, exponent=told.formula(x), power=str(power))
     if found.constants:
         names = tuple(told.formula(x) for _, x in found.constants)
         yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))

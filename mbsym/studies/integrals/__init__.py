@@ -107,7 +107,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
     watch("polynomial integrals")
     analysis = Analysis(asked.system)
-    there = setting(analysis, request.values)
+    there = setting(analysis, request.values, driven=True)
     if wrong := tuple(_unfit(there, request)):
         raise NotFit(wrong)
     found, axis = integrals_of(there, request.degree, request.weights), request.vary

@@ -409,3 +409,34 @@ def test_a_frequency_that_is_not_there_is_told():
 def test_what_cannot_oscillate_is_refused(tmp_path):
     with pytest.raises(NoClosedForm, match="square of its frequency is < 0"):
         oscillating(point(tmp_path, ["potential: -w**2*x**2/2 + eps*x**4/4"]), 2)
+
+
+@pytest.mark.parametrize(
+    ("even", "amplitude", "exponent", "attracts"),
+    [
+        ("1 - x**2", 2, "-1", True),
+        ("x**2 - 1", 2, "1", False),
+        ("1 - 3*x**2 + x**4", 2, "1", False),
+        ("w - x**2", None, "-w", True),
+    ],
+)
+def test_a_single_cycle_attracts_or_repels(tmp_path, even, amplitude, exponent, attracts):
+    """x'' + x = eps f(x) x': div X = eps f, whose mean over a cycle of amplitude a is the exponent (Poincare).
+
+    f = c0 + c2 x^2 + c4 x^4: c0 + c2 a^2/2 + 3 c4 a^4/8.  By hand 1 - 2 = -1 for van der Pol's, a = 2; of
+    1 - 3 x^2 + x^4  1 - 6 + 6 = 1 at a = 2 (the inner cycle has 1 - 3 + 3/2 = -1/2); w - 2 w = -w at a^2 = 4 w.
+    """
+    given = {} if amplitude is None else {"amplitude": Fraction(amplitude)}
+    told = oscillating(point(tmp_path, _damped_by(even)), 2, given)
+    power, x = told.found.exponent
+    assert (power, str(told.formula(x)), told.attracts) == (1, exponent, attracts)
+    shown = [Writer().said(said) for said in sentences(told)]
+    assert any(("asymptotically orbitally stable." in one) is attracts and "Poincare" in one for one in shown)
+    data = oscillation_data(told, "not measured").exponent
+    assert (data.power, data.value, data.attracts) == (1, exponent, attracts)
+
+
+def test_of_families_nothing_is_said(tmp_path):
+    told = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2)
+    assert told.found.exponent is None
+    assert not any("Poincare" in Writer().said(said) for said in sentences(told))

@@ -8,6 +8,9 @@ import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.expanding import expansion
 from mbsym.problems.small_parameter.result import Outcome
+from mbsym.report.content import Name, Raised
+from mbsym.report.words.expansion_words import coefficients
+from mbsym.simulation.expanded import measured
 
 #: eps x'' + c x' + k (x - y) = 0, y' is a speed, y'' = -a y - k (y - x): a light body on a spring, with friction.
 LIGHT = """
@@ -107,3 +110,41 @@ def test_two_roots_that_both_grow_are_fast():
     found = expansion(mbsym.loads(CREEPING.replace("SMALL", "m").replace("FORCE", "-b*x_dot**3")), 2)
     assert found.manifold.fast == ("u", "x")
     assert found.fast[0] is Outcome.UNDECIDED
+
+
+HONEY = """
+mbsym: 1
+name: a light particle in honey
+parameters: {eps: positive, k: positive}
+small parameter: eps
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: eps, coordinates: [x]}
+loads:
+  - generalized force: {x: -x_dot - k*x - x**3}
+motion: {x: 0}
+values: {eps: 1/100, k: 1}
+initial: {x: 1}
+"""
+
+
+def test_equations_in_coordinates_are_expanded():
+    """eps x'' = -x' - g, g = k x + x^3: x' = -g - eps g' g - ..., by hand eps d(-g)/dt = eps g' g = -h_1."""
+    analysis = mbsym.loads(HONEY)
+    found = expansion(analysis, 2)
+    assert (found.manifold.fast, tuple(found.manifold.slow)) == (("x_dot",), ("x",))
+    ring = analysis.ring
+    x, k = ring.generator("coordinate", "x"), ring.generator("parameter", "k")
+    g, slope = k * x + x**3, k + 3 * x**2
+    h = [found.formula(found.manifold.functions[0].coefficients[n]).polynomial for n in (0, 1)]
+    assert h == [-g, -slope * g]
+    assert found.fast[0] is found.slow[0] is Outcome.HOLDS
+    assert [one.equation.parts[0] for one in coefficients(found)] == [Raised(Name("x", 1), n) for n in (0, 1, 2)]
+    by_run = measured(analysis.system, found)  # against the whole equations at eps, eps/2, eps/4
+    assert all(abs(order - 3) < 0.2 for order in by_run.orders)
+
+
+def test_what_stands_under_a_sine_is_refused():
+    joint = "rotation: {axes: [3, 0, 0], angles: [x, 0, 0]}, mass: 0, inertia about: joint, inertia: [0, 0, eps]"
+    text = HONEY.replace("connection point: [x, 0, 0], mass: eps", joint).replace("x**3", "sin(x)")
+    with pytest.raises(NoClosedForm, match=r"sin\(x\), cos\(x\) are variables"):
+        expansion(mbsym.loads(text), 1)

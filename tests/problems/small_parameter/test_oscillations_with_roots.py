@@ -1,0 +1,84 @@
+"""Oscillations about motions whose coefficients are no rational numbers: L4, and a conical pendulum at any angle."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+import mbsym
+from mbsym.algebra.failures import NoClosedForm
+from mbsym.analysis.oscillating import oscillating
+from mbsym.simulation.oscillating import measured_orders
+
+BODIES = Path(__file__).parents[3] / "systems" / "three-bodies.yaml"
+CONE = """
+mbsym: 1
+name: a conical pendulum
+parameters: {m: positive, g: positive, l: positive, theta0: positive, w: positive}
+bodies:
+  - {name: arm, rotation: {axes: [3, 1, 0], angles: [psi, theta, 0]}, mass: m, mass centre: [0, 0, -l]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+relations: {g: l*w**2*cos(theta0)}
+motion: {psi: {rate: w}, theta: theta0}
+values: {m: 1, l: 1, w: 1, theta0: 1}
+initial: {theta: 1.1, psi: {position: 0, velocity: 1}}
+"""
+
+
+@pytest.mark.parametrize(("which", "sign"), [(1, -1), (2, 1)])
+def test_frequencies_about_l4_are_rouths(which, sign):
+    """w^4 - w^2 + 27/4 mu (1 - mu) = 0 in units of n; the long-period family stands first.  Measured against runs."""
+    analysis = mbsym.load(BODIES)
+    found = oscillating(analysis, 1, leading="x", which=which)
+    square = found.formula(found.found.frequency * found.found.frequency)
+    n, mu = 1.0, 0.01
+    routh = (1 + sign * (1 - 27 * mu * (1 - mu)) ** 0.5) / 2
+    assert float(square.to_sympy().subs({"n": n, "mu": mu})) == pytest.approx(routh, rel=1e-12)
+    assert found.found.verified
+    measured = measured_orders(analysis.system, found)
+    assert all(order is not None and order > 1.9 for order in measured.orders)
+
+
+def test_the_conical_pendulum_sways_with_its_known_frequency():
+    """w sqrt(1 + 3 cos^2 theta0) (E. T. Whittaker, section 93); psi' answers by the constant momentum:
+
+    sin^2 theta psi' is constant, so that in first order  psi' = -2 w cos(theta0)/sin(theta0) a cos(phase).
+    """
+    analysis = mbsym.loads(CONE)
+    found = oscillating(analysis, 2)
+    letters = {"w": 1.5, "theta0": 0.7, found.symbols["#amplitude"]: 0.3}
+
+    def number(x):
+        return float(found.formula(x).to_sympy().subs(letters))
+
+    from math import cos, sin
+
+    assert number(found.found.frequency) == pytest.approx(1.5 * (1 + 3 * cos(0.7) ** 2) ** 0.5, rel=1e-12)
+    turning = found.found.series[found.found.names.index("psi_dot")][0].waves
+    assert set(turning) == {1}
+    assert number(turning[1][0]) == pytest.approx(-2 * 1.5 * cos(0.7) / sin(0.7) * 0.3, rel=1e-12)
+    assert number(turning[1][1]) == 0
+    measured = measured_orders(analysis.system, found)  # against runs at eps/2, eps/4, ...: of order 3
+    assert all(order is not None and order > 2.9 for order in measured.orders)
+
+
+def test_a_root_whose_sign_is_lost_is_refused():
+    """sqrt(k^2 - 2 k + 2) is sqrt(5) at k = 3 and 1 at k = 1, both positive; with k = j^2 + 1 it would need a sign."""
+    text = """
+mbsym: 1
+name: a spring that pulls sideways
+parameters: {m: positive, k: positive, b: real}
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - potential: sqrt(b)*x**2*k/2 + x**4
+motion: {x: 0}
+"""
+    analysis = mbsym.loads(text)
+    at = oscillating(analysis, 1, {"b": Fraction(4)})
+    assert str(at.formula(at.found.frequency * at.found.frequency)) == "2*k/m"
+    with pytest.raises(NoClosedForm, match="does not oscillate"):
+        oscillating(mbsym.loads(text.replace("sqrt(b)", "-sqrt(b)")), 1, {"b": Fraction(4)})
