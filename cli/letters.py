@@ -48,6 +48,6 @@ def read_letters(text: str | None, system: System, asked: Options) -> tuple[str,
     else:
         for name in named:
             if name not in known and name not in system.parameter_names:
-                hint = did_you_mean(name, known) or listed("there are", known)
-                asked.complain("--in", "unknown-letter", f"there is no letter '{ascii_safe(name)}'", hint)
+                near = did_you_mean(name, known) or listed("there are", known)
+                asked.complain("--in", "unknown-letter", f"there is no letter {ascii_safe(name)}", near)
     return tuple(named)
