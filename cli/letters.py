@@ -49,5 +49,5 @@ def read_letters(text: str | None, system: System, asked: Options) -> tuple[str,
         for name in named:
             if name not in known and name not in system.parameter_names:
                 near = did_you_mean(name, known) or listed("there are", known)
-                asked.complain("--in", "unknown-letter", f"there is no letter '{ascii_safe(name)}'", near)
+                asked.complain("--in", "unknown-letter", f"there is no letter {ascii_safe(name)}", near)
     return tuple(named)

@@ -20,9 +20,8 @@ def letters_of(system: System, asked: tuple[str, ...] | None = None) -> Letters:
     """
     known: dict[tuple[str, ...] | None, Letters] = vars(system).setdefault("_letters", {})
     if asked not in known:
-        notation = [(one.name, one.value) for one in system.notation]
-        given = (*notation, *((one.name, one.value) for one in system.abbreviations))
-        known[asked] = Letters(given, asked)
+        notation = tuple((one.name, one.value) for one in system.notation)
+        known[asked] = Letters((*notation, *((one.name, one.value) for one in system.abbreviations)), asked)
     return known[asked]
 
 
