@@ -25,6 +25,7 @@ from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.letters import letters_as
 from mbsym.mechanics.motion import relations
 from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.scaling import Scaling
@@ -127,7 +128,8 @@ class Oscillating:
             return whole
         plain = self.wave(one, self.told_ring)
         reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
-        return min((plain, reduced, whole), key=lambda x: len(x.text()))
+        with letters_as(None):  # to write each in letters would cost more than all that is told
+            return min((plain, reduced, whole), key=lambda x: len(x.text()))
 
     def written(self, one: Harmonics) -> str:
         """The same, harmonic by harmonic, in Python syntax."""

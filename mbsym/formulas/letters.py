@@ -32,10 +32,10 @@ from mbsym.expressions.tree import Call, Expression, names, substitute
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import angles_or
 
-#: Longer formulas stay as they are: nobody reads them, and it may take long.
-MOST_TERMS = 400
+#: Longer formulas stay as they are: nobody reads them, and it may take long.  Unasked for only short ones are tried.
+MOST_TERMS, MOST_UNASKED = 400, 30
 #: Candidate terms of products that the steps of one formula may take, by each route.
-WORK = 20_000_000
+WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
 #: What is left to read at most, as a share of what there was: after one step, and after all of them.
@@ -183,6 +183,7 @@ class Rewriter:
     def __init__(self, ring: Ring, letters: Letters) -> None:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
         self.letters = letters
+        self.most_terms, self.work = (MOST_TERMS, WORK) if letters.asked else (MOST_UNASKED, WORK_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
         self.values = self._expanded(letters, held, ring)
         moving = [name for name, value in self.values.items() if not _constant(value, ring)]
@@ -280,10 +281,10 @@ class Rewriter:
         return known[1]
 
     def _written(self, polynomial: Polynomial) -> Written | None:
-        if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
+        if not self.steps or len(polynomial) > self.most_terms or polynomial.is_constant():
             return None
         try:
-            with self.ring.whole.budget(WORK):
+            with self.ring.whole.budget(self.work):
                 return self._shortest(polynomial)
         except (Failure, ZeroDivisionError):  # as it is it can be read, too
             return None
@@ -291,10 +292,10 @@ class Rewriter:
     def _shortest(self, polynomial: Polynomial) -> Written | None:
         ring, whole = self.ring, self.ring.whole
         found: _Fraction = ring.fraction(self._carry(polynomial))
-        if not self._applicable(found, self.steps, True):
-            return None
+        if len(found[0]) > self.most_terms or not self._applicable(found, self.steps, True):
+            return None  # over one denominator it may be long
         routes = [self._improved(found)]
-        with suppress(Failure, ZeroDivisionError), ring.budget(WORK):
+        with suppress(Failure, ZeroDivisionError), ring.budget(self.work):
             chain = self._chain(found)
             if chain is not None:
                 routes.append(self._improved(chain))
@@ -312,7 +313,7 @@ class Rewriter:
     def _improved(self, found: _Fraction) -> _Fraction:
         """What single steps make of it, each of which leaves less to read."""
         least = self._read(found)
-        with suppress(Failure), self.ring.budget(WORK):  # what is found within the budget is as good
+        with suppress(Failure), self.ring.budget(self.work):  # what is found within the budget is as good
             while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
                 least, found = tried
         return found
@@ -400,10 +401,10 @@ class Rewriter:
 
     def _put(self, polynomial: Polynomial, step: _Step) -> tuple[Polynomial, int]:
         """(p, k) with polynomial = p/factor**k by the step."""
-        ring, powers = self.ring, _powers(self.ring, polynomial, step.symbol)
-        most = max(powers, default=0) // step.degree
-        if not most:
+        ring, most = self.ring, int(polynomial.degrees()[step.symbol]) // step.degree
+        if most <= 0:
             return polynomial, 0
+        powers = _powers(ring, polynomial, step.symbol)
         total, symbol = ring.zero, ring.context.gen(step.symbol)
         for power, coefficient in powers.items():
             times, left = divmod(power, step.degree)
