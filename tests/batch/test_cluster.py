@@ -150,7 +150,17 @@ def test_no_cluster_is_a_complaint_with_what_to_do(tmp_path: Path, monkeypatch: 
 
 
 def test_a_sweep_on_workers_gives_the_bytes_of_one_here(cluster: Here) -> None:
-    common = ["sweep", "systems/ziegler-damped.yaml", "-v", "P=0.1:4:20", "-v", "b1=0.1:1:10", "--format", "csv", "-q"]
+    common = [
+        "sweep",
+        "systems/ziegler-damped.yaml",
+        "--vary",
+        "P=0.1:4:20",
+        "--vary",
+        "b1=0.1:1:10",
+        "--format",
+        "csv",
+        "-q",
+    ]
     here, there = cluster.folder / "here", cluster.folder / "there"
     root = str(Path(__file__).parents[2])
     for folder, more in ((here, []), (there, ["--cluster", cluster.address])):

@@ -38,7 +38,7 @@ from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.simulate import simulate
 from mbsym.report.figures.drawing import thinned
-from mbsym.report.figures.figures import CORNER, _curve, figures
+from mbsym.report.figures.figures import CORNER, Curve, _curve, figures
 from mbsym.report.runs.trajectory_csv import trajectory_parts
 from mbsym.source import load
 from mbsym_cli import files
@@ -317,11 +317,11 @@ def test_phase_planes_have_no_corners() -> None:
     dynamics = dynamics_of(DOUBLE)
     found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), times[:2])
     found = replace(found, times=times, states=np.array([np.cos(times), 0 * times, -np.sin(times), 0 * times]))
-    q, v = _curve(found, 0, np.array([-np.cos(times), 0 * times]))
+    q, v = _curve(Curve(found, np.array([-np.cos(times), 0 * times])), 0)
     assert np.max(np.abs(np.hypot(q, v) - 1)) < 1e-5
     steps = np.unwrap(np.arctan2(np.diff(v), np.diff(q)))
     assert np.max(np.abs(np.diff(steps))) < 2 * CORNER
-    plain = np.unwrap(np.arctan2(*np.diff(_curve(found, 0, None))[::-1]))
+    plain = np.unwrap(np.arctan2(*np.diff(_curve(Curve(found), 0))[::-1]))
     assert np.max(np.abs(np.diff(plain))) > 4 * CORNER
 
 
@@ -342,7 +342,7 @@ def test_labels_are_within_the_page(tmp_path: Path) -> None:
     dynamics = dynamics_of(described(tmp_path, chain(2)))
     found = simulate(dynamics, METHODS["dop853"], Setting(tolerance=1e-6), np.linspace(0, 3, 50))
     with styled():
-        pages = [*_histories(found, ""), *_planes(found, ""), ("drift", _drift(found, "", True))]
+        pages = [*_histories([Curve(found)], ""), *_planes([Curve(found)], ""), ("drift", _drift(found, "", True))]
         for stem, figure in pages:
             saved(stem, figure, ["png"])
             width, height = figure.bbox.size

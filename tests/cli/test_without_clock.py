@@ -179,7 +179,7 @@ READS = {f"numerics.{name}": why for name, why in READS.items()} | {
     "batch.coordinator": "how often further work is taken",
     "serving.storage": f"{STALE}; when something was saved",
     **dict.fromkeys(["study", "reports", "batch.run"], SHOWN),
-    **dict.fromkeys(["progress", "batch.table"], PROGRESS),
+    **dict.fromkeys(["console", "batch.table"], PROGRESS),
     "watch": "how often a file is looked at",
     "files": STALE,
 }

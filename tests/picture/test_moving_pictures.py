@@ -198,4 +198,4 @@ def test_equilibria_of_the_pendulum() -> None:
     assert by_value[round(pi, 9)].verdict.word is Word.UNSTABLE
     json.dumps(at_rest_json(found), allow_nan=False)
     with pytest.raises(Failure):
-        at_rest(loaded("four-bar").system)
+        at_rest(loaded("chaplygin-sleigh").system)
