@@ -107,7 +107,7 @@ def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
     [("four-bar", "modes", "no unperturbed motion"), ("chaplygin-sleigh", "equilibria", "constraints tie what moves")],
 )
 def test_what_cannot_be_had_is_told_on_the_page(name: str, what: str, why: str, tmp_path: Path) -> None:
-    """Four bars without a motion have no modes, a sledge that slides on has no list of equilibria: the picture stays."""
+    """Four bars without a motion have no modes, a sledge that slides on no list of equilibria: the picture stays."""
     out = tmp_path / "page.html"
     done = run(SYSTEMS / f"{name}.yaml", f"--{what}", "-o", out)
     assert done.exit_code == 0
