@@ -33,7 +33,7 @@ from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import angles_or
 
 #: Longer formulas stay as they are: nobody reads them, and it may take long.  Unasked for only short ones are tried.
-MOST_TERMS, MOST_UNASKED = 400, 30
+MOST_TERMS, MOST_UNASKED = 400, 60
 #: Candidate terms of products that the steps of one formula may take, by each route.
 WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
