@@ -77,15 +77,22 @@ def jobs(only: str) -> list[Job]:
     return [job for job in found if only in " ".join((job.place, *job.words))]
 
 
+#: What of a line is for the shell alone.
+REDIRECTED = {">", "|", "&&", "2>"}
+
+
 def documented() -> Iterator[list[str]]:
     """The commands of the README and of the pages, each once."""
     seen = set()
     for text in ((ROOT / "README.md").read_text("utf-8"), *((DOCS / page).read_text("utf-8") for page in pages())):
         for block in blocks(text):
-            for line in block.text.splitlines() if block.language == "sh" else ():
+            for line in block.text.replace("\\\n", " ").splitlines() if block.language == "sh" else ():
+                if not line.startswith("mbsym "):
+                    continue
                 words = shlex.split(line, comments=True)
+                words = words[: next((k for k, word in enumerate(words) if word in REDIRECTED), None)]
                 elsewhere = any(word.startswith("tcp://") for word in words)  # a machine that is not there
-                if words[:1] == ["mbsym"] and words[1] not in ENDLESS and not elsewhere and line not in seen:
+                if words[1] not in ENDLESS and not elsewhere and line not in seen:
                     seen.add(line)
                     yield words[1:]
 
