@@ -46,6 +46,7 @@ from mbsym.expressions.tree import (
 )
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import angles_of, ring_environment, ring_of
+from mbsym.model.assumptions import RELATION_OF_SIGN
 from mbsym.model.scaling import Scaling, factor_of
 from mbsym.model.speeds import Quaternion, Speed, UnitVector
 from mbsym.model.substitution import folded, put
@@ -111,9 +112,9 @@ def with_parameters(system: System, scaling: Scaling) -> System:
         for name in scaling.new
     )
     assumed = [
-        Assumption(images[one.name], _RELATIONS[one.sign], number(0))
+        Assumption(images[one.name], RELATION_OF_SIGN[one.sign], number(0))
         for one in system.parameters
-        if one.name in images and one.sign in _RELATIONS and not _has_sign(images[one.name], one.sign, signs)
+        if one.name in images and one.sign in RELATION_OF_SIGN and not _has_sign(images[one.name], one.sign, signs)
     ]
     small = system.small
     needed = set() if small is None else {name for name, _ in small.powers} or {small.name}
@@ -126,9 +127,6 @@ def with_parameters(system: System, scaling: Scaling) -> System:
         assumptions=(*changed.assumptions, *assumed),
         small=small if not needed & (images.keys() | {one.name for one in scaling.variables}) else None,
     )
-
-
-_RELATIONS = {"positive": ">", "negative": "<", "nonzero": "!=", "nonnegative": ">=", "nonpositive": "<="}
 
 
 def _has_sign(x: Expression, sign: str, signs: Mapping[str, str]) -> bool:

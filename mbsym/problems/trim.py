@@ -16,12 +16,13 @@ from dataclasses import dataclass
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.expansion import Row, echelon
 from mbsym.mechanics.kinematics import Scene
+from mbsym.model.assumptions import RELATION_OF_SIGN
 from mbsym.problems.equilibrium import equilibrium, essential
 
 
@@ -29,13 +30,16 @@ from mbsym.problems.equilibrium import equilibrium, essential
 class Trim(Shown):
     """``solved``: unknowns in terms of the ``free`` ones, which may have any value.
 
-    So where none of ``assumed`` vanishes and all ``conditions`` do; ``impossible`` are conditions that never hold.
+    So where none of ``assumed`` vanishes, all ``conditions`` do, and what parameters are to be has the sign that they
+    are declared with: ``signed``, (name, value, relation to 0), where that does not go without saying.  ``impossible`` are
+    those of all these that never hold.
     """
 
     solved: tuple[tuple[str, Formula], ...]
     free: tuple[str, ...]
     assumed: tuple[Formula, ...]
     conditions: tuple[Formula, ...]
+    signed: tuple[tuple[str, Formula, str], ...]
     impossible: tuple[Formula, ...]
 
 
@@ -53,13 +57,18 @@ def trim(
     found = echelon(ring, signs, [_row(ring, ring.substitute(x, images), unknowns) for x in told], range(len(unknowns)))
     left = [x for row in found.rest if (x := essential(scene, row.get(_REST, ring.zero), signs)) is not None]
     never = [x for x in left if x.is_constant() or signs.never_zero(x)]
-    solved = []
+    solved, signed = [], list[tuple[str, Formula, str]]()
     for k, row in sorted(found.pivots.items()):
         value = ring.zero - row.get(_REST, ring.zero)
         for j, name in enumerate(unknowns):
             if j != k and j in row:
                 value = value - ring.times(row[j], ring.generator("parameter", name))
-        solved.append((unknowns[k], Formula(ring, _cleared(ring, ring.reduce(value)))))
+        value = ring.reduce(value)
+        solved.append((unknowns[k], Formula(ring, _cleared(ring, value))))
+        declared, known = (SIGN_SETS.get(signs.sign(x), ANY) for x in (ring.generator("parameter", unknowns[k]), value))
+        if not known <= declared:
+            signed.append((*solved[-1], RELATION_OF_SIGN[SIGN_WORDS[declared]]))
+            never += [value] if not known & declared else []
     divided = [ring.substitute(x, images) for x in (*assumed, *found.assumed)]
     divided = [x for y in divided if (x := essential(scene, y, signs)) is not None and not x.is_constant()]
     return Trim(
@@ -67,6 +76,7 @@ def trim(
         tuple(name for k, name in enumerate(unknowns) if k not in found.pivots),
         tuple(Formula(ring, x) for k, x in enumerate(divided) if x not in divided[:k] and not signs.never_zero(x)),
         (*posture.conditions, *(Formula(ring, x) for x in left)),
+        tuple(signed),
         (*posture.impossible, *(Formula(ring, x) for x in never)),
     )
 

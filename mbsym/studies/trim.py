@@ -10,7 +10,7 @@ from mbsym.expressions.message import Message
 from mbsym.report.content import Block, Strong, Subheading, paragraph
 from mbsym.studies.described import Source, analysis_of, public
 from mbsym.studies.request import Names
-from mbsym.studies.study import DESCRIPTION, Answer, Asked, Refusal, Study, Unfit, Watch, failed
+from mbsym.studies.study import DESCRIPTION, Answer, Asked, Exit, Refusal, Study, Unfit, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -98,7 +98,7 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
 
 
 def answer(asked: Asked, request: Request, found: Trim) -> Answer:
-    return Answer(_lines(found))
+    return Answer(_lines(found), code=Exit.FAILED if found.impossible else Exit.OK)
 
 
 def _lines(found: Trim) -> Iterator[Block]:
@@ -108,14 +108,15 @@ def _lines(found: Trim) -> Iterator[Block]:
         yield paragraph(Message("[[name]] = [[value]]", name=name, value=value))
     for name in found.free if not found.impossible else ():
         yield paragraph(Message("[[name]]: any value", name=name))
-    for title, formulas, sign in (
-        (Message("divided by, not to be 0"), found.assumed, " != 0"),
-        (Message("the motion itself has to satisfy"), found.conditions, " = 0"),
+    for title, several in (
+        (Message("divided by, not to be 0"), [f"{x} != 0" for x in found.assumed]),
+        (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in found.signed]),
+        (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in found.conditions]),
     ):
-        if formulas:
+        if several:
             yield Subheading((title,))
-        for x in formulas:
-            yield paragraph("  ", str(x), sign)
+        for line in several:
+            yield paragraph("  ", line)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

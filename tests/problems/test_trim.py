@@ -127,3 +127,35 @@ def test_the_command_prints_it(tmp_path: Any) -> None:
     assert done.exit_code == 0
     assert "tau = m*l*g*cos(a)" in done.output
     assert CliRunner().invoke(main, ["trim", str(path), "--solve", "zeta"]).exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("sign", "printed", "code"),
+    [
+        ("real", "g = 0", 0),
+        ("positive", "no values make this motion one of the system", 1),
+        ("nonnegative", "g = 0", 0),
+    ],
+)
+def test_a_value_has_the_sign_that_is_declared(sign: str, printed: str, code: int, tmp_path: Path) -> None:
+    """A mass at rest in the air: m g = 0, so g = 0, which a positive g is not."""
+    path = tmp_path / "air.yaml"
+    path.write_text(
+        f"mbsym: 1\nname: Air\nparameters: {{m: positive, g: {sign}}}\nbodies:\n"
+        "  - {name: a, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}\n"
+        "loads:\n  - uniform gravity: {vector: [0, -g, 0]}\nmotion: {y: 0}\n"
+    )
+    done = CliRunner().invoke(main, ["trim", str(path), "--solve", "g"])
+    assert (done.exit_code, printed in done.output) == (code, True), done.output
+
+
+def test_a_value_of_either_sign_is_told_with_the_sign_that_it_has_to_have() -> None:
+    """A spring holds a weight at y = a: k a = m g, and with a of any sign k > 0 is not sure."""
+    text = (
+        "mbsym: 1\nname: Held\nparameters: {m: positive, g: positive, k: positive, a: nonzero}\nbodies:\n"
+        "  - {name: b, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}\n"
+        "loads:\n  - uniform gravity: {vector: [0, g, 0]}\n  - spring: {coordinate: y, stiffness: k}\nmotion: {y: a}\n"
+    )
+    found = mbsym.trim(mbsym.loads(text), solve=("k",))
+    assert not found.impossible
+    assert [(str(x), relation) for x, relation in found.signed] == [("m*g/a", ">")]
