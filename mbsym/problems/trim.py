@@ -30,9 +30,9 @@ from mbsym.problems.equilibrium import equilibrium, essential
 class Trim(Shown):
     """``solved``: unknowns in terms of the ``free`` ones, which may have any value.
 
-    So where none of ``assumed`` vanishes, all ``conditions`` do, and what parameters are to be has the sign that they
-    are declared with: ``signed``, (name, value, relation to 0), where that does not go without saying.  ``impossible`` are
-    those of all these that never hold.
+    So where none of ``assumed`` vanishes, all ``conditions`` do, and parameters have the signs that they are declared
+    with: ``signed``, (name, value, relation to 0), where that does not go without saying.  ``impossible`` are those of
+    all these that never hold.
     """
 
     solved: tuple[tuple[str, Formula], ...]

@@ -137,7 +137,7 @@ def test_the_command_prints_it(tmp_path: Any) -> None:
         ("nonnegative", "g = 0", 0),
     ],
 )
-def test_a_value_has_the_sign_that_is_declared(sign: str, printed: str, code: int, tmp_path: Path) -> None:
+def test_a_value_has_the_sign_that_is_declared(sign: str, printed: str, code: int, tmp_path: Any) -> None:
     """A mass at rest in the air: m g = 0, so g = 0, which a positive g is not."""
     path = tmp_path / "air.yaml"
     path.write_text(
@@ -158,4 +158,4 @@ def test_a_value_of_either_sign_is_told_with_the_sign_that_it_has_to_have() -> N
     )
     found = mbsym.trim(mbsym.loads(text), solve=("k",))
     assert not found.impossible
-    assert [(str(x), relation) for x, relation in found.signed] == [("m*g/a", ">")]
+    assert [(name, str(x), relation) for name, x, relation in found.signed] == [("k", "m*g/a", ">")]
