@@ -129,13 +129,12 @@ class Section(Generic[T]):
     build: Callable[[Results], Iterator[Block]]
     known: Results
     write: Callable[[Iterator[Block]], T]
-    explains: bool = True  # what the author's letters in its formulas stand for
+    lettered: bool = True  # in the author's letters; claims say themselves what is one of them, and what it equals
 
     def __call__(self) -> T:
         known = self.known
-        with in_letters(known.system, known.analysis.letters) as used:
-            blocks = with_meanings(self.build(known), known.system, used) if self.explains else self.build(known)
-            told: Any = self.write(blocks)
+        with in_letters(known.system, known.analysis.letters if self.lettered else ()) as used:
+            told: Any = self.write(with_meanings(self.build(known), known.system, used))
             return cast("T", iter(list(told)) if isinstance(told, Iterator) else told)
 
     @property

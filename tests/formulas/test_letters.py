@@ -6,9 +6,11 @@ Expected formulas are derived by hand or stand in tests/references; lengths are 
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import Any
 
 import pytest
+from click.testing import CliRunner
 from conftest import SHIPPED, parsed
 from flint import fmpq
 
@@ -18,6 +20,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import letters as module
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import Letters, Rewriter, letters_as, rewriter, size
+from mbsym_cli.main import main
 
 PARAMETERS = ("a", "b", "c", "k", "m", "l", "J")
 
@@ -200,3 +203,21 @@ def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
     assert texts["r", True, 2] == "-(rho*(lam + r)*G + (lam - r)*(3*lam + r)*p)*q/(kappa*s)"
     assert used == {"lam", "G"}
     assert max(map(len, texts.values())) < 165  # 452 in raw parameters
+
+
+def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_path: Path) -> None:
+    """Of a pendulum 2 T = m l^2 q'^2; claimed is c q'^2 with c = 2 m l^2: "c/2 = c/2" would tell nothing."""
+    path = tmp_path / "pendulum.yaml"
+    path.write_text(
+        "mbsym: 1\nname: Pendulum\nparameters: {m: positive, l: positive}\nabbreviations: {c: m*l**2}\nbodies:\n"
+        "  - {name: a, attached to: 0, rotation: {axes: [3], angles: [q]}, mass: m, mass centre: [0, -l, 0]}\n"
+        "claims:\n  - {claim: kinetic energy, equals: c*q_dot**2}\n",
+        encoding="utf-8",
+    )
+    words = ["run", str(path), "-v", "--format", "json", "--out", str(tmp_path / "out")]
+    printed = CliRunner().invoke(main, words, env={"COLUMNS": "200"}).output
+    _, _, claims = printed.partition("Claimed minus derived is")
+    line = claims.strip().splitlines()[0]
+    assert "m l^2" in line
+    left, _, right = line.partition(" = ")
+    assert left.strip() != right.strip()
