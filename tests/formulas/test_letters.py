@@ -206,18 +206,19 @@ def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
 
 
 def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_path: Path) -> None:
-    """Of a pendulum 2 T = m l^2 q'^2; claimed is c q'^2 with c = 2 m l^2: "c/2 = c/2" would tell nothing."""
+    """2 T = (m l^2 + m k^2) q'^2 = (c + d) q'^2; claimed is c q'^2: that "-d/2 = -d/2" is missing would tell nothing."""
     path = tmp_path / "pendulum.yaml"
     path.write_text(
-        "mbsym: 1\nname: Pendulum\nparameters: {m: positive, l: positive}\nabbreviations: {c: m*l**2}\nbodies:\n"
-        "  - {name: a, attached to: 0, rotation: {axes: [3], angles: [q]}, mass: m, mass centre: [0, -l, 0]}\n"
-        "claims:\n  - {claim: kinetic energy, equals: c*q_dot**2}\n",
+        "mbsym: 1\nname: Pendulum\nparameters: [m, l, k]\nabbreviations: {c: m*l**2, d: m*k**2}\nbodies:\n"
+        "  - {name: a, attached to: 0, rotation: {axes: [3], angles: [q]}, mass: m, mass centre: [0, -l, 0],\n"
+        "     inertia about: mass centre, inertia: [0, m*k**2, m*k**2]}\n"
+        "claims:\n  - {claim: kinetic energy, equals: c*q_dot**2/2}\n",
         encoding="utf-8",
     )
     words = ["run", str(path), "-v", "--format", "json", "--out", str(tmp_path / "out")]
     printed = CliRunner().invoke(main, words, env={"COLUMNS": "200"}).output
     _, _, claims = printed.partition("Claimed minus derived is")
     line = claims.strip().splitlines()[0]
-    assert "m l^2" in line
+    assert "m k^2" in line
     left, _, right = line.partition(" = ")
     assert left.strip() != right.strip()
