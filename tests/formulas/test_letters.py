@@ -206,7 +206,7 @@ def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
 
 
 def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_path: Path) -> None:
-    """2 T = (m l^2 + m k^2) q'^2 = (c + d) q'^2; claimed is c q'^2: that "-d/2 = -d/2" is missing would tell nothing."""
+    """2 T = (m l^2 + m k^2) q'^2 = (c + d) q'^2; claimed is c q'^2. "-d/2 = -d/2" would tell nothing."""
     path = tmp_path / "pendulum.yaml"
     path.write_text(
         "mbsym: 1\nname: Pendulum\nparameters: [m, l, k]\nabbreviations: {c: m*l**2, d: m*k**2}\nbodies:\n"

@@ -41,7 +41,7 @@ from mbsym.problems.constraints.analysis import POINTS, Fault, Unsound, regular_
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.energy import Energy
-from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, Field, candidates, is_new
+from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, Field, candidates, is_new, rate
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import ENERGY, Integral
 
@@ -215,13 +215,7 @@ class TiedField:
 
     def keeps(self, x: Polynomial) -> bool:
         """Whether dx/dt = 0 is proved for every motion."""
-        ring = self.form.ring
-        total = ring.times(self.determinant, self.form.drift(x))
-        for u, scaled in zip(self.form.speeds, self.scaled, strict=True):
-            slope = ring.derivative(x, u.name)
-            if not ring.vanishes(slope):
-                total = total + ring.times(slope, scaled)
-        return self.form.vanishes(self.on_constraints(total)) is True
+        return self.form.vanishes(self.on_constraints(rate(self.form, self.determinant, self.scaled, x))) is True
 
 
 def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> tuple[Integral, ...]:

@@ -41,6 +41,17 @@ from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
 
 
+def rate(form: SpeedForm, determinant: Polynomial, scaled: Sequence[Polynomial], x: Polynomial) -> Polynomial:
+    """D dx/dt where s' = g and D u' = ``scaled``."""
+    ring = form.ring
+    total = ring.times(determinant, form.drift(x))
+    for u, own in zip(form.speeds, scaled, strict=True):
+        slope = ring.derivative(x, u.name)
+        if not ring.vanishes(slope):
+            total = total + ring.times(slope, own)
+    return total
+
+
 @dataclass(frozen=True)
 class Field:
     """The vector field of a system in speeds: s' = g, u' = M^-1 f."""
@@ -60,13 +71,7 @@ class Field:
 
     def rate(self, x: Polynomial) -> Polynomial:
         """det(M) dx/dt on the motion."""
-        ring = self.form.ring
-        total = ring.times(self.determinant, self.form.drift(x))
-        for u, scaled in zip(self.form.speeds, self.scaled, strict=True):
-            slope = ring.derivative(x, u.name)
-            if not ring.vanishes(slope):
-                total = total + ring.times(slope, scaled)
-        return ring.reduce(total)
+        return self.form.ring.reduce(rate(self.form, self.determinant, self.scaled, x))
 
     def keeps(self, x: Polynomial) -> bool | None:
         """Whether dx/dt = 0 on every motion; None where the ring cannot decide."""
