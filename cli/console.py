@@ -12,6 +12,7 @@ import traceback
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -152,14 +153,27 @@ def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
 
 
 def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
-    """What stands before the further lines, and where these begin: at words, so that none is wider that need not be."""
+    """What stands before the further lines, and where these begin: at words, so that none is wider that need not be.
+
+    Within brackets only where nothing outside of them is near.
+    """
     before = len(line) - len(line.lstrip(" "))
     indent, at, start, room = " " * (before + HANGING if margin is None else margin), list[int](), 0, width
+    depths = list(accumulate((_BRACKETS.get(x, 0) for x in line), initial=0))
+    begun: list[int] = []
     for first, last in _words(line, width - len(indent)):
-        if last - start > room and first > max(start, before):
-            at.append(first)
-            start, room = first, width - len(indent)
+        begun.append(first)
+        while last - start > room and first > max(start, before):
+            near = [x for x in begun if x > max(start, before) and x - start >= NEAR * room]
+            cut = min(reversed(near), key=depths.__getitem__, default=first)
+            at.append(cut)
+            start, room = cut, width - len(indent)
     return indent, at
+
+
+#: A line is broken outside of brackets if so much of it is full there.
+NEAR = 0.6
+_BRACKETS = {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}
 
 
 def _words(line: str, widest: int) -> Iterator[tuple[int, int]]:

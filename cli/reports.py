@@ -183,7 +183,7 @@ def _show(
         show_brief(brief(analysis, seconds), path.name, request.width)
         return
     from mbsym.formulas.tree import angles_as
-    from mbsym.report.letters import in_letters
+    from mbsym.report.letters import in_letters, with_meanings
     from mbsym.report.plain_writer import LONGEST, Writer
     from mbsym.report.results import results
     from mbsym.report.sections.summary import finding
@@ -195,9 +195,10 @@ def _show(
         known = results(analysis, analysis.problems)
         writer = Writer(language, True, LONGEST, (asked_width() or WIDEST) - 2, file)  # documents stand further in
         lines = _documents(known, writer, request)
-        with in_letters(analysis.system, analysis.letters):
+        with in_letters(analysis.system, analysis.letters or ()) as used:
             told = finding(known)
             show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
+        show(writer.document(with_meanings((), analysis.system, used)))
     if found is not None:
         from mbsym.report.runs.ledger import ledger_blocks
 

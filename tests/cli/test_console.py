@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from rich.console import Console
 from rich.text import Text
 
-from mbsym_cli.console import tell
+from mbsym_cli.console import tell, wrapped
 
 #: Without control characters: a tab goes on from how wide things are, which plain text does not know.
 WORDS = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=40)
@@ -54,3 +54,18 @@ def test_colours_where_they_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> No
         assert "\x1b[1m" in told(["a", "b"], 0)
     finally:
         console.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("line", "width", "end", "begin"),
+    [
+        ("stable if alpha > 0, (alpha + gamma) (p1 + 3) - 4 p2 (alpha + 1) > 0", 62, "- 4 p2", "(alpha + 1)"),
+        ("x (alpha + beta + gamma + delta + epsilon + zeta + eta)", 30, "+ gamma", "+ delta"),
+    ],
+)
+def test_lines_are_broken_outside_of_brackets_if_that_is_near(line: str, width: int, end: str, begin: str) -> None:
+    """In the second nothing outside is."""
+    first, second, *_ = wrapped(line, width).split("\n")
+    assert first.endswith(end)
+    assert second.strip().startswith(begin)
+    assert len(first) <= width

@@ -222,3 +222,15 @@ def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_pa
     assert "m k^2" in line
     left, _, right = line.partition(" = ")
     assert left.strip() != right.strip()
+
+
+@pytest.mark.parametrize(("asked", "held"), [([], "4 p2 (alpha + 1)"), (["--in", "v0,v2"], "v0")])
+def test_what_was_found_is_in_letters_that_were_asked_for_alone(asked: list[str], held: str, tmp_path: Path) -> None:
+    """The finding stands by itself; labels of conditions are those of problem 6, in whatever letters that is."""
+    words = ["run", str(SHIPPED / "satellite.yaml"), "--format", "latex,html", "--out", str(tmp_path / "out"), *asked]
+    done = CliRunner().invoke(main, words, env={"COLUMNS": "1000"})
+    assert done.exit_code == 0, done.output
+    finding, _, meanings = done.output.partition("Letters used here")
+    assert held in finding
+    assert ("v0 = " in meanings) == bool(asked)
+    assert bool(asked) == ("v0" in finding)

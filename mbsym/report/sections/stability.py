@@ -291,7 +291,8 @@ class _Keyed(Shown):
         """That of the formula which shows it first; nothing where a name is enough.  Once for each item, in order."""
         if self.reference(item) is not None:
             return ""
-        word = re.sub(r"[^A-Za-z0-9]+", "-", str(item.label)).strip("-")
+        bare = str(item.label).replace("condition ", "")  # the key is the same in whatever letters a section is written
+        word = re.sub(r"[^A-Za-z0-9]+", "-", bare).strip("-")
         self._taken[word] += 1
         count = self._taken[word]
         return f"{CONDITION}{self._number}:{word}" + (f":{count}" if count > 1 else "")
