@@ -32,10 +32,15 @@ def in_letters(system: System, asked: tuple[str, ...] | None) -> Iterator[set[st
         yield used
 
 
-def with_meanings(blocks: Iterable[Block], system: System, used: Collection[str]) -> Iterator[Block]:
-    """The blocks, and then what the letters in them stand for, which is known when the blocks have been written."""
+def with_meanings(
+    blocks: Iterable[Block], system: System, used: Collection[str], told: Collection[str] = ()
+) -> Iterator[Block]:
+    """The blocks, and then what the letters in them stand for, which is known when the blocks have been written.
+
+    ``told``: letters of which the blocks say it themselves.
+    """
     yield from blocks
-    if used:
-        meant = letters_of(system).definitions(used)
+    meant = [one for one in letters_of(system).definitions(used) if one[0] not in told]
+    if meant:
         items = tuple(Relation(Name(name), "=", value) for name, value in meant)
         yield Beside(tuple(x.name for x in system.abbreviations), (Definitions(Said("Letters used here"), items),))

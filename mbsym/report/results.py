@@ -130,13 +130,14 @@ class Section(Generic[T]):
     known: Results
     write: Callable[[Iterator[Block]], T]
     lettered: bool = True  # in the author's letters; claims say themselves what is one of them, and what it equals
+    told: frozenset[str] = frozenset()  # letters of which the section itself says what they stand for
     asked: bool = False  # in those only that were asked for: what was found is to be read without a list of letters
 
     def __call__(self) -> T:
         known = self.known
         letters = known.analysis.letters if self.lettered else ()
         with in_letters(known.system, letters or () if self.asked else letters) as used:
-            told: Any = self.write(with_meanings(self.build(known), known.system, used))
+            told: Any = self.write(with_meanings(self.build(known), known.system, used, self.told))
             return cast("T", iter(list(told)) if isinstance(told, Iterator) else told)
 
     @property
@@ -153,7 +154,11 @@ def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int 
 
     modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
     modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
-    return {key: Section(x.content, known, write, key != "claims", key == "summary") for key, x in modules.items()}
+    notation = frozenset(one.name for one in known.system.notation)
+    return {
+        key: Section(x.content, known, write, key != "claims", notation if key == 5 else frozenset(), key == "summary")
+        for key, x in modules.items()
+    }
 
 
 def results(analysis: Analysis, problems: Sequence[int]) -> Results:
