@@ -54,7 +54,6 @@ WRONG = [
     ("about", ""),
     ("mass", "    mass: 2 m"),
     ("mass", "    mass: 2m"),
-    ("mass", "    mass: m²"),
     ("mass", "    mass: 0,5"),
     ("mass", "    mass: 2 kg"),
     ("mass", "    mass: m·l"),
