@@ -88,6 +88,15 @@ def test_letters_that_were_not_asked_for_are_not_brought_in():
     assert written("m*l**2*x", ("f",), **given)[1] == set()
 
 
+def test_what_both_sides_of_a_definition_share_is_not_put_to_zero():
+    """rho (1 - W) = 1 + B - c/b is  (a + b - 1 - c) (rho (1 + c) - a) = 0, which says nothing of a + b = 1 + c."""
+    given = {"B": "(a - 1)/b", "W": "(1 - b + c)*(1 - a + c)/(a*b)", "rho": "(1 + B - c/b)/(1 - W)"}
+    text, _ = written("a*x/(b - c - 1)", **given)
+    a, b, c, x = (fmpq(n) for n in (3, 7, 2, 5))
+    values = {"a": a, "b": b, "c": c, "x": x, "B": (a - 1) / b, "W": (1 - b + c) * (1 - a + c) / (a * b)}
+    assert eval(text, {**values, "rho": a / (1 + c)}) == a * x / (b - c - 1)
+
+
 def test_without_letters_the_formula_is_the_same_object():
     ring = ring_of("x")
     value = lowered(ring, "(m*l**2 + J)*x")
