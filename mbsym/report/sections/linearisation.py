@@ -59,17 +59,12 @@ def data(found: Linearisation, system: System, write: Write) -> doc.Linearisatio
 
 
 def _reduction(about: Reduction, write: Write) -> doc.Reduction:
-    return doc.Reduction(
-        coordinates=list(about.coordinates),
-        speeds=list(about.speeds),
-        dependent_coordinates=list(about.dependent_coordinates),
-        dependent_speeds=list(about.dependent_speeds),
-        idle=list(about.idle),
+    return doc.Reduction.from_result(
+        about,
         following=list(about.following) or UNSET,
         leaf=about.leaf or UNSET,
         rates={name: write(rate) for name, rate in about.rates},
         assumed_nonzero=[write(x) for x in about.assumed],
-        holonomic=about.holonomic,
     )
 
 
