@@ -195,7 +195,7 @@ def content(results: Results) -> Iterator[Block]:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
-                say("Eigenvalues there, in physical time, of $[[names]]$", names=named(spectrum.coordinates)),
+                say("Eigenvalues there, in the time $t$, of $[[names]]$", names=named(spectrum.coordinates)),
                 ": ",
                 *roots,
                 *((" ", Unit(unit)) if unit else ()),
