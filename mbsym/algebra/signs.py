@@ -73,6 +73,9 @@ SHARES = tuple(fmpq(k, 64) for k in (1, 2, 8, 20, 32, 44, 56, 62, 63))
 MOST_DIVIDED = 12
 #: Squares that are completed within one another.
 SQUARES = 2
+
+#: Of more terms than this the factors of a discriminant cost more than sample points.
+LONG = 15
 #: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
 MOST_STEPS, MOST_STEPS_CHANGED = 60, 8
 
@@ -385,9 +388,9 @@ class Signs:
         result = self._by_terms(p)
         if len(result) == 1:
             return result
-        # Only the question as asked has witnesses: making them anew for each change would cost more than it saves.
+        # The question as asked has witnesses, and a long one: making them anew for each change costs more than it saves.
         # Those of numbers such as pi are no values of theirs.
-        points = self.witnesses if after < 0 and not self._numbers_in(p) else ()
+        points = self.witnesses if (after < 0 or len(p) > LONG) and not self._numbers_in(p) else ()
         least = frozenset(_sign(p(*point)) for point in points)
         if result != least:
             result &= self._by_assumptions(p, after)
