@@ -12,6 +12,9 @@ from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_d
 from mbsym_cli.letters import read_letters, with_letters
 from mbsym_cli.options import Options
 
+#: Equations of more characters, some screens, are printed only where they are asked for.
+MOST_UNASKED = 8000
+
 
 @click.command("show")
 @click.argument("file", type=click.Path(path_type=Path))
@@ -47,10 +50,10 @@ def command(
     conditions      of stability               integrals     first integrals
     eigenvalues     at the given values
 
-    The name of a body prints its kinematics and its part of T, that of a coordinate (a speed) its equation, terms with
-    accelerations first.  Without --latex, --wolfram or --python formulas are written as people
-    write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
-    2 something is wrong.
+    The name of a body or frame prints its place, its kinematics and its part of T, that of a coordinate (a speed) its
+    equation, terms with accelerations first.  Equations that fill screens are printed where they are asked for by name.
+    Without --latex, --wolfram or --python formulas are written as people write them: theta'' is the second derivative,
+    a space multiplies.  Exit codes: 0 printed, 1 there is no such result, 2 something is wrong.
 
     --reduce prints the equations in fewer variables, step by step, each step checked in the original equations:
 
@@ -87,7 +90,7 @@ def command(
     from mbsym.report.formulas_by_name import carried_lines, known_names, lines, reduced_lines, remarked, written
     from mbsym.report.letters import in_letters, letters_of
 
-    formulas = told = None
+    formulas = reduction = None
     if scaling is not None:
         from mbsym.analysis.scaled import Formulas, NoDescription
         from mbsym.studies.groups import in_scale
@@ -106,11 +109,11 @@ def command(
 
         try:
             with status(False, "reducing"):
-                told = reduced(analysis, reducing, formulas, system.claims)
+                reduction = reduced(analysis, reducing, formulas, system.claims)
         except Failure as error:
             complain(file, f"--reduce: {error}")
             sys.exit(FAILED)
-        system = told.system
+        system = reduction.system
     known = known_names(analysis)
     wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
     unknown = [name for name in wanted if name not in known]
@@ -125,18 +128,24 @@ def command(
         for name in wanted:
             try:
                 with status(False, f"deriving {name}"):
-                    if told is not None:
-                        found = list(reduced_lines(told))
+if reduction is not None:
+                        found = list(reduced_lines(reduction))
                     else:
                         found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
+                    told = [written(line, language or "text") for line in found]
             except Failure as error:
                 complain(file, f"{name}: {error}")
                 worst = FAILED
                 continue
-            for line in found:
+            length = sum(map(len, told))
+            if not names and reduction is None and language is None and length > MOST_UNASKED and name == "equations":
+                click.echo(f"equations: {len(found)}, of {length} characters together; one of them, or all:")
+                click.echo(f"  mbsym show {file} {known[-1]}\n  mbsym show {file} equations")
+                sys.exit(OK)
+            for line, text_of_it in zip(found, told, strict=True):
                 if line.remark:
                     click.echo(remarked(printable(line.remark), language or "text"))
-                click.echo(written(line, language or "text"))
+                click.echo(text_of_it)
     if used:
         click.echo(remarked("where", language or "text"))
         for name, value in letters_of(system).definitions(used):

@@ -17,6 +17,7 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
+from mbsym.model.system import INERTIAL
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
@@ -251,18 +252,26 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
 }
 
 
+def _carrier(name: str) -> str:
+    return "inertial axes" if name == INERTIAL else f"the axes of {name}"
+
+
 def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
     body = next(x for x in analysis.kinematics.bodies if x.name == name)
-    yield Line("R", body.rotation, remark=f"direction cosines of {name}")
-    yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
-    yield Line("V_O", body.velocity_origin, remark="velocity of its connection point")
-    yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre")
     scene = analysis.scene
     motion = next(x for x in scene.motions.values() if x.body.name == name)
+    place = [scene.ring.reduce(x) for x in scene.position(scene.zero(name), INERTIAL)]
+    yield Line("R", body.rotation, remark=f"direction cosines of {name} in {_carrier(body.attached_to)}")
+    yield Line("r_O", column(scene.ring, place), remark="place of its connection point, in inertial axes")
+    yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
+    yield Line("V_O", body.velocity_origin, remark="velocity of its connection point, in its axes")
+    if body.velocity_mass_centre != body.velocity_origin:
+        yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre, in its axes")
     energy = body_energy(scene, motion)
     if motion.gyrostatic_moment is not None:
         energy += motion.gyrostatic_moment.dot(motion.angular_velocity)
-    yield Line("T", Formula(scene.ring, scene.ring.reduce(energy)), remark="its part of the kinetic energy")
+    if not (own := scene.ring.reduce(energy)).is_zero():  # of a massless frame there is none
+        yield Line("T", Formula(scene.ring, own), remark="its part of the kinetic energy")
 
 
 def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
