@@ -128,7 +128,7 @@ def command(
         for name in wanted:
             try:
                 with status(False, f"deriving {name}"):
-if reduction is not None:
+                    if reduction is not None:
                         found = list(reduced_lines(reduction))
                     else:
                         found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
