@@ -8,8 +8,7 @@ from typing import Any
 
 from msgspec.structs import asdict
 
-from mbsym.analysis.invariant_relations import InvariantRelations
-from mbsym.analysis.polynomial import Setting
+from mbsym.analysis.polynomial import InvariantRelations, Setting
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import (
     Along,
