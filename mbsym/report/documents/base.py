@@ -63,7 +63,11 @@ def finite(value: SupportsFloat) -> float | None:
 @cache
 def _required(of: type[Struct]) -> dict[str, bool]:
     """The fields without a default, and whether each is a mapping."""
-    return {one.name: dict in map(get_origin, (one.type, *get_args(one.type))) for one in fields(of) if one.required}
+    return {
+        one.name: any(get_origin(x) is dict for x in (one.type, *get_args(one.type)))
+        for one in fields(of)
+        if one.required
+    }
 
 
 def _listed(value: object) -> object:

@@ -129,7 +129,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     yield paragraph(
         Said(
-            "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry "
+            "About the linear equations of problem 5, in the time $t$; asymptotic stability and instability carry "
             "over to the equations of motion."
         )
     )

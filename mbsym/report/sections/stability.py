@@ -72,6 +72,8 @@ if TYPE_CHECKING:
 
 #: A polynomial that never has the sign it should have is written out up to this length.
 SHORT = 60
+#: A formula of so many characters that was shown before is written again, rather than its name.
+AS_A_NAME = 40
 
 
 def data(found: Stability, system: System, write: Write) -> doc.Stability:
@@ -195,7 +197,7 @@ def content(results: Results) -> Iterator[Block]:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
-                say("Eigenvalues there, in physical time, of $[[names]]$", names=named(spectrum.coordinates)),
+                say("Eigenvalues there, in the time $t$, of $[[names]]$", names=named(spectrum.coordinates)),
                 ": ",
                 *roots,
                 *((" ", Unit(unit)) if unit else ()),
@@ -329,25 +331,31 @@ def _conditions(items: Sequence[Statement], seen: _Keyed) -> Iterator[Block]:
 
 
 def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
-    reference, label, key = seen.reference(item), label_of(item.label), seen.key(item)
+    reference, key = seen.reference(item), seen.key(item)
     remark: tuple[Inline, ...] = (worded(item.remark),) if item.remark else ()
     note: tuple[Inline, ...] = (worded(item.note),) if item.note else ()
+    label = label_of(item.label if reference is None else reference.label)
+    named: tuple[Math | str, ...] = (label, ":") if item.named else ()
     if reference is not None:
-        own: tuple[Math | str, ...] = () if reference.under == reference.label else (label_of(reference.label), ":")
-        yield Display(Relation(*own, label_of(reference.under), reference.relation, 0))
+        left: Math = label_of(reference.under)
+        if isinstance(left, Text) and len(reference.formula.readable()) <= AS_A_NAME:
+            left = Readable(reference.formula, True)
+        elif reference.under == reference.label:
+            named = ()
+        yield Display(Relation(*named, left, reference.relation, 0))
     elif item.formula is None:
         never = item.never is not None and item.never.terms < SHORT
         yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), key, note)
     elif item.told is not None:
         text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
         long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
-        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), key, (long, *remark))
+        yield Display(Relation(*named, item.told.formula, item.relation, 0), key, (long, *remark))
         letters = seen.unshown(item.told)
         if letters:
             yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
     else:
         shown = Readable(item.formula, not item.note)
-        yield Display(Relation(label, ":", shown, item.relation, 0), key, note or remark)
+        yield Display(Relation(*named, shown, item.relation, 0), key, note or remark)
 
 
 def label_of(label: str) -> Math:
