@@ -147,6 +147,7 @@ def _model(texts: Mapping[str, Any], system: System | None, asked: Options) -> M
         hint = "the description says with 'motion:' what the equations are linearised about"
         asked.complain("--linear", "unsuitable-option", "there is no unperturbed motion", hint)
     for name in texts["without"] if system is not None else ():
+        assert system is not None
         asked.word("--without", name, system.parameter_names, "parameter")
     if order is None and not texts["linear"] and not texts["without"]:
         return None
