@@ -224,8 +224,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
         return Answer((line(f"  {told}"),))
     from mbsym.report.content import facts
-    from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
-    from mbsym.report.runs.sweep_words import sentences
+    from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total
 
     points, columns = found.points, found.measure.columns
