@@ -6,7 +6,7 @@ The modules that know how are imported when a system has constraints; most have 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.problems import equations
@@ -16,9 +16,7 @@ from mbsym.problems.equations import Equations
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
-    from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints import Constraints
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
 
@@ -54,27 +52,16 @@ def constraints_in_coordinates(analysis: Analysis) -> Constraints:
 def equations_of(analysis: Analysis) -> Equations:
     """The equations of the open tree with the constraints, and those without multipliers if they are not too long."""
     from mbsym.problems.constraints import embedded_equations
-
-    if analysis.speed_form is not None:
-        return _in_speeds(analysis, analysis.speed_form)
-    tree, found = equations.equations(analysis.scene, analysis.energy), analysis.constraints
-    try:
-        embedded = embedded_equations(analysis.scene, tree, found)
-    except NoClosedForm:
-        embedded = None
-    return replace(tree, constraints=found, embedded=embedded)
-
-
-def _in_speeds(analysis: Analysis, form: SpeedForm) -> SpeedEquations:
-    """Kane's equations of the open tree with the constraints, and those of the independent speeds."""
-    from mbsym.problems.constraints.in_speeds import embedded_in_speeds
     from mbsym.problems.in_speeds import speeds
 
-    found = analysis.constraints
+    found, form = analysis.constraints, analysis.form
     rows = [x.polynomial for x in (*found.velocity, *(f for f in found.position if f is not None))]
-    tree = speeds.equations(form, analysis.scene, rows)
+    if analysis.system.speeds:
+        tree: Equations = speeds.equations(form, analysis.scene, rows)
+    else:
+        tree = equations.equations(analysis.scene, analysis.energy)
     try:
-        embedded = embedded_in_speeds(form, tree, found)
+        embedded = embedded_equations(form, tree, found)
     except NoClosedForm:
         embedded = None
     return replace(tree, constraints=found, embedded=embedded)
@@ -94,13 +81,9 @@ def rows_check(analysis: Analysis) -> Check | None:
     found = analysis.optional("constraints") if analysis.system.constraints else None
     if found is None:
         return None
-    if analysis.speed_form is not None:
-        from mbsym.problems.constraints import speed_checks
-
-        return speed_checks.check_rows(analysis.speed_form, found, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_rows
 
-    return check_rows(analysis.system, analysis.ring, found, programs_of(analysis))
+    return check_rows(analysis.form, found, programs_of(analysis))
 
 
 def motion_check(analysis: Analysis) -> Check | None:
@@ -108,38 +91,23 @@ def motion_check(analysis: Analysis) -> Check | None:
     closed = analysis.optional("equations") if analysis.system.constraints else None
     if closed is None or closed.constraints is None or closed.embedded is None:
         return None
-    if analysis.speed_form is not None:
-        from mbsym.problems.constraints import speed_checks
-
-        form, tied = analysis.speed_form, analysis.tied_in_coordinates
-        return speed_checks.check_embedded(form, closed.constraints, closed.embedded, tied, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_embedded
 
-    return check_embedded(analysis.system, analysis.ring, closed.constraints, closed.embedded, programs_of(analysis))
+    return check_embedded(analysis.form, closed.constraints, closed.embedded, programs_of(analysis))
 
 
 def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     """What the constrained motion keeps."""
-    if analysis.speed_form is not None:
-        from mbsym.problems.constraints import in_speeds
-
-        equations = cast("SpeedEquations", analysis.equations)
-        return in_speeds.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
     from mbsym.problems.constraints.integrals import integrals
 
-    return integrals(analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
+    return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
 
 
 def integrals_check(analysis: Analysis, found: tuple[Integral, ...]) -> Check:
     """Their rates along the motion with multipliers."""
-    if analysis.speed_form is not None:
-        from mbsym.problems.constraints import speed_checks
-
-        tied = analysis.tied_in_coordinates
-        return speed_checks.check_integrals(analysis.speed_form, found, tied, programs_of(analysis))
     from mbsym.problems.constraints.checks import check_integrals
 
-    return check_integrals(analysis.system, analysis.ring, found, analysis.constraints, programs_of(analysis))
+    return check_integrals(analysis.form, found, analysis.constraints, programs_of(analysis))
 
 
 def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:

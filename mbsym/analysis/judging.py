@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.failures import Failure, message_of
 from mbsym.analysis.judge import Judge
 from mbsym.expressions.message import Message
-from mbsym.mechanics.constraints.refusal import refuse_constraints, refused
+from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems import claims
@@ -37,9 +37,6 @@ _EXPANSIONS = {
 def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     """Every claim's outcome, in the order of the description, which has some."""
     system = analysis.system
-    if system.constraints and system.speeds:
-        reason = refused(system, Message("not judged in speeds"))
-        return tuple(claims.undecided(system, claim, reason) for claim in system.claims)
     for number in analysis.problems:  # not under the small budget of a claim, whose failures would be remembered
         analysis.stage(number)
     if any(claim.right is not None for claim in system.claims):

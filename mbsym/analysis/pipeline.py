@@ -259,13 +259,16 @@ class Analysis(Stages):
         return oracles(self.system, self.ring)
 
     @cached_property
-    def speed_form(self) -> SpeedForm | None:
-        """The variables of a system that has speeds of its own; None where velocities are the coordinates' rates."""
-        if not self.system.speeds:
-            return None
+    def form(self) -> SpeedForm:
+        """The variables of the state: speeds and positions, or coordinates and their rates."""
         from mbsym.mechanics.speeds import SpeedForm  # few systems have speeds of their own
 
         return SpeedForm(self.system, self.ring)
+
+    @property
+    def speed_form(self) -> SpeedForm | None:
+        """The same of a system that has speeds of its own; None where velocities are the coordinates' rates."""
+        return self.form if self.system.speeds else None
 
     @cached_property
     def in_coordinates(self) -> Analysis:

@@ -11,6 +11,8 @@ of its direction cosines) has its angular velocity among the speeds, and Poisson
 take the place of  q' = Y (u - s0)  for its angles; of one that is told by a quaternion
 e' = 1/2 e o (omega_k - R omega_j)  does.  The state is (s, u): s the coordinates and components that there
 are.  Its derivatives are generators of the ring: u' and s' bear the names ``p_dot``, ``gamma1_dot``.
+
+Where no speeds are declared u is q' and s is q: Y = 1.
 """
 
 from __future__ import annotations
@@ -47,7 +49,7 @@ class Variable:
 
 
 class SpeedForm:
-    """What the state of a system with speeds is made of, over its ring.
+    """What the state of a system is made of, over its ring.
 
     ``speeds`` u in the order of the bodies, ``positions`` s; ``velocities`` are q' of the coordinates among them,
     ``rates`` s', as polynomials in (s, u, t).
@@ -69,10 +71,9 @@ class SpeedForm:
 
     def _solve(self) -> None:
         ring, system = self.ring, self.system
-        scene = Scene(system, ring, self._plain, ring, given=self._given(ring, self._plain, only_vectors=True))
         known = {speed.name for body in self.oriented for speed in system.speeds if _is_own(speed, body)}
         named = [speed for speed in system.speeds if speed.name not in known]
-        forms = [self._form(scene, speed) for speed in named]
+        forms = self._forms(named, self._given(ring, self._plain, only_vectors=True))
         rows = [[ring.velocity_derivative(x, name) for name in self.coordinates] for x in forms]
         still = {ring.index("velocity", name): ring.zero for name in self.coordinates}
         drifts = [ring.substitute(x, still) for x in forms]
@@ -115,16 +116,18 @@ class SpeedForm:
             motion = scene.motions[body.name]
             carried = motion.angular_velocity - motion.relative_angular_velocity
             given[body.name] = Given(carried, given[body.name].angular_acceleration, given[body.name].cosines)
-        scene = Scene(self.system, ring, self._plain, ring, given=given)
-        declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
-        return [declared.get(u.name, ring.context.gen(u.index)) for u in self.speeds]
+        return self._told(given)
 
     @cached_property
     def in_coordinates(self) -> list[Polynomial]:
         """Every speed in (q, q', t), the angles that unit vectors replace among q."""
-        scene = Scene(self.system, self.ring, self._plain, self.ring)
-        declared = {speed.name: self._form(scene, speed) for speed in self.system.speeds}
-        return [declared.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
+        return self._told({})
+
+    def _told(self, given: Mapping[str, Given]) -> list[Polynomial]:
+        """Every speed, where the bodies of ``given`` turn as that says."""
+        declared = self.system.speeds
+        forms = dict(zip((x.name for x in declared), self._forms(declared, given), strict=True))
+        return [forms.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
 
     @cached_property
     def _plainly(self) -> dict[str, Polynomial]:
@@ -162,10 +165,10 @@ class SpeedForm:
         turns = [(axis, *lower.angle(divide(angle, number(2)))) for axis, angle in body.rotation.turns()]
         return dict(zip(quaternion.components, quaternions.of_turns(algebra, turns), strict=True))
 
-    def _form(self, scene: Scene, speed: Speed) -> Polynomial:
-        spin = scene.motions[speed.body].angular_velocity
-        environment = dict(self._plain) | dict(zip(OMEGA, spin, strict=True))
-        return Lowering(self.ring, environment)(speed.form)
+    def _forms(self, speeds: Sequence[Speed], given: Mapping[str, Given]) -> list[Polynomial]:
+        scene = Scene(self.system, self.ring, self._plain, self.ring, bodies=bool(speeds), given=given)
+        spins = [dict(zip(OMEGA, scene.motions[speed.body].angular_velocity, strict=True)) for speed in speeds]
+        return [Lowering(self.ring, {**self._plain, **spin})(x.form) for x, spin in zip(speeds, spins, strict=True)]
 
     def _chosen(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...]:
         """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first."""
@@ -249,7 +252,8 @@ class SpeedForm:
     def rates(self) -> dict[str, Polynomial]:
         """s' by name."""
         ring, found = self.ring, dict(self.velocities)
-        scene = Scene(self.system, ring, self._in_speeds, ring, given=self._given(ring, self._plain, False))
+        given = self._given(ring, self._plain, only_vectors=False)
+        scene = Scene(self.system, ring, self._in_speeds, ring, bodies=bool(self.oriented), given=given)
         for body in self.oriented:
             spin = scene.motions[body.name].relative_angular_velocity
             for one in body.orientation:

@@ -250,9 +250,10 @@ def check_reactions(
 
     if tied is None or programs is None:
         return compare(truth, "reactions", routes, lambda oracle: at(oracle.state), states=2)
+    from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints.checks import compared_on_manifold
 
-    return compared_on_manifold("reactions", routes, system, ring, programs, lambda one: at(one.state))
+    return compared_on_manifold("reactions", routes, SpeedForm(system, ring), programs, lambda one: at(one.state))
 
 
 def _pairs(system: System, ring: Any, one: Reaction, state: State, tied: Constraints | None) -> list[Pair]:

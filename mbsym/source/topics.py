@@ -133,7 +133,8 @@ stay as they are.
     --in lam,eta     and the parameter eta is not what is taken out
     --in none        parameters alone
 
-results.json, report.wl and generated code have parameters alone in their formulas."""
+results.json, report.wl and generated code have parameters alone in their formulas.  Subsystems of problem 5 and their
+stability in problem 6 are about the matrices in the letters of 'notation', everywhere and whatever --in says."""
 
 _KINKED = """\
 sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 + sign(x))/2, 1/2 at 0;

@@ -251,10 +251,10 @@ def test_a_sphere_rolls_on_a_plane_with_a_constant_spin() -> None:
 
 
 def checks(analysis: Analysis, tied: Constraints, embedded: Embedded) -> tuple[str, str]:
-    system, ring, programs = analysis.system, analysis.ring, programs_of(analysis)
+    programs = programs_of(analysis)
     return (
-        check_rows(system, ring, tied, programs).outcome,
-        check_embedded(system, ring, tied, embedded, programs).outcome,
+        check_rows(analysis.form, tied, programs).outcome,
+        check_embedded(analysis.form, tied, embedded, programs).outcome,
     )
 
 

@@ -83,9 +83,9 @@ def test_a_false_integral_fails_its_check() -> None:
     analysis = analysed("relation: x = r*phi")
     first, *_ = (item for item in analysis.integrals if "along the displacement" in item.name)
     ring, programs = analysis.ring, programs_of(analysis)
-    assert check_integrals(analysis.system, ring, [first], analysis.constraints, programs).outcome == EXACT
+    assert check_integrals(analysis.form, [first], analysis.constraints, programs).outcome == EXACT
     wrong = replace(first, formula=Formula(ring, first.formula.polynomial * ring.generator("coordinate", "x")))
-    assert check_integrals(analysis.system, ring, [wrong], analysis.constraints, programs).outcome == FAILED
+    assert check_integrals(analysis.form, [wrong], analysis.constraints, programs).outcome == FAILED
 
 
 @pytest.mark.parametrize("rate", ["0", "w"])

@@ -1,4 +1,4 @@
-"""Claims about constrained systems, in their coordinates.
+"""Claims about constrained systems, in their coordinates or speeds.
 
 Energies, places and velocities are those of the bodies; a claimed one that differs in general may still be the same
 wherever the constraints hold.  An equation of motion is an expression that vanishes on every motion, so that neither
@@ -24,7 +24,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints.programs import constrained_programs
 from mbsym.mechanics.constraints.ranks import is_certain
-from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
+from mbsym.mechanics.constraints.states import PRECISION, OnManifold
 from mbsym.mechanics.oracle import State
 from mbsym.model.claims import SUMS, Claim
 from mbsym.model.system import System, acceleration_name
@@ -32,6 +32,7 @@ from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
+from mbsym.problems.claims.integrals import of_positions
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
@@ -47,7 +48,6 @@ from mbsym.problems.claims.result import (
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.constraints.integrals import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
-from mbsym.problems.integrals import total_rate
 
 #: Digits of the numbers of a state that refutes a claim.
 DIGITS_SHOWN = 8
@@ -70,63 +70,57 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         )
     if claim.kind == "coefficient" and claim.of not in SUMS:
         raise NoClosedForm("a coefficient of an equation, which multipliers complete: not judged under constraints")
-    symbols = Symbols.of(derived)
-    scene = scene_of_claims(derived)
-    claimed = symbols.polynomial(scene, claim)
+    symbols, ring = Symbols.of(derived), derived.ring
+    claimed = symbols.polynomial(scene_of_claims(derived), claim)
     if claim.kind == "first integral":
-        return _integral(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
-    if claim.kind == "equation of motion":
-        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, claimed)))
+        return _integral(derived, ClaimResult(claim, about, EXACT, Formula(ring, claimed)))
     if claim.kind == "acceleration":
-        if claim.of not in derived.system.coordinates:
-            raise NoClosedForm("the acceleration of a speed: not judged under constraints")
-        own = derived.ring.generator("acceleration", claim.of)
-        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(derived.ring, own - claimed)))
+        own = derived.form.accelerations.get(claim.of)
+        own = ring.generator("velocity", claim.of) if own is None else own
+        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(ring, own - claimed)))
+    if claim.kind == "equation of motion":
+        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(ring, claimed)))
     if claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")):
-        truth = of_first_approximation(derived, claim)
-        return examined_formula(derived, claim, about, symbols, claimed, truth)
-    truth = derived_quantity(derived, claim)
-    found = examined_formula(derived, claim, about, symbols, claimed, truth)
-    if not found.refuted or claim.kind in ("mass matrix", "coefficient"):
+        return examined_formula(derived, claim, about, symbols, claimed, of_first_approximation(derived, claim))
+    if derived.system.speeds:
+        from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
+
+        found = in_speeds.examined(derived, claim, about)
+    else:
+        found = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
+    if not found.refuted or claim.kind in ("mass matrix", "coefficient") or found.derived is None:
         return found
-    return _on_constraints(derived, found, in_parameters(derived, claimed) - in_parameters(derived, truth))
+    return _on_constraints(derived, found, in_parameters(derived, claimed - found.derived.polynomial))
 
 
 # --- along the motion ---
 
 
 def _along(derived: Derived) -> AlongMotion:
-    """Raises NoClosedForm where the equations without multipliers are too long."""
-    equations = derived.equations
-    tied, embedded = equations.constraints, equations.embedded
-    if tied is None or embedded is None or tied.solved is None:
+    """Raises NoClosedForm where the dependent velocities are too long."""
+    equations, system = derived.equations, derived.system.without_speeds
+    tied = equations.constraints
+    if tied is None or tied.solved is None:
         raise NoClosedForm("the equations without multipliers have no closed form within the budget")
-    return AlongMotion(derived.scene, tied, tied.solved, embedded)
-
-
-def _states(derived: Derived) -> list[OnManifold]:
-    """Exact states on the constraints, or enclosures of some; to be used at ``PRECISION``."""
-    tied = derived.equations.constraints
-    assert tied is not None
-    kept = [(name.constraint, name.component) for name in tied.names]
-    programs = constrained_programs(derived.system, derived.ring, kept)
-    return list(Manifold(derived.system, derived.ring, programs).states(STATES))
+    programs = constrained_programs(system, derived.ring, [(name.constraint, name.component) for name in tied.names])
+    return AlongMotion(derived.form, tied, equations, programs)
 
 
 def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
     """dI/dt = 0 along every motion, and I not a constant on the constraints."""
-    ring, along = derived.ring, _along(derived)
+    ring, form, along = derived.ring, derived.form, _along(derived)
     claimed = _polynomial(derived, result)
-    if not ring.dependencies(claimed, derived.system.velocities):
-        return replace(result, outcome=FAILS, remark="it contains no velocity")
-    own = [ring.velocity_derivative(claimed, name) for name in along.tied.coordinates]
-    if all(ring.is_zero(slope) is True for slope in along.along_speeds(own)):
+    if not ring.dependencies(claimed, [u.name for u in form.speeds]):
+        return of_positions(form, result, claimed)
+    if all(
+        form.vanishes(x) is True for x in along.along_speeds([ring.derivative(claimed, u.name) for u in form.speeds])
+    ):
         remark = "with the velocities that the constraints allow it contains none"
         return replace(result, outcome=FAILS, remark=remark)
     known = [item.formula.polynomial for item in _integrals(derived) if item.status is Certainty.PROVED]
-    if any(ring.is_zero(along.restricted(claimed - one)) is True for one in known):
+    if any(along.vanishes(claimed - one) for one in known):
         return result
-    return _vanishing(derived, along, result, total_rate(derived.scene, claimed), own, "dI/dt")
+    return _vanishing(derived, along, result, form.rate(claimed), "dI/dt")
 
 
 def _integrals(derived: Derived) -> Any:
@@ -139,17 +133,17 @@ def _integrals(derived: Derived) -> Any:
 
 def _equation(derived: Derived, result: ClaimResult) -> ClaimResult:
     """The claimed expression vanishes along every motion, and is felt by an independent acceleration."""
-    ring, along = derived.ring, _along(derived)
+    ring, form, along = derived.ring, derived.form, _along(derived)
     claimed = _polynomial(derived, result)
+    x = along.in_motion(claimed)
     if ring.vanishes(claimed):
         return replace(result, outcome=UNDECIDED, remark=NOTHING)
-    places = [ring.index("acceleration", name) for name in along.tied.coordinates]
-    slopes = [claimed.derivative(place) for place in places]
     equation = result.claim.kind == "equation of motion"
     what = "the claimed expression" if equation else "derived - claimed"
-    found = _vanishing(derived, along, result, claimed, slopes, what)
-    if found.holds and equation and all(ring.is_zero(slope) is True for slope in along.along_speeds(slopes)):
-        return replace(found, remark=FROM_CONSTRAINTS)
+    found = _vanishing(derived, along, result, x, what)
+    slopes = along.along_speeds([x.derivative(u.rate_index) for u in form.speeds])
+    if found.holds and equation and all(form.vanishes(slope) is True for slope in slopes):
+        return replace(found, remark=FROM_CONSTRAINTS) if x == claimed else found
     return found
 
 
@@ -158,18 +152,16 @@ def _polynomial(derived: Derived, result: ClaimResult) -> Polynomial:
     return in_parameters(derived, result.derived.polynomial)
 
 
-def _vanishing(
-    derived: Derived, along: AlongMotion, result: ClaimResult, x: Polynomial, slopes: list[Polynomial], what: str
-) -> ClaimResult:
+def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Polynomial, what: str) -> ClaimResult:
     """Whether x = 0 along every motion: proved, verified at states, or refuted by one."""
     ring = derived.ring
-    with ctx.workprec(PRECISION):
-        found = along.values(x, _states(derived))
-        wrong = next(((one, value) for one, value in found if is_certain(value)), None)
-        if wrong is not None and not derived.system.relations:
+    found = along.values(x)
+    wrong = next(((one, value) for one, value in found if is_certain(value)), None)
+    if wrong is not None and not derived.system.relations:
+        with ctx.workprec(PRECISION):
             return replace(result, outcome=FAILS, counterexample=_example(derived, *wrong, what))
-    linear = power_of(ring, x, [ring.index("acceleration", name) for name in along.tied.coordinates]) <= 1
-    if wrong is None and linear and along.proves_zero(x, slopes):
+    linear = power_of(ring, x, [u.rate_index for u in derived.form.speeds]) <= 1
+    if wrong is None and linear and along.proves_zero(x):
         return result
     if wrong is not None:
         remark = "it does not vanish for all parameters; whether it does on their relations is not decided here"
@@ -192,13 +184,11 @@ def _on_constraints(derived: Derived, found: ClaimResult, difference: Polynomial
     tied = derived.equations.constraints
     if tied is None or tied.solved is None:
         return found
-    along, ring = _along(derived), derived.ring
+    along = _along(derived)
     left = along.restricted(difference)
-    if ring.is_zero(left) is True:
+    if derived.form.vanishes(left) is True:
         return ClaimResult(found.claim, found.title, EXACT, found.derived, remark=ON_CONSTRAINTS)
-    with ctx.workprec(PRECISION):
-        values = along.values(left, _states(derived))
-    if len(values) == STATES and not any(is_certain(value) for _, value in values) and not ring.kinked:
+    if along.vanishes_at_states(left) and not derived.ring.kinked:
         return ClaimResult(found.claim, found.title, NUMERICAL, found.derived, remark="at states on the constraints")
     return found
 

@@ -23,6 +23,7 @@ from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
+from mbsym.problems.claims.integrals import of_positions
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
     ALONG,
@@ -168,11 +169,7 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
     ring, equations = form.ring, cast(SpeedEquations, derived.equations)
     result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
-        vectors = [name for body in form.oriented for vector in body.orientation for name in vector.components]
-        if ring.dependencies(claimed, vectors) and Field(form, equations).keeps(claimed) is True:
-            what = Message("unit vectors") if form.by_vectors else Message("quaternion")
-            return replace(result, remark=Message("of the [[what]] alone: it is known beforehand", what=what))
-        return replace(result, outcome=FAILS, remark="it contains no velocity")
+        return of_positions(form, result, claimed)
     images = relations(derived.parameters_scene)
     field = Field(form, equations)
     outcome, known = EXACT, field.keeps(claimed)

@@ -14,6 +14,7 @@ from mbsym.expressions.tree import (
 )
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.counterexample import (
     against_constancy,
@@ -34,12 +35,21 @@ from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
 
 
+def of_positions(form: SpeedForm, result: ClaimResult, claimed: Polynomial) -> ClaimResult:
+    """What holds no velocity: of unit vectors and quaternions alone it is known, else it is no integral."""
+    vectors = [name for body in form.oriented for vector in body.orientation for name in vector.components]
+    if form.ring.dependencies(claimed, vectors) and form.vanishes(form.rate(claimed)) is True:
+        what = Message("unit vectors") if form.by_vectors else Message("quaternion")
+        return replace(result, remark=Message("of the [[what]] alone: it is known beforehand", what=what))
+    return replace(result, outcome=FAILS, remark="it contains no velocity")
+
+
 def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
     """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
     scene, ring, equations = derived.scene, derived.ring, derived.equations
     result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, derived.system.velocities):
-        return replace(result, outcome=FAILS, remark="it contains no velocity")
+        return of_positions(derived.form, result, claimed)
     outcome = EXACT
     for outcome in (EXACT, RELATIONS):
         if outcome == RELATIONS:

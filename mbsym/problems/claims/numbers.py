@@ -132,7 +132,7 @@ def _with_speeds(derived: Derived, state: State) -> State:
     from mbsym.mechanics.oracle import Oracle
     from mbsym.mechanics.speed_states import completed  # few systems have speeds of their own
 
-    return completed(Oracle(derived.system, accelerated(derived.system, state, derived.programs)))
+    return completed(Oracle(derived.system, _accelerated(derived, state)))
 
 
 def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> ClaimResult | None:
@@ -239,7 +239,7 @@ def _accelerated(derived: Derived, state: State) -> State:
         return accelerated(derived.system, state, derived.programs)
     from mbsym.problems.claims.constrained import accelerated_at  # most systems have no constraints
 
-    return accelerated_at(derived.system, derived.ring, tied, state)
+    return accelerated_at(derived.system.without_speeds, derived.ring, tied, state)
 
 
 def _printed(number: str) -> tuple[int, fmpq]:

@@ -231,7 +231,7 @@ class _Analysis:
             ),
             exact_points=points.exact,
             pivots=pivots,
-            solved=None if found is None else self._whole(found),
+            solved=None if found is None else Solved.of(self.ring, found),
             dependent_sets=self._dependent_sets(independent, m, points),
             dependent_positions=self._dependent_sets(
                 [i for i in independent if self.rows[i].name.holonomic],
@@ -320,21 +320,6 @@ class _Analysis:
         held = [x for row in self.rows for x in row.partials]
         return any(not self.ring.vanishes(x) for x in shifts) or any(
             self.ring.depends_on(x, name) for x in held for name in timely
-        )
-
-    def _whole(self, found: Embedding) -> Solved:
-        """Y (n x (n - r)), y0 and a0, with the rows of all coordinates."""
-        ring = self.ring
-        columns = [basis_vector(ring, found, place) for place in range(len(found.free))]
-        shift, acceleration = [ring.zero] * self.n, [ring.zero] * self.n
-        for k, x, y in zip(found.dependent, found.shift, found.acceleration, strict=True):
-            shift[k], acceleration[k] = x, y
-        return Solved(
-            Matrix.of(ring, [[y[k] for y in columns] for k in range(self.n)]),
-            column(ring, shift),
-            column(ring, acceleration),
-            Formula(ring, found.determinant),
-            found,
         )
 
     def _redundant(

@@ -1,12 +1,14 @@
 """The second routes of constrained systems: placements in inertial axes at exact states on the constraint manifold.
 
 What the rows are is taken from places alone: bodies are placed in inertial axes as series in time, and along each
-coordinate, so that f, f' and f'' and J come from positions without the recursion of the rows.  The multipliers' force
+coordinate, so that f, f' and f'' and J come from positions without the recursion of the rows.  Values of speeds, unit
+vectors and their rates are read off the placed bodies (``speed_states``).  The multipliers' force
 is whatever is normal to all displacements that this J allows; so the equations hold if
 
     Z^T (M q'' - f) = 0,     Z: null space of that J
 
-with d'Alembert's M q'' - f in inertial axes, at the accelerations that the equations give.
+with d'Alembert's M q'' - f in inertial axes, at the accelerations of the equations with multipliers, which the embedded
+equations must have, too.
 """
 
 from __future__ import annotations
@@ -19,14 +21,15 @@ from flint import ctx
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.matrices import dot, null_vectors
-from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
-from mbsym.mechanics.constraints.oracle import OracleRow, oracle_rows
+from mbsym.mechanics.constraints.oracle import oracle_rows
 from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
-from mbsym.model.system import System, acceleration_name
+from mbsym.mechanics.speed_states import completed, slopes, variables
+from mbsym.mechanics.speeds import SpeedForm
+from mbsym.model.system import acceleration_name, velocity_name
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check, Pair, _verdict
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints
@@ -38,118 +41,118 @@ STATES = 3
 At = Callable[[OnManifold], list[Pair]]
 
 
-def check_rows(system: System, ring: Ring, found: Constraints, programs: ConstrainedPrograms) -> Check:
-    """f, g, dg/dt and J of every row, closed and as a program, against places in inertial axes, and the embedding.
+def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedPrograms) -> Check:
+    """f, g, dg/dt and J of every row, closed and as a program in coordinates, against places in inertial axes; J Y = 0.
 
-    At states that keep the constraints; J (Y u + y0) + j = 0 there for any u.
+    At states that keep the constraints; in speeds of their own J du/dq' is that of the coordinates.
     """
-    n = len(found.coordinates)
+    system, rates, n = form.system, [u.rate_name for u in form.speeds], len(form.system.coordinates)
+    nodes = [*(x for row in programs.jacobian for x in row), *programs.acceleration]
 
     def pairs(one: OnManifold) -> list[Pair]:
-        state = one.state
-        truth = oracle_rows(system, state)
-        carry = Carrier(ring, state.numbers, state.values)
+        oracle = Oracle(system, one.state)
+        state = completed(oracle)
+        truth = oracle_rows(system, one.state)
+        carry = Carrier(form.ring, state.numbers, state.values)
+        columns, zero = _columns(form, oracle), state.numbers.zero
+        second = [state.values[acceleration_name(name)] for name in system.coordinates]
+        values = programs.tree.program.evaluate(nodes, one.state.values, one.state.numbers)
         compared: list[Pair] = []
-        zero = state.numbers.zero
         for i, name in enumerate(found.names):
-            row: OracleRow = truth[name.constraint][max(name.component - 1, 0)]
-            position = found.position[i]
+            row, position = truth[name.constraint][max(name.component - 1, 0)], found.position[i]
             if row.position is not None and position is not None:
                 compared.append((name.label, carry(position.polynomial), row.position))
-            compared.append(
-                (Message("rate of [[label]]", label=name.label), carry(found.velocity[i].polynomial), row.velocity)
-            )
-            speed = [state.values[acceleration_name(x)] for x in found.coordinates]
-            bent = sum(
-                (carry(found.jacobian[i, k].polynomial) * speed[k] for k in range(n)),
-                carry(found.acceleration[i].polynomial),
-            )
-            compared.append((Message("second rate of [[label]]", label=name.label), bent, row.acceleration))
-            for k, other in enumerate(found.coordinates):
-                compared.append(
-                    (
-                        Message("[[label]] by [[other]]", label=name.label, other=other),
-                        carry(found.jacobian[i, k].polynomial),
-                        row.partials[k],
-                    )
-                )
+            own = [carry(x) for x in found.jacobian.polynomials[i]]
+            slopes = [sum((x * y[k] for x, y in zip(own, columns, strict=True)), zero) for k in range(n)]
+            bent = sum((x * state.values[rate] for x, rate in zip(own, rates, strict=True)), zero)
+            coded = values[i * n : (i + 1) * n]
+            turned = sum((x * y for x, y in zip(coded, second, strict=True)), zero)
+            label, in_code = name.label, Message("program of [[label]]", label=name.label)
+            compared += [
+                (Message("rate of [[label]]", label=label), carry(found.velocity[i].polynomial), row.velocity),
+                (
+                    Message("second rate of [[label]]", label=label),
+                    bent + carry(found.acceleration[i].polynomial),
+                    row.acceleration,
+                ),
+                *(
+                    (Message("[[label]] by [[other]]", label=label, other=other), x, y)
+                    for other, x, y in zip(system.coordinates, slopes, row.partials, strict=True)
+                ),
+                *((in_code, x, y) for x, y in zip(coded, row.partials, strict=True)),
+                (in_code, turned + values[len(found.names) * n + i], row.acceleration),
+            ]
             for place, free in enumerate(found.free if found.solved is not None else ()):
                 assert found.solved is not None
-                basis = found.solved.transformation
-                work = sum((row.partials[k] * carry(basis[k, place].polynomial) for k in range(n)), zero)
-                compared.append((Message("[[label]] along [[free]]", label=name.label, free=free), work, zero))
-        nodes = [x for row in programs.jacobian for x in row] + [*programs.velocity, *programs.acceleration]
-        values = programs.tree.program.evaluate(nodes, state.values, state.numbers)
-        m = len(found.names)
-        for i in range(m):
-            for k in range(n):
-                closed = carry(found.jacobian[i, k].polynomial)
-                compared.append(
-                    (Message("program of [[label]]", label=found.names[i].label), values[i * n + k], closed)
-                )
-            compared.append(
-                (
-                    Message("program of [[label]]", label=found.names[i].label),
-                    values[m * n + m + i],
-                    carry(found.acceleration[i].polynomial),
-                )
-            )
+                work = dot(own, [carry(x[place]) for x in found.solved.transformation.polynomials])
+                compared.append((Message("[[label]] along [[free]]", label=label, free=free), work, zero))
         return compared
 
-    routes = ("recursion along the coordinates", "places in inertial axes")
-    return compared_on_manifold("constraints", routes, system, ring, programs, pairs)
+    routes = ("speeds of the bodies" if system.speeds else "recursion along the coordinates", "places in inertial axes")
+    return compared_on_manifold("constraints", routes, form, programs, pairs)
 
 
-def check_embedded(
-    system: System, ring: Ring, found: Constraints, embedded: Embedded, programs: ConstrainedPrograms
-) -> Check:
-    """The embedded equations against d'Alembert's principle in inertial axes, at accelerations that they give.
+def check_embedded(form: SpeedForm, found: Constraints, embedded: Embedded, programs: ConstrainedPrograms) -> Check:
+    """Y^T M Y v' = Y^T (f - M a0) and u' = Y v' + a0 at the accelerations of the equations with multipliers.
 
-    The accelerations solve the closed embedded equations; with them the forces of inertia and loads, from another
-    derivation, do no work along any displacement that the constraints allow.  Forces of constraints do none.
+    With these the forces of inertia and loads, from another derivation, d'Alembert's in inertial axes, do no work along
+    any displacement that the constraints allow.  Forces of constraints do none.
     """
-    names = found.coordinates
+    system = form.system
 
     def pairs(one: OnManifold) -> list[Pair]:
-        state = one.state
-        carry = Carrier(ring, state.numbers, state.values)
-        moved = accelerated(state, carry, found, embedded)
-        oracle = Oracle(system, moved)
-        residual = [oracle.residuals[name] for name in names]
-        truth = oracle_rows(system, moved)
+        state = moving(form, one, found, programs)
+        oracle = Oracle(system, state)
+        carry, zero = Carrier(form.ring, state.numbers, state.values), state.numbers.zero
+        assert found.solved is not None
+        own = [state.values[form.speeds[k].rate_name] for k in found.solved.embedding.free]
+        truth = oracle_rows(system, state)
         rows = [truth[name.constraint][max(name.component - 1, 0)] for name in found.names]
-        zero = state.numbers.zero
         compared: list[Pair] = [
             (Message("second rate of [[label]]", label=name.label), row.acceleration, zero)
             for name, row in zip(found.names, rows, strict=True)
         ]
-        for place, y in enumerate(null_space([row.partials for row in rows], len(names), state.numbers)):
+        for name, row, force in zip(found.free, embedded.mass_matrix.polynomials, embedded.forcing, strict=True):
+            left = sum((carry(x) * rate for x, rate in zip(row, own, strict=True)), zero)
+            compared.append((Message("equation of [[name]]", name=name), left, carry(force.polynomial)))
+        for u, row, shift in zip(
+            form.speeds, found.solved.transformation.polynomials, found.solved.acceleration_shift, strict=True
+        ):
+            right = sum((carry(x) * rate for x, rate in zip(row, own, strict=True)), carry(shift.polynomial))
+            compared.append((f"{u.name}'", state.values[u.rate_name], right))
+        residual = [oracle.residuals[name] for name in system.coordinates]
+        for place, y in enumerate(null_space([x.partials for x in rows], len(residual), state.numbers)):
             work = dot(y, residual)
             compared.append((Message("work along displacement [[number]]", number=place + 1), work, zero))
         return compared
 
     routes = ("embedded equations, closed form", "d'Alembert's principle in inertial axes")
-    return compared_on_manifold("constrained motion", routes, system, ring, programs, pairs)
+    if system.speeds:
+        routes = ("embedded equations in speeds", "d'Alembert's principle in inertial axes, with multipliers")
+    return compared_on_manifold("constrained motion", routes, form, programs, pairs)
 
 
 def check_integrals(
-    system: System, ring: Ring, found: Sequence[Integral], tied: Constraints, programs: ConstrainedPrograms
+    form: SpeedForm, found: Sequence[Integral], tied: Constraints, programs: ConstrainedPrograms
 ) -> Check:
     """dI/dt along the motion, by series in time, with the accelerations of the equations with multipliers."""
 
     def pairs(one: OnManifold) -> list[Pair]:
-        state = with_multipliers(one.state, tied, programs)
-        moving = Oracle(system, state)
-        carry = Carrier(ring, TaylorSeries(state.numbers, moving.in_time), moving.in_time)
-        return [(item.name, carry(item.formula.polynomial).b, state.numbers.zero) for item in found]
+        carry = in_time(form, moving(form, one, tied, programs))
+        return [(item.name, carry(item.formula.polynomial).b, one.state.numbers.zero) for item in found]
 
-    routes = ("dI/dt along the motion with multipliers", "zero")
-    return compared_on_manifold("first integrals", routes, system, ring, programs, pairs)
+    return compared_on_manifold(
+        "first integrals", ("dI/dt along the motion with multipliers", "zero"), form, programs, pairs
+    )
 
 
-def with_multipliers(state: State, tied: Constraints, programs: ConstrainedPrograms) -> State:
-    """The state with the accelerations of  M q'' - J^T lambda = f,  J q'' = -gamma,  J of the independent rows."""
-    program, n, m = programs.tree.program, len(tied.coordinates), len(tied.independent)
+def moving(form: SpeedForm, one: OnManifold, tied: Constraints, programs: ConstrainedPrograms) -> State:
+    """The state with the accelerations of  M q'' - J^T lambda = f,  J q'' = -gamma,  J of the independent rows.
+
+    In enclosures where quaternions are no rational numbers; values of all variables are told, read off placed bodies.
+    """
+    state, names = (one.enclosed if form.by_quaternion else one).state, form.system.coordinates
+    program, n, m = programs.tree.program, len(names), len(tied.independent)
     rows = [programs.jacobian[i] for i in tied.independent]
     nodes = [x for row in programs.tree.mass_matrix for x in row] + [x for row in rows for x in row]
     nodes += [*programs.tree.forcing, *(programs.acceleration[i] for i in tied.independent)]
@@ -163,32 +166,27 @@ def with_multipliers(state: State, tied: Constraints, programs: ConstrainedProgr
     if done.rank < n + m:
         raise ZeroDivisionError("the equations with multipliers are singular there")
     solved = {column: done.rows[row][n + m] for row, column in done.pivots}
-    moved = {acceleration_name(name): solved[k] for k, name in enumerate(tied.coordinates)}
-    return State(state.numbers, {**state.values, **moved})
+    moved = {acceleration_name(name): solved[k] for k, name in enumerate(names)}
+    return completed(Oracle(form.system, State(state.numbers, {**state.values, **moved})))
 
 
-def accelerated(state: State, carry: Any, found: Constraints, embedded: Embedded) -> State:
-    """The state with q'' = Y u' + a0, u' from the embedded equations."""
-    k, n, solved = len(found.free), len(found.coordinates), found.solved
-    assert solved is not None
-    rows = [
-        [*(carry(embedded.mass_matrix[i, j].polynomial) for j in range(k)), carry(embedded.forcing[i].polynomial)]
-        for i in range(k)
+def in_time(form: SpeedForm, state: State) -> Carrier:
+    """Formulas as series in time along the motion that begins there: x, and dx/dt, count."""
+    oracle = Oracle(form.system, state)
+    series = {**oracle.in_time, **variables(oracle)}
+    return Carrier(form.ring, TaylorSeries(state.numbers, series), series)
+
+
+def _columns(form: SpeedForm, oracle: Oracle) -> list[list[Any]]:
+    """du_r/dq'_i, from the spins of the placed bodies."""
+    declared = {speed.name: speed for speed in form.system.speeds}
+    one, zero = oracle.numbers.one, oracle.numbers.zero
+    return [
+        slopes(oracle, declared[u.name])
+        if u.name in declared
+        else [one if velocity_name(name) == u.name else zero for name in form.system.coordinates]
+        for u in form.speeds
     ]
-    done = eliminated(rows, range(k))
-    if done.rank < k:
-        raise ZeroDivisionError("Y^T M Y is singular there")
-    speed = [state.numbers.zero] * k
-    for row, column in done.pivots:
-        speed[column] = done.rows[row][k]
-    accelerations = {
-        acceleration_name(name): sum(
-            (carry(solved.transformation[i, j].polynomial) * speed[j] for j in range(k)),
-            carry(solved.acceleration_shift[i].polynomial),
-        )
-        for i, name in zip(range(n), found.coordinates, strict=True)
-    }
-    return State(state.numbers, {**state.values, **accelerations})
 
 
 def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:
@@ -198,22 +196,16 @@ def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[
 
 
 def compared_on_manifold(
-    name: str,
-    routes: tuple[str, str],
-    system: System,
-    ring: Ring,
-    programs: ConstrainedPrograms,
-    pairs: At,
-    irrational: bool = False,
+    name: str, routes: tuple[str, str], form: SpeedForm, programs: ConstrainedPrograms, pairs: At
 ) -> Check:
     """Compares two routes at states that keep the constraints: rational ones, or certified enclosures.
 
-    With ``irrational`` values are wanted that are not rational at rational states, either.
+    Enclosures, too, where quaternions are wanted, which are not rational at rational states.
     """
     done, exact = 0, True
     with ctx.workprec(PRECISION):
-        for found in Manifold(system, ring, programs).states(3 * STATES):
-            one = found.enclosed if irrational else found
+        for found in Manifold(form.system.without_speeds, form.ring, programs).states(3 * STATES):
+            one = found.enclosed if form.by_quaternion else found
             try:
                 outcome, detail = _verdict(pairs(one))
             except ZeroDivisionError:

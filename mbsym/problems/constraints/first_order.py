@@ -26,7 +26,7 @@ from mbsym.mechanics.motion import unperturbed_with, unsteady
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
 from mbsym.problems.checks import Check, check_identities
-from mbsym.problems.constraints.in_speeds import dependent_speeds
+from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.first_order import FirstOrder
 from mbsym.problems.in_speeds.speeds import SpeedEquations
@@ -47,7 +47,7 @@ def first_order(form: SpeedForm, equations: SpeedEquations, reduced: Reduced, at
         raise NoClosedForm("constraints tie positions: their deviations are not free")
     if tied.solved is None or embedded is None:
         raise NoClosedForm("the equations without multipliers outgrow the budget of terms")
-    images = dependent_speeds(form, tied, tied.solved)
+    images = dependent_velocities(form, tied.solved)
     speeds = [u for u in form.speeds if u.name in tied.free]
     forcing = [x.polynomial for x in embedded.forcing]
     rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}

@@ -4,7 +4,8 @@
     Y^T M Y u' = Y^T (f - M a0),   q' = Y u + y0           embedded (Maggi's equations)
 
 with q'' = Y u' + a0.  M and f are those of the open tree.  In the embedded equations the dependent velocities are
-expressed by the independent ones; the dependent coordinates stay, and phi(q, t) = 0 goes with them.
+expressed by the independent ones; the dependent coordinates stay, and phi(q, t) = 0 goes with them.  In speeds of their
+own it is the same with these for q', and with Kane's equations of the tree.
 
 Sources: G. A. Maggi, Principii di stereodinamica (1901); Neimark & Fufaev, chapter 3.
 """
@@ -14,11 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.ring import Polynomial
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.embedding import projected
-from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Equations
 
@@ -37,29 +38,22 @@ class Embedded(Shown):
         return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
-def embedded_equations(scene: Scene, equations: Equations, found: Constraints) -> Embedded:
-    """The equations without multipliers (scene over the ring).
-
-    Raises NoClosedForm where they outgrow the budget.
-    """
+def embedded_equations(form: SpeedForm, equations: Equations, found: Constraints) -> Embedded:
+    """The equations without multipliers, of the equations of the tree.  Raises NoClosedForm beyond the budget."""
     if found.solved is None:
         raise NoClosedForm("the dependent velocities have no closed form within the budget of terms")
-    ring, n = scene.ring, len(found.coordinates)
-    mass = [[equations.mass_matrix[i, j].polynomial for j in range(n)] for i in range(n)]
-    forcing = [x.polynomial for x in equations.forcing]
-    matrix, right = projected(ring, found.solved.embedding, mass, forcing)
-    speeds = dependent_velocities(ring, found, found.solved)
-    right = [ring.substitute(x, speeds) for x in right]
-    return Embedded(found.free, Matrix.of(ring, matrix), column(ring, [ring.reduce(x) for x in right]))
+    ring, forcing = form.ring, [x.polynomial for x in equations.forcing]
+    matrix, right = projected(ring, found.solved.embedding, equations.mass_matrix.polynomials, forcing)
+    images = dependent_velocities(form, found.solved)
+    right = [ring.reduce(ring.substitute(x, images)) for x in right]
+    return Embedded(found.free, Matrix.of(ring, matrix), column(ring, right))
 
 
-def dependent_velocities(ring: Ring, found: Constraints, solved: Solved) -> dict[int, Polynomial]:
-    """The generators of the dependent velocities, and what they are: S u + s."""
-    free = [ring.generator("velocity", name) for name in found.free]
-    parts = zip(found.dependent, solved.embedding.matrix, solved.embedding.shift, strict=True)
+def dependent_velocities(form: SpeedForm, solved: Solved) -> dict[int, Polynomial]:
+    """The generators of the dependent speeds or velocities, and what they are: S u + s."""
+    ring, found = form.ring, solved.embedding
+    free = [ring.context.gen(form.speeds[k].index) for k in found.free]
     return {
-        ring.index("velocity", name): ring.reduce(
-            sum((ring.times(x, u) for x, u in zip(row, free, strict=True)), shift)
-        )
-        for name, row, shift in parts
+        form.speeds[k].index: ring.reduce(sum((ring.times(x, u) for x, u in zip(row, free, strict=True)), shift))
+        for k, row, shift in zip(found.dependent, found.matrix, found.shift, strict=True)
     }

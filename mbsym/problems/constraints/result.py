@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.formulas.formula import Column, Formula, Matrix
+from mbsym.algebra.ring import Ring
+from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.constraints.dependence import Dependent
-from mbsym.mechanics.constraints.embedding import Embedding, Pivots
+from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector
 from mbsym.mechanics.constraints.rows import RowName
 
 
@@ -73,6 +74,22 @@ class Solved(Shown):
     acceleration_shift: Column
     regular_where: Formula
     embedding: Embedding
+
+    @staticmethod
+    def of(ring: Ring, found: Embedding) -> Solved:
+        """With the rows of all velocities."""
+        n = len(found.dependent) + len(found.free)
+        columns = [basis_vector(ring, found, place) for place in range(len(found.free))]
+        shift, acceleration = [ring.zero] * n, [ring.zero] * n
+        for k, x, y in zip(found.dependent, found.shift, found.acceleration, strict=True):
+            shift[k], acceleration[k] = x, y
+        return Solved(
+            Matrix.of(ring, [[y[k] for y in columns] for k in range(n)]),
+            column(ring, shift),
+            column(ring, acceleration),
+            Formula(ring, found.determinant),
+            found,
+        )
 
     @property
     def regular_everywhere(self) -> bool:

@@ -35,6 +35,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
+from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations, residual
 from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
 
@@ -114,8 +115,17 @@ def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEqu
 Candidate = tuple[Integral, Sequence[Polynomial]]
 
 
-def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> Iterator[Candidate]:
-    """What may be conserved, each with the multipliers that would prove it where they are known."""
+def candidates(
+    form: SpeedForm,
+    scene: Scene,
+    energy: Energy,
+    equations: Equations,
+    displacements: Sequence[tuple[str, Sequence[Polynomial]]] = (),
+) -> Iterator[Candidate]:
+    """What may be conserved, each with the multipliers that would prove it where they are known.
+
+    ``displacements`` that constraints allow have momenta, too.
+    """
     ring = form.ring
     kinetic, force = energy.kinetic_energy.polynomial, energy.force_function.polynomial
     momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
@@ -125,25 +135,21 @@ def candidates(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEq
     for name, slopes in form.slopes.items():
         momentum = sum((ring.times(p, slope) for p, slope in zip(momenta, slopes, strict=True)), ring.zero)
         yield _integral(form, Message("momentum of [[name]]", name=name), "cyclic momentum", name, momentum), slopes
+    for name, along in displacements:
+        title = Message("momentum along the displacement of [[name]] that the constraints allow", name=name)
+        yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, along)), along
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
             if kind == "angular momentum":
                 title = Message("angular momentum about axis [[axis]]", axis=axis)
             else:
                 title = Message("linear momentum along axis [[axis]]", axis=axis)
-            yield (
-                _integral(
-                    form,
-                    title,
-                    kind,
-                    str(axis),
-                    formula,
-                ),
-                (),
-            )
+            yield _integral(form, title, kind, str(axis), formula), ()
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
+    if not isinstance(equations, SpeedEquations):
+        return
     for (name, components), (other, others) in equations.products:
         pairs = [
             (ring.generator("coordinate", a), ring.generator("coordinate", b))

@@ -67,7 +67,8 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     few = len(linear.coordinates) <= MOST_COORDINATES
     there = None if values is None or not few else at_values(scene, linear, values)
     parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
-    turning, damping, energies, pushed = [], [], [], []
+    turning, damping, energies = [], [], []
+    pushed: list[str] = []
     given = scene.system.linear
     nonholonomic = linear.constrained is not None and not linear.constrained.holonomic
     # x' = A x has no energy, and of nonholonomic systems the matrices say nothing of it.

@@ -87,9 +87,7 @@ def data(found: Stability, system: System, write: Write) -> doc.Stability:
         eigenvalues_at_values=[
             doc.Spectrum(
                 coordinates=list(part.coordinates),
-                roots=[
-                    doc.Root(real=x.real, imaginary=x.imaginary, multiplicity=x.multiplicity) for x in numbers(part)
-                ],
+                roots=[doc.Root.from_result(x) for x in numbers(part)],
             )
             for part in found.spectra
         ],
@@ -98,13 +96,12 @@ def data(found: Stability, system: System, write: Write) -> doc.Stability:
 
 def verdict_data(found: Verdict) -> parts.Verdict:
     """A verdict in every JSON file: its word, its theorems and reasons as codes, the reasons in sentences beside."""
-    return parts.Verdict(
+    return parts.Verdict.from_result(
+        found,
         verdict=found.word,
-        theorems=list(found.theorems),
         reasons=[
             parts.Reason(code=item.code.name.lower(), data=[_datum(x) for x in item.data]) for item in found.reasons
         ],
-        explanation=found.explanation,
     )
 
 
@@ -132,11 +129,8 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
 def _statement(item: Statement) -> doc.Statement:
     """``formula`` ``relation`` 0; null for a formula that is too long to be written out."""
     formula = item.formula if item.never is None else item.never
-    return doc.Statement(
-        label=item.label,
-        formula=None if formula is None else str(formula),
-        relation=item.relation,
-        never=item.never is not None,
+    return doc.Statement.from_result(
+        item, formula=None if formula is None else str(formula), never=item.never is not None
     )
 
 
@@ -156,12 +150,11 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
         found = shown.reference(item)
         return _statement(item) if found is None else doc.Listed(listed=found.under, relation=found.relation)
 
-    return doc.Case(
+    return doc.Case.from_result(
+        case,
         all_of=[named(item) for item in case.all_of],
         any_of=[named(item) for item in case.any_of],
-        otherwise=case.otherwise,
         verdict=case.word,
-        theorems=list(case.theorems),
     )
 
 
@@ -204,7 +197,7 @@ def content(results: Results) -> Iterator[Block]:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
-                say("Eigenvalues there, in physical time, of $[[names]]$", names=named(spectrum.coordinates)),
+                say("Eigenvalues there, in the time $t$, of $[[names]]$", names=named(spectrum.coordinates)),
                 ": ",
                 *roots,
                 *((" ", Unit(unit)) if unit else ()),
