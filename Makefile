@@ -15,8 +15,9 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 READY  := $(VENV)/.ready
+PIP    := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
 
-.PHONY: all lint types test test-slow test-all demo systems gallery window outputs docs page robots robot-data consumers bench clean
+.PHONY: all lint types test test-slow test-all demo systems gallery window outputs docs page extras robots robot-data consumers bench clean
 .DEFAULT_GOAL := all
 
 # What Python has compiled is kept, whatever the environment says: tests start many processes.
@@ -30,9 +31,19 @@ $(READY): pyproject.toml
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV) || \
 	    { echo "python's venv module is missing (on Debian: apt-get install python3-venv)"; exit 1; }
 	@echo "installing mbsym and what it needs into $(VENV): a minute or two"
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@$(PIP) '.[test]'
 	@$(BIN)/python -m compileall -q mbsym cli templates  # pip compiles what it copies, but not what stays in its place
 	@touch $(READY)
+
+# What some targets need besides, each once; `make extras` all of them by one call of pip.
+# docs: the site.  robots: Pinocchio and its robots.  consumers: who reads the exports, for their tests, 700 MB.
+$(VENV)/.has-%: $(READY)
+	@$(PIP) '.[$*]'
+	@touch $@
+
+extras: $(READY)
+	@$(PIP) '.[docs,robots,consumers]'
+	@touch $(addprefix $(VENV)/.has-,docs robots consumers)
 
 lint: $(READY)
 	$(BIN)/ruff check .
@@ -120,8 +131,7 @@ window: $(READY)
 outputs: $(READY)
 	$(BIN)/python tests/outputs.py build/outputs $(if $(REF),--ref $(REF)) $(if $(ONLY),--only $(ONLY))
 
-docs: $(READY)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+docs: $(VENV)/.has-docs
 	$(BIN)/mkdocs build --strict --quiet
 
 # What is built is shipped, so that installing needs no Node; tests/browser holds it against the sources.
@@ -132,16 +142,12 @@ page:
 robots: robot-data
 	$(TESTS) tests/robots
 
-robot-data: $(READY)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[robots]'
+robot-data: $(VENV)/.has-robots
 
-# Who reads the exports, for their tests: 700 MB.
-consumers: $(READY)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[consumers]'
+consumers: $(VENV)/.has-consumers
 
-bench: robot-data
+bench: robot-data $(VENV)/.has-bench
 	$(BIN)/python tests/bench/run.py
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[bench]'
 	$(BIN)/python tests/bench/rows_bench.py
 	$(BIN)/python tests/bench/loops_bench.py --large
 	$(BIN)/python tests/bench/sweep_bench.py

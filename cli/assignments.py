@@ -17,6 +17,7 @@ from mbsym.studies.study import missing as unfit
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
+    from mbsym.model.reducing import Reducing
     from mbsym.model.scaling import Scaling
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Lack, Scenario
@@ -144,6 +145,16 @@ def scaling_of(text: str, system: System, options: Options) -> Scaling | None:
     text, complaints = " ".join(text.splitlines()), Complaints()
     found = read_scaling(text, system, complaints)
     options.complaints += [render_option(one, text, "--scale") for one in complaints.sorted()]
+    return found
+
+
+def reduction_of(text: str, options: Options) -> Reducing | None:
+    """What ``--reduce`` says; every complaint joins those of ``options``."""
+    from mbsym.source.reduction import read_reduction
+
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    found = read_reduction(text, complaints)
+    options.complaints += [render_option(one, text, "--reduce") for one in complaints.sorted()]
     return found
 
 

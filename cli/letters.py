@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 
 _HELP = (
     "Letters of the description (notation, abbreviations) in which formulas are written, also where nothing gets "
-    "shorter; parameters among them stay; none: in parameters alone.  [default: those that make a formula shorter]"
+    "shorter; parameters among them stay; none: in parameters alone (subsystems and their stability stay in the "
+    "notation).  [default: those that make a formula shorter]"
 )
 
 

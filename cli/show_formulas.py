@@ -7,10 +7,13 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.assignments import scaling_of, with_settings
+from mbsym_cli.assignments import reduction_of, scaling_of, with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
 from mbsym_cli.letters import read_letters, with_letters
 from mbsym_cli.options import Options
+
+#: Equations of more characters, some screens, are printed only where they are asked for.
+MOST_UNASKED = 8000
 
 
 @click.command("show")
@@ -21,6 +24,9 @@ from mbsym_cli.options import Options
 @click.option("--python", "language", flag_value="python", help="Write Python, with the names of the description.")
 @click.option("--set", "-s", "settings", multiple=True, metavar="NAME=VALUE", help="Replace a value; repeatable.")
 @click.option("--scale", metavar="LIST", help="Dimensionless variables: x=L*x1,t=tau/omega0,k=m*omega0**2*kappa.")
+@click.option(
+    "--reduce", "steps", metavar="STEPS", help="Equations in fewer variables: r=1 by integrals; q by p; O(eps**3)."
+)
 @click.option("--terms", metavar="N", default="1000000", show_default=True, help="Longest formula that is derived.")
 @with_letters
 def command(
@@ -29,6 +35,7 @@ def command(
     language: str | None,
     settings: tuple[str, ...],
     scale: str | None,
+    steps: str | None,
     terms: str,
     letters: str | None,
 ) -> None:
@@ -43,13 +50,22 @@ def command(
     conditions      of stability               integrals     first integrals
     eigenvalues     at the given values
 
-    The name of a body prints its kinematics and its part of T, that of a coordinate (a speed) its equation, terms with
-    accelerations first.  Without --latex, --wolfram or --python formulas are written as people
-    write them: theta'' is the second derivative, a space multiplies.  Exit codes: 0 printed, 1 there is no such result,
-    2 something is wrong.
+    The name of a body or frame prints its place, its kinematics and its part of T, that of a coordinate (a speed) its
+    equation, terms with accelerations first.  Equations that fill screens are printed where they are asked for by name.
+    Without --latex, --wolfram or --python formulas are written as people write them: theta'' is the second derivative,
+    a space multiplies.  Exit codes: 0 printed, 1 there is no such result, 2 something is wrong.
+
+    --reduce prints the equations in fewer variables, step by step, each step checked in the original equations:
+
+    \b
+    r=1,h=1 by integrals   first integrals solved for r and h, which are 1 at first (exactly: without a value and O())
+    q,s by p,h             the equations of p and h solved for q and s: equations of second order are left
+    p=p1+eps*a,a=x/(1-b)   a change of variables, and letters that stand in it
+    O(eps**3)              series in eps, without terms of this power
 
     \b
     Examples:
+      mbsym show systems/spherical-pendulum.yaml --reduce "psi_dot by integrals"
       mbsym show systems/simple-pendulum.yaml
       mbsym show systems/double-pendulum.yaml T U equations
       mbsym show systems/satellite.yaml conditions --latex
@@ -63,15 +79,18 @@ def command(
         system = with_settings(file, system, settings, asked)
     chosen = None if system is None else read_letters(letters, system, asked)
     scaling = scaling_of(scale, system, asked) if system is not None and scale is not None else None
+    reducing = None if steps is None else reduction_of(steps, asked)
+    if reducing is not None and names:
+        asked.complain("--reduce", "not-both", "the reduction prints what it finds, and no NAMEs", "leave them out")
     if asked.refused(file) or system is None or budget is None:
         sys.exit(BAD_INPUT)
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.expressions.tree import text
-    from mbsym.report.formulas_by_name import carried_lines, known_names, lines, remarked, written
+    from mbsym.report.formulas_by_name import carried_lines, known_names, lines, reduced_lines, remarked, written
     from mbsym.report.letters import in_letters, letters_of
 
-    formulas = None
+    formulas = reduction = None
     if scaling is not None:
         from mbsym.analysis.scaled import Formulas, NoDescription
         from mbsym.studies.groups import in_scale
@@ -85,6 +104,16 @@ def command(
             complain(file, f"--scale: {error}")
             sys.exit(FAILED)
     analysis = Analysis(system, terms=budget) if formulas is None else formulas.analysis
+    if reducing is not None:
+        from mbsym.analysis.reducing import reduced
+
+        try:
+            with status(False, "reducing"):
+                reduction = reduced(analysis, reducing, formulas, system.claims)
+        except Failure as error:
+            complain(file, f"--reduce: {error}")
+            sys.exit(FAILED)
+        system = reduction.system
     known = known_names(analysis)
     wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
     unknown = [name for name in wanted if name not in known]
@@ -99,15 +128,24 @@ def command(
         for name in wanted:
             try:
                 with status(False, f"deriving {name}"):
-                    found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
+                    if reduction is not None:
+                        found = list(reduced_lines(reduction))
+                    else:
+                        found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
+                    told = [written(line, language or "text") for line in found]
             except Failure as error:
                 complain(file, f"{name}: {error}")
                 worst = FAILED
                 continue
-            for line in found:
+            length = sum(map(len, told))
+            if not names and reduction is None and language is None and length > MOST_UNASKED and name == "equations":
+                click.echo(f"equations: {len(found)}, of {length} characters together; one of them, or all:")
+                click.echo(f"  mbsym show {file} {known[-1]}\n  mbsym show {file} equations")
+                sys.exit(OK)
+            for line, text_of_it in zip(found, told, strict=True):
                 if line.remark:
                     click.echo(remarked(printable(line.remark), language or "text"))
-                click.echo(written(line, language or "text"))
+                click.echo(text_of_it)
     if used:
         click.echo(remarked("where", language or "text"))
         for name, value in letters_of(system).definitions(used):

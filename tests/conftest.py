@@ -39,6 +39,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
+from mbsym.report import rendering
 
 T = TypeVar("T")
 
@@ -129,6 +130,24 @@ def browsed(file: Path, *options: str, wait: int = 1000) -> tuple[str, list[str]
 def pytest_configure() -> None:
     """As the command has it: formulas are many small objects and hardly ever cycles."""
     gc.set_threshold(200_000, 20, 20)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _read_by_who_gets_it() -> Iterator[None]:
+    """Every file of every report that a test renders would be taken by its language."""
+    from tests.report.readers import unreadable
+
+    original = rendering._rendered
+
+    def checked(*given: Any) -> rendering.Rendered:
+        found = original(*given)
+        reason = "" if found.text is None else unreadable(found.filename, found.text)
+        assert not reason, f"{found.filename}: {reason}"
+        return found
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(rendering, "_rendered", checked)
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -20,18 +20,13 @@ def write_appendix(out: Path, name: str, summary: Summary) -> None:
     Labels differ from system to system; what has none, as a description with errors, is named at the head.  Raises
     OSError where the file cannot be written.
     """
-    from mbsym.report.code.parsing import unreadable
     from mbsym.report.latex.appendix import joined
-    from mbsym.report.rendering import Unreadable
 
     texts = [(row.file, _text(out, row)) for row in summary.rows]
     without = [file for file, text in texts if not text]
     head = [f"% Appendices of {len(texts) - len(without)} systems, joined by mbsym {summary.version}."]
     head += [f"% Left out, without an appendix: {_plain(file)}" for file in without]
     whole = "\n".join(head) + "\n\n" + joined([text for _, text in texts if text])
-    reason = unreadable(name, whole)
-    if reason:
-        raise Unreadable(f"{name}: {reason}")
     deliver(out, {name: whole}, SUMMARY, gone=())
 
 

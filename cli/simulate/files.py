@@ -137,15 +137,9 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
         return {}
     files: dict[str, bytes] = {}
     if "html" in formats:
-        from mbsym.report.code.parsing import unreadable
         from mbsym.report.figures.animation_page import animation_page
-        from mbsym.report.rendering import Unreadable
 
-        text = animation_page(found, run)
-        reason = unreadable("animation.html", text)
-        if reason:
-            raise Unreadable(f"animation.html: {reason}")
-        files["animation.html"] = text.encode()
+        files["animation.html"] = animation_page(found, run).encode()
     if "gif" in formats:
         from mbsym.report.figures.animation_gif import animation_gif
 

@@ -72,6 +72,9 @@ def eliminate(ring: Ring, definitions: Sequence[Definition], candidates: Sequenc
     gens = ring.context.gens()
     for symbol, definition in definitions:
         relation, _ = ring.fraction(ring.substitute(gens[symbol] - definition, dict(images)))
+        slope = relation.derivative(symbol)
+        shared = slope.gcd(relation - slope * gens[symbol])  # zero for no value of the symbol alone: it says nothing
+        relation = relation if shared.is_constant() else relation / shared
         options = []
         for order, index in enumerate(candidates):
             if index in images or relation.degrees()[index] != 1:

@@ -6,7 +6,7 @@ operation tells more coefficients than it has.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -149,11 +149,24 @@ class Series:
         found = {k: Quotient.of(c.top / number, c.bottom) for k, c in self.coefficients.items()}
         return Series(self.context, found, self.known)
 
-    def over(self, other: Series, known: int) -> Series:
-        """The quotient up to eps^known, term by term.  Raises ZeroDivisionError where no coefficient of it is known."""
+    def derivative(self, place: int) -> Series:
+        """The derivative by a generator."""
+        slopes = {k: c.derivative(place) for k, c in self.coefficients.items()}
+        return Series(self.context, {k: c for k, c in slopes.items() if not c.is_zero}, self.known)
+
+    def over(self, other: Series, known: int | None) -> Series:
+        """The quotient up to eps^known, term by term; by one term it is exact.
+
+        Raises ZeroDivisionError where no coefficient of it is known, NoClosedForm where it has no end.
+        """
         first = other.lowest
         if first is None:
             raise ZeroDivisionError("a quotient of series with the denominator 0")
+        if other.known is None and len(other.coefficients) == 1:
+            found = {k - first: c / other.coefficients[first] for k, c in self.coefficients.items()}
+            return Series(self.context, found, None if self.known is None else self.known - first).up_to(known)
+        if known is None:
+            raise NoClosedForm("a quotient of series has no end: say up to which order it is wanted")
         start = self.lowest
         lead = other.coefficients[first]
         reach = _least(
@@ -161,7 +174,7 @@ class Series:
             None if other.known is None or start is None else start - first + other.known - first,
         )
         reach = known if reach is None else min(reach, known)
-        found: dict[int, Quotient] = {}
+        found = {}
         for k in range(start - first if start is not None else reach, reach):
             c = self.coefficients.get(k + first, Quotient.of(self.context.constant(0)))
             for n, b in found.items():
@@ -171,6 +184,72 @@ class Series:
             if not c.is_zero:
                 found[k] = c / lead
         return Series(self.context, found, reach)
+
+
+class Composition:
+    """Polynomials and series with series in place of the generators at ``places``."""
+
+    def __init__(self, context: Any, places: Sequence[int]) -> None:
+        self.context, self.places = context, list(places)
+        self._sorted: dict[int, tuple[Mapping[int, Polynomial], dict[tuple[int, ...], Series]]] = {}
+
+    def __call__(self, p: Mapping[int, Polynomial], functions: Sequence[Series], known: int | None) -> Series:
+        """sum_k p_k(s, functions) eps^k up to eps^known."""
+        total = Series(self.context, {}, known)
+        if known is not None and p:  # coefficients beyond are not needed: they would be long
+            functions = [one.up_to(known - min(0, *p)) for one in functions]
+        powers: dict[tuple[int, int], Series] = {}
+        for exponents, factor in self._parts(p).items():
+            term = factor
+            for place, exponent in enumerate(exponents):
+                if exponent:
+                    term = (term * self._power(place, exponent, functions, powers)).up_to(known)
+            total = total + term
+        return total
+
+    def of(self, x: Series, functions: Sequence[Series], known: int | None) -> Series:
+        """x(s, functions, eps) up to eps^known."""
+        known = _least(x.known, known)
+        total = Series(self.context, {}, known)
+        shares: list[tuple[Polynomial, dict[int, Polynomial]]] = []
+        for k, c in x.coefficients.items():
+            tops = next((tops for bottom, tops in shares if bottom == c.bottom), None)
+            if tops is None:
+                shares.append((c.bottom, tops := {}))
+            tops[k] = c.top
+        for bottom, tops in shares:
+            held = any(bottom.degrees()[place] > 0 for place in self.places)
+            below = self({0: bottom}, functions, known) if held else Series.constant(Quotient.of(bottom))
+            total = total + self(tops, functions, known).over(below, known)
+        return total
+
+    def _power(
+        self, place: int, exponent: int, functions: Sequence[Series], powers: dict[tuple[int, int], Series]
+    ) -> Series:
+        if exponent == 1:
+            return functions[place]
+        if (place, exponent) not in powers:
+            powers[place, exponent] = self._power(place, exponent - 1, functions, powers) * functions[place]
+        return powers[place, exponent]
+
+    def _parts(self, p: Mapping[int, Polynomial]) -> dict[tuple[int, ...], Series]:
+        """Exponents of the fast variables -> coefficient, free of them."""
+        if id(p) in self._sorted:
+            return self._sorted[id(p)][1]
+        parts: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], Any]]] = {}
+        for k, q in p.items():
+            for monomial, c in q.to_dict().items():
+                exponents = tuple(monomial[place] for place in self.places)
+                rest = list(monomial)
+                for place in self.places:
+                    rest[place] = 0
+                parts.setdefault(exponents, {}).setdefault(k, {})[tuple(rest)] = c
+        found = {
+            exponents: Series(self.context, {k: Quotient.of(self.context.from_dict(t)) for k, t in graded.items()})
+            for exponents, graded in parts.items()
+        }
+        self._sorted[id(p)] = p, found  # held: its identity is not used again
+        return found
 
 
 def _least(a: int | None, b: int | None) -> int | None:

@@ -73,6 +73,9 @@ SHARES = tuple(fmpq(k, 64) for k in (1, 2, 8, 20, 32, 44, 56, 62, 63))
 MOST_DIVIDED = 12
 #: Squares that are completed within one another.
 SQUARES = 2
+
+#: Of more terms than this the factors of a discriminant cost more than sample points.
+LONG = 15
 #: Steps of the search for a combination of assumptions, per question: as asked, and after a change of variables.
 MOST_STEPS, MOST_STEPS_CHANGED = 60, 8
 
@@ -385,13 +388,14 @@ class Signs:
         result = self._by_terms(p)
         if len(result) == 1:
             return result
-        # Only the question as asked has witnesses: making them anew for each change would cost more than it saves.
+        # The question as asked has witnesses, and a long one: making them anew for each change costs more than it saves.
         # Those of numbers such as pi are no values of theirs.
-        least = self._observed(p) if after < 0 and not self._numbers_in(p) else frozenset()
+        points = self.witnesses if (after < 0 or len(p) > LONG) and not self._numbers_in(p) else ()
+        least = frozenset(_sign(p(*point)) for point in points)
         if result != least:
             result &= self._by_assumptions(p, after)
         if len(result) > 1 and result != least:
-            result &= self._by_square(p)
+            result &= self._by_square(p, points)
         for change in self._changes:
             if len(result) == 1 or result == least:
                 break
@@ -525,25 +529,28 @@ class Signs:
                     return _sum(part, found)
         return ANY
 
-    def _by_square(self, p: Polynomial, depth: int = SQUARES) -> SignSet:
+    def _by_square(self, p: Polynomial, points: tuple[tuple[Any, ...], ...], depth: int = SQUARES) -> SignSet:
         """A x^2 + B x + C: negative discriminant means the sign of A, a nonpositive one with A > 0 means >= 0.
 
-        The discriminant of a sum of several squares is minus such a sum in fewer generators.
+        The discriminant of a sum of several squares is minus such a sum in fewer generators.  Where it is positive at
+        one of the ``points``, which satisfy the assumptions, nothing is asked of it.
         """
         result = ANY
         for generator, degree in enumerate(p.degrees()):
             if degree != 2 or len(result) == 1:
                 continue
             c, b, a = coefficients_in(p, generator)
-            discriminant = self._plain(b * b - 4 * a * c, depth)
-            leading = self._plain(a, depth)
+            if any(b(*point) ** 2 > 4 * a(*point) * c(*point) for point in points):
+                continue
+            discriminant = self._plain(b * b - 4 * a * c, points, depth)
+            leading = self._plain(a, points, depth)
             if discriminant == frozenset({-1}):
                 result &= leading - ZERO or ANY
             elif 1 not in discriminant and len(leading) == 1 and 0 not in leading:
                 result &= leading | ZERO
         return result
 
-    def _plain(self, p: Polynomial, depth: int) -> SignSet:
+    def _plain(self, p: Polynomial, points: tuple[tuple[Any, ...], ...], depth: int) -> SignSet:
         """Signs by factors and terms, and so many squares within."""
         if p == 0:
             return ZERO
@@ -552,7 +559,7 @@ class Signs:
         for factor, exponent in powers:
             signs = self._by_terms(factor)
             if depth and len(signs) > 1 and len(factor) <= MOST_TERMS:
-                signs &= self._by_square(factor, depth - 1)
+                signs &= self._by_square(factor, points, depth - 1)
             result = _product(result, _power(signs, exponent))
         return result
 

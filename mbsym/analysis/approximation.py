@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from flint import arb, ctx, fmpq
@@ -22,7 +24,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import is_steady, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import System
+from mbsym.model.system import MotionEntry, System
 from mbsym.problems import linearisation
 from mbsym.problems.linearisation import Linearisation
 
@@ -102,8 +104,22 @@ def _demand_motion(analysis: Analysis) -> None:
             hint = Message(
                 "say with 'motion:' about which one; at rest with all coordinates 0 the description is singular"
             )
+        elif not _rests_at_zero(analysis):
+            hint = Message(
+                "say with 'motion:' about which one; rest with all coordinates 0 is none, or only at special values of "
+                "parameters"
+            )
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
+
+
+def _rests_at_zero(analysis: Analysis) -> bool:
+    """Whether the description, were this its motion, had it at all values of the parameters."""
+    still = MotionEntry(analysis.system.coordinates[0], Number(Fraction(0)), Number(Fraction(0)))
+    try:
+        return type(analysis)(replace(analysis.system, motion=(still,)), ()).equilibrium.satisfied
+    except Unavailable:
+        return False
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:

@@ -92,7 +92,8 @@ def in_variables(system: System, scaling: Scaling) -> System:
             found = _multiplied(found, one.new, factor)
     new = Analysis(found)
     _demand_law(Analysis(_original(system, scaling)), new, scaling, groups)
-    return replace(found, name=f"{system.name}, in dimensionless variables")
+    told = ", ".join(f"{name} = 1" for name in units)
+    return replace(found, name=f"{system.name}, in {f'units in which {told}' if told else 'dimensionless variables'}")
 
 
 def with_parameters(system: System, scaling: Scaling) -> System:

@@ -102,19 +102,15 @@ def schema() -> Schema:
 def summary_file(summary: Summary) -> SummaryFile:
     """The file as a value."""
     problems = None if summary.problems is None else list(summary.problems)
-    return SummaryFile(
+    return SummaryFile.from_result(
+        summary,
         mbsym=summary.version,
-        derivation=summary.derivation,
         options=Options(problems, list(summary.formats), summary.terms, summary.angles, summary.detail),
-        shard=summary.shard,
-        exit_code=summary.exit_code,
         totals=Totals(len(summary.rows), summary.totals),
         systems=[_row(row) for row in summary.rows],
-        run=Run(
+        run=Run.from_result(
+            summary,
             seconds=round(summary.seconds, 3),
-            timeout=summary.timeout,
-            memory=summary.memory,
-            cached=summary.cached,
             systems={row.file: RowRun(row.cached, round(row.seconds, 3)) for row in summary.rows},
         ),
     )

@@ -3,8 +3,10 @@
     sum      = product (("+" | "-") product)*
     product  = signed (("*" | "/") signed)*
     signed   = ("-" | "+") signed | power
-    power    = atom ["**" signed]            (the exponent must come out as one rational number)
-    atom     = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+    power    = atom [("**" | "^") signed]    (the exponent must come out as one rational number)
+    atom     = number | name ["'" ["'"]] | function "(" sum ("," sum)* ")" | "(" sum ")"
+
+``theta'`` is ``theta_dot`` and ``theta''`` is ``theta_ddot``, as results print them.
 
 Numbers are exact: ``0.1`` is 1/10 and ``1e-3`` is 1/1000.  What is too long, too deep or too big is complained about
 before any work is spent on it, so that ``9**9**9**9`` costs nothing; whatever evaluates the tree later can rely on the
@@ -25,6 +27,7 @@ from mbsym.expressions.angles import linear_form
 from mbsym.expressions.constants import meaningless
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import FUNCTIONS, SIGNATURES, Call, Expression, Name, Negative, Number, Operation
@@ -72,7 +75,7 @@ DERIVED = Bounds(length=8_000_000, nodes=2_000_000, depth=200_000, nesting=100, 
 _TOKEN = re.compile(
     r"(?P<blank>\s+)"
     r"|(?P<number>(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+(?![A-Za-z0-9_.]))?)"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*'{0,2})"
     r"|(?P<operator>\*\*|[-+*/()^,])",
 )
 
@@ -233,7 +236,7 @@ def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> lis
         start, position = match.span()
         if match.lastgroup == "blank":
             continue
-        token = _Token(match.lastgroup or "", match.group(), start, position)
+        token = _token(match)
         beside = start == end or (position < len(text) and _TOKEN.match(text, position) is None)
         call = _OPENING.match(text, position) is not None
         if token.kind == "name" and previous.kind == "operator" and not (beside or call or token.text in FUNCTIONS):
@@ -246,6 +249,13 @@ def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> lis
 
 def _inside(span: Span, other: Span) -> bool:
     return span.line == other.line and other.column <= span.column < other.column + other.length
+
+
+def _token(match: re.Match[str]) -> _Token:
+    text = "**" if match.group() == "^" else match.group()
+    name = text.rstrip("'")
+    ending = ("", VELOCITY_ENDING, ACCELERATION_ENDING)[len(text) - len(name)]
+    return _Token(match.lastgroup or "", name + ending, *match.span())
 
 
 def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
@@ -266,7 +276,7 @@ def _tokens(text: str, complaints: Complaints, span_of: SpanOf) -> list[_Token]:
             position = _complain_of_character(text, position, complaints, span_of)
             continue
         if match.lastgroup != "blank":
-            tokens.append(_Token(match.lastgroup or "", match.group(), match.start(), match.end()))
+            tokens.append(_token(match))
         position = match.end()
     if strange:
         raise _Refused
@@ -281,7 +291,7 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     shown = text[position:end]
     hint = _LOOKALIKES.get(character)
     if character == "'" and position and text[position - 1].isalnum():
-        hint = "a velocity is written theta_dot"
+        hint = "a velocity is written theta' or theta_dot, an acceleration theta'' or theta_ddot"
     if hint is None and character.isalpha():
         hint = Message("names are Latin letters, digits and _: write [[latin]]", latin=in_latin(character))
     complaints.error(
@@ -383,8 +393,6 @@ class _Parser:
     def power(self) -> Expression:
         start = self.next.start
         base = self.atom()
-        if self.next.text == "^":
-            raise self.refusal("bad-expression", "'^' is not an operator", self.next, "write ** for a power")
         if self.next.text != "**":
             return base
         self.advance()
@@ -427,8 +435,6 @@ class _Parser:
             return self.inside(token)[0]
         if token.kind == "end":
             raise self.refusal("bad-expression", "the expression ends too early", token)
-        if token.text == "^":
-            raise self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         raise self.refusal("bad-expression", Message("unexpected [[what]]", what=ascii_safe(token.text)), token)
 
     def name(self, token: _Token) -> Expression:
@@ -544,8 +550,6 @@ class _Parser:
         """Something stands where an operator should: most often a forgotten product sign."""
         previous = self.tokens[self.position - 1] if self.position else token
         hint: str | None = None
-        if token.text == "^":
-            return self.refusal("bad-expression", "'^' is not an operator", token, "write ** for a power")
         if token.kind in ("name", "number") or token.text == "(":
             hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=token.text)
         if previous.kind == "number" and token.kind == "name":

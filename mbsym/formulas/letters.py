@@ -19,6 +19,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -259,6 +260,10 @@ class Rewriter:
         own, held = self.places[name], occurring([relation])
         if own not in held:
             return
+        # What both sides of the definition share is zero for no value of the letter alone: it says nothing of others.
+        shared = reduce(lambda x, y: x.gcd(y), _powers(self.ring, relation, own).values())
+        relation = relation if shared.is_constant() else relation / shared
+        held = occurring([relation])
         kept = {next(iter(occurring([self.named[x]]))) for x in self.letters.kept if x in self.named}
         for symbol in held:
             powers = _powers(self.ring, relation, symbol)

@@ -31,9 +31,8 @@ from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
-from mbsym.maps.branches_events import named
+from mbsym.maps.branches_events import decided_throughout, is_undamped, named, stability_changes
 from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece, Remark
-from mbsym.maps.branches_stability import decided_throughout, is_undamped, stability_changes
 from mbsym.maps.mapping import Watch, ends, float_of, lengths, unwatched
 from mbsym.maps.result import Cell, Counted, Lack, Of, Shape
 from mbsym.maps.section import Axis

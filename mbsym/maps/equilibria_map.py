@@ -29,7 +29,7 @@ from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_bac
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
 from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
-from mbsym.maps.branches_stability import BY_INERTIA, is_undamped
+from mbsym.maps.branches_events import BY_INERTIA, is_undamped
 from mbsym.maps.mapping import Watch, box_of, places
 from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis

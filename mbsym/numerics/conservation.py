@@ -30,8 +30,8 @@ from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.scenario import PRECISION
 
 #: Bits of the balls, and what counts as zero beside the terms that cancel.

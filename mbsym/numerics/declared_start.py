@@ -27,8 +27,8 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Body, System, velocity_name
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.precise import enclosures
 
 #: How far a norm may be from 1, or two values given for one thing apart.
 AGREEMENT = Fraction(1, 10**9)

@@ -40,8 +40,8 @@ from mbsym.model.speeds import Quaternion
 from mbsym.model.states import InStates, described, in_states
 from mbsym.model.system import Body, System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
 from mbsym.numerics.specialise import bound, substituted
 

@@ -14,7 +14,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.events import BATCH, Occurrences, Watcher
 from mbsym.numerics.events.surfaces import Event
 from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Passed, Piece, Run, Setting, met_by
-from mbsym.numerics.pieces import states_on
+from mbsym.numerics.methods.nested import states_on
 
 #: (dynamics, events, tolerance, flow) -> the watcher of a run.
 Watch = Callable[..., Watcher]

@@ -88,10 +88,8 @@ def data(found: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tupl
 
 
 def _routh(found: Routh, write: Write) -> doc.Routh:
-    return doc.Routh(
-        ignored=list(found.ignored),
-        momenta=list(found.momenta),
-        coordinates=list(found.coordinates),
+    return doc.Routh.from_result(
+        found,
         function=write(found.function),
         mass_matrix=matrix_text(found.mass_matrix, write),
         linear=column_text(found.linear, write),

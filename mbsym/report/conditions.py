@@ -22,6 +22,10 @@ from mbsym.problems.stability.word import Word
 _TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
 
 
+#: The label of a coefficient whose letter is a name in the formulas, too.
+TAKEN = "condition [[label]]"
+
+
 @dataclass(frozen=True)
 class Statement:
     """``formula`` ``relation`` 0.
@@ -38,6 +42,24 @@ class Statement:
     never: Formula | None = None
     place: Place = Place.NECESSARY
     told: InCoefficients | None = None
+
+    @property
+    def opposite(self) -> bool:
+        """Whether it is told as another one reversed."""
+        return _is_opposite(self.label)
+
+    @property
+    def bare(self) -> str:
+        """Its label, v4 for -(v4)."""
+        return _bare(self.label)
+
+    @property
+    def named(self) -> bool:
+        """Whether its formula needs a label beside it: none where it is the letter, or has no letter."""
+        bare = self.bare
+        return not (self.formula is not None and is_letter(self.formula, bare)) and not (
+            isinstance(bare, Message) and bare.text == TAKEN
+        )
 
     @property
     def remark(self) -> str:
@@ -61,7 +83,7 @@ class Labels:
         bare = _bare(label)
         if bare.partition(" ")[0] not in self.taken:
             return label
-        named = Message("condition [[label]]", label=bare)
+        named = Message(TAKEN, label=bare)
         return named if bare == label else Message(REVERSED, label=named)
 
 
@@ -234,11 +256,12 @@ def _follows(one: Statement, other: Statement) -> bool:
 
 @dataclass(frozen=True)
 class Reference:
-    """The statement ``label``: the polynomial that was shown as ``under`` stands in ``relation`` to 0."""
+    """The statement ``label``: the polynomial that was shown as ``under``, ``formula``, stands in ``relation`` to 0."""
 
     label: str
     under: str
     relation: str
+    formula: Formula
 
 
 OPPOSITE = {">": "<", "<": ">", ">=": "<=", "<=": ">="}
@@ -271,12 +294,13 @@ class Shown:
             label, polynomial, relation = _bare(label), -polynomial, OPPOSITE.get(relation, relation)
         for own in (True, False):
             for under, formula in self._shown:
-                bare, shown = _bare(under), -formula.polynomial if _is_opposite(under) else formula.polynomial
+                bare, formula = _bare(under), -formula if _is_opposite(under) else formula
                 if (bare == label) is not own:
                     continue
-                ratio = rational_ratio(polynomial, shown)
+                ratio = rational_ratio(polynomial, formula.polynomial)
                 if ratio is not None and (ratio > 0 or not own):
-                    return Reference(label, bare, relation if ratio > 0 else OPPOSITE.get(relation, relation))
+                    stands = relation if ratio > 0 else OPPOSITE.get(relation, relation)
+                    return Reference(label, bare, stands, formula)
         return None
 
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET
-from msgspec.structs import asdict
+from msgspec import UNSET, structs
 
 from mbsym.algebra.quotients import Series
 from mbsym.algebra.signs import Condition
@@ -28,18 +27,17 @@ def expansion_json(
     system: System, values: Mapping[str, Fraction], found: Expansion, measured: Measured | str = ""
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    manifold = asdict(expansion_data(found, str))
-    values_of = {name: str(value) for name, value in values.items()}
-    return written(doc.Expansion(system=system.name, values=values_of, **manifold, measured=measured_data(measured)))
+    manifold = expansion_data(found, str)
+    told = doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measured_data(measured))
+    return written(structs.replace(told, missing=manifold.missing, steady=manifold.steady))
 
 
 def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
     """A slow manifold; ``write`` turns formulas into text."""
     manifold = found.manifold
     steady = manifold.steady
-    return doc.SlowManifold(
-        small=manifold.field.small,
-        powers=dict(manifold.field.powers),
+    return doc.SlowManifold.from_result(
+        manifold.field,
         order=manifold.order,
         provided_nonzero=[write(x) for x in found.provided],
         manifold=[

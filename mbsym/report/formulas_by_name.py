@@ -17,6 +17,7 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
+from mbsym.model.system import INERTIAL
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
@@ -24,6 +25,7 @@ from mbsym.report.content import Number
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
     from mbsym.analysis import Analysis
+    from mbsym.analysis.reducing import Reduced
     from mbsym.analysis.scaled import Formulas
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
@@ -50,7 +52,14 @@ class Determinant:
     rows: tuple[tuple[InPowers, ...], ...]
 
 
-Value = Formula | Matrix | Column | Determinant | tuple[RootNumbers, ...] | str
+@dataclass(frozen=True)
+class InSmall:
+    """A sum of coefficients times powers of a small parameter."""
+
+    terms: tuple[tuple[Formula, Formula], ...]
+
+
+Value = Formula | Matrix | Column | Determinant | InSmall | tuple[RootNumbers, ...] | str
 
 
 @dataclass(frozen=True)
@@ -243,18 +252,26 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
 }
 
 
+def _carrier(name: str) -> str:
+    return "inertial axes" if name == INERTIAL else f"the axes of {name}"
+
+
 def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
     body = next(x for x in analysis.kinematics.bodies if x.name == name)
-    yield Line("R", body.rotation, remark=f"direction cosines of {name}")
-    yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
-    yield Line("V_O", body.velocity_origin, remark="velocity of its connection point")
-    yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre")
     scene = analysis.scene
     motion = next(x for x in scene.motions.values() if x.body.name == name)
+    place = [scene.ring.reduce(x) for x in scene.position(scene.zero(name), INERTIAL)]
+    yield Line("R", body.rotation, remark=f"direction cosines of {name} in {_carrier(body.attached_to)}")
+    yield Line("r_O", column(scene.ring, place), remark="place of its connection point, in inertial axes")
+    yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
+    yield Line("V_O", body.velocity_origin, remark="velocity of its connection point, in its axes")
+    if body.velocity_mass_centre != body.velocity_origin:
+        yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre, in its axes")
     energy = body_energy(scene, motion)
     if motion.gyrostatic_moment is not None:
         energy += motion.gyrostatic_moment.dot(motion.angular_velocity)
-    yield Line("T", Formula(scene.ring, scene.ring.reduce(energy)), remark="its part of the kinetic energy")
+    if not (own := scene.ring.reduce(energy)).is_zero():  # of a massless frame there is none
+        yield Line("T", Formula(scene.ring, own), remark="its part of the kinetic energy")
 
 
 def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
@@ -309,6 +326,22 @@ def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
             yield replace(line, value=formulas.formula(line.value))
 
 
+def reduced_lines(found: Reduced) -> Iterator[Line]:
+    """Step by step what is put in, with its check; then the equations and integrals that are left, by powers of eps."""
+    flow = found.reduction.flow
+    for k, step in enumerate(found.reduction.steps, start=1):
+        left = "nothing is left" if step.left is None else f"O({found.asked.small}^{step.left}) is left"
+        yield Line("", f"{k}. {step.how.value}; put into the original equations at random rational states: {left}")
+        yield from (Line(found.variable(place), InSmall(found.terms(x))) for place, x in step.images.items())
+    yield Line("", "equations of motion" + ("" if found.asked.known is None else f", without O({found.remainder})"))
+    for place, x in flow.rates.items():
+        rate = found.rate(place)
+        if rate is not None and flow.velocities.get(place) not in flow.rates:
+            yield Line(rate, InSmall(found.terms(x)))
+    for x in flow.integrals:
+        yield Line("", InSmall(found.terms(x)), "=" if flow.fixed else "= const", "integral")
+
+
 #: What can be told in variables that no description has.
 CARRIED = ("equations", "T", "U", "L", "integrals")
 
@@ -317,7 +350,7 @@ def written(line: Line, language: str) -> str:
     """A line in one of ``LANGUAGES``."""
     if isinstance(line.value, str):
         return line.value if language == "text" else remarked(line.value, language)
-    value = _WRITERS[language](line.value)
+    value = _in_small(line.value, language) if isinstance(line.value, InSmall) else _WRITERS[language](line.value)
     if line.name:
         name = _WRITERS[language](line.name) if isinstance(line.name, Formula) else _LETTERS[language](line.name)
         return f"{name} = " + value.replace("\n", "\n" + " " * (len(name) + 3))
@@ -358,6 +391,19 @@ def _in_powers(value: InPowers, language: str) -> str:
     if str(value.factor) == "1":
         return found
     return _sum([(value.factor, f"({found})" if _is_sum(found) else found)], language)
+
+
+def _in_small(value: InSmall, language: str) -> str:
+    """From the lowest power on, each before its coefficient."""
+    times = {"latex": "\\, ", "text": " "}.get(language, "*")
+    found = []
+    for coefficient, power in value.terms:
+        name, own = _WRITERS[language](power), _WRITERS[language](coefficient)
+        minus = "-" * (own.startswith("-") and not _is_sum(own) and name != "1")
+        own = own.removeprefix(minus)
+        factor = f"({own})" if _is_sum(own) or own[:1].isdigit() else own
+        found.append(own if name == "1" else minus + (name if own == "1" else f"{name}{times}{factor}"))
+    return " + ".join(found).replace("+ -", "- ") or "0"
 
 
 def _is_sum(text: str) -> bool:
@@ -434,7 +480,7 @@ def _plain(
     comma: str = ", ",
 ) -> str:
     """A formula, also the only one of a matrix, or several values side by side."""
-    assert not isinstance(value, str | Determinant)
+    assert not isinstance(value, str | Determinant | InSmall)
     if isinstance(value, Matrix):
         value = value[0, 0]
     if isinstance(value, Formula):

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from msgspec.structs import asdict
-
 from mbsym.analysis.invariant_relations import InvariantRelations
 from mbsym.analysis.polynomial import Setting
 from mbsym.model.system import System
@@ -62,20 +60,12 @@ def _basis(there: Setting, found: PolynomialIntegrals) -> dict[str, Any]:
         "independent": found.independent,
         "not_contained": list(found.aside),
         "integrals": [
-            doc.Integral(
-                weight=one.weight,
-                name=one.name,
-                new=one.is_new,
-                formula=str(there.formula(one.polynomial)),
-                independent=one.independent,
-                independence=one.certainty.value,
+            doc.Integral.from_result(
+                one, new=one.is_new, formula=str(there.formula(one.polynomial)), independence=one.certainty.value
             )
             for one in found.generators
         ],
-        "counts": [
-            doc.Count(weight=one.weight, monomials=one.monomials, at_most=one.most, found=one.products)
-            for one in found.counts
-        ],
+        "counts": [doc.Count.from_result(one, at_most=one.most, found=one.products) for one in found.counts],
     }
 
 
@@ -126,18 +116,11 @@ def _darboux(there: Setting, found: DarbouxPolynomials) -> doc.Darboux:
     def factor(p: Any) -> str:
         return str(there.quotient(p, there.field.denominator))
 
-    return doc.Darboux(
-        degree=found.degree,
+    return doc.Darboux.from_result(
+        found,
         weights=dict(zip(there.field.variables, found.weights, strict=True)),
-        complete=found.complete,
-        obstacle=found.obstacle,
         polynomials=[
-            doc.Polynomial(
-                weight=one.weight,
-                formula=str(there.formula(one.polynomial)),
-                cofactor=factor(one.cofactor),
-                defined=one.defined,
-            )
+            doc.Polynomial.from_result(one, formula=str(there.formula(one.polynomial)), cofactor=factor(one.cofactor))
             for one in found.polynomials
         ],
         not_found=[
@@ -157,11 +140,10 @@ def _darboux_along(there: Setting, found: DarbouxAlong) -> doc.DarbouxAlong:
             doc.DarbouxValue(
                 value=str(one.value),
                 polynomials=[
-                    doc.Polynomial(
-                        weight=f.weight,
+                    doc.Polynomial.from_result(
+                        f,
                         formula=str(there.formula(f.polynomial)),
                         cofactor=str(there.quotient_over(one.field, f.cofactor)),
-                        defined=f.defined,
                     )
                     for f in one.polynomials
                 ],
@@ -181,16 +163,16 @@ def _darboux_along(there: Setting, found: DarbouxAlong) -> doc.DarbouxAlong:
 def _levels(there: Setting, found: ZeroLevels | None) -> list[doc.ZeroLevel] | None:
     if found is None:
         return None
-    return [doc.ZeroLevel(**asdict(_level(there, one)), complete=one.complete) for one in found.levels]
+    return [doc.ZeroLevel.from_result(_level(there, one), complete=one.complete) for one in found.levels]
 
 
 def _others(there: Setting, found: OtherLevels | None) -> list[doc.OtherLevel] | None:
     if found is None:
         return None
     return [
-        doc.OtherLevel(
+        doc.OtherLevel.from_result(
+            one,
             integral=one.level.name,
-            power=one.power,
             values=[
                 doc.Value(
                     value=str(at.value),
@@ -201,7 +183,6 @@ def _others(there: Setting, found: OtherLevels | None) -> list[doc.OtherLevel] |
             ],
             undecided_at=[str(value) for value in one.undecided],
             undecided_at_zeros_of=[[str(c) for c in p.coeffs()] for p in one.irrational],
-            looked=one.looked,
             complete=one.looked and one.complete and not one.drops and not one.undecided,
             at_any_value=one.looked and one.complete and one.whole,
             known="proved" if not (one.by_rank and there.field.parameters) else "verified numerically",

@@ -7,7 +7,6 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from msgspec import UNSET, UnsetType
-from msgspec.structs import asdict
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
@@ -25,19 +24,14 @@ def oscillations_json(
     system: System, values: Mapping[str, Fraction], told: Oscillating, measured: MeasuredOrders | str
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    solution = asdict(oscillation_data(told, measured))
-    values_of = {name: str(value) for name, value in values.items()}
-    return written(doc.Oscillations(system=system.name, values=values_of, **solution))
+    return written(doc.Oscillations.from_result(oscillation_data(told, measured), system=system.name, values=values))
 
 
 def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
     """A periodic solution; formulas in Python syntax."""
     found = told.found
-    return doc.Oscillation(
-        small=found.small,
-        powers=dict(found.powers),
-        order=found.order,
-        leading=found.leading,
+    return doc.Oscillation.from_result(
+        found,
         phase=told.phase,
         amplitude=_amplitude(told),
         exponent=_exponent(told),
@@ -57,10 +51,8 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
             for one in found.drifts
         ],
         resonances=[
-            doc.Resonance(
-                variables=list(one.variables),
-                harmonic=one.harmonic,
-                order=one.order,
+            doc.Resonance.from_result(
+                one,
                 vanishes=str(numerator(told, one.value)),
                 vanishes_too=UNSET if one.damping is None else str(numerator(told, one.damping)),
             )

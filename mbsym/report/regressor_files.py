@@ -43,9 +43,8 @@ def regressor_json(found: Regressor) -> str:
         coordinates=list(found.system.coordinates),
         standard=len(found.standard),
         base=[
-            doc.Base(
-                body=one.kept.body,
-                kind=one.kept.kind,
+            doc.Base.from_result(
+                one.kept,
                 others=[doc.Share(other.body, other.kind, str(factor)) for other, factor in one.others],
                 value=str(one.value),
             )

@@ -1,26 +1,20 @@
-"""From an analysis to a file that can be delivered: rendered, and read again.
+"""From an analysis to a file that can be delivered.
 
-A result that cannot be written costs its own section of one file; a file that would not be taken by who reads it is not
-delivered; the others are.
+A result that cannot be written costs its own section of one file; the others are delivered.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Defect, Failure, Severity
 from mbsym.analysis.stages import NoResult
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.targets import Target
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-
-
-class Unreadable(Exception):
-    """A file that was written would be refused by who reads it."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +44,7 @@ def rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> tup
 
 def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Rendered:
     try:
-        return _read_again(analysis, target.filename, target.render(analysis, problems))
+        return Rendered(target.filename, target.render(analysis, problems))
     except Exception as error:
         whole = _no_result(error)
     withheld: dict[int, NoResult] = {}
@@ -64,23 +58,14 @@ def _rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> Re
     if withheld:
         analysis.withheld = withheld
         try:
-            found = _read_again(analysis, target.filename, target.render(analysis, problems))
-            return replace(found, withheld=tuple(withheld.items()))
+            text = target.render(analysis, problems)
+            return Rendered(target.filename, text, withheld=tuple(withheld.items()))
         except Exception as error:
             whole = _no_result(error)
         finally:
             analysis.withheld = {}
     _remember(analysis, whole)
     return Rendered(target.filename, None, whole)
-
-
-def _read_again(analysis: Analysis, filename: str, text: str | bytes) -> Rendered:
-    reason = unreadable(filename, text)
-    if not reason:
-        return Rendered(filename, text)
-    failure = _no_result(Unreadable(f"{filename}: {reason}"))
-    _remember(analysis, failure)
-    return Rendered(filename, None, failure)
 
 
 def _no_result(error: Exception) -> NoResult:

@@ -57,7 +57,7 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
     return doc.Results(
         problems=sorted(problems),
         terms=analysis.terms,
-        system=doc.Described(name=system.name, description=system.description),
+        system=doc.Described.from_result(system),
         coordinates=list(system.coordinates),
         prescribed={item.name: text(item.rate) for item in system.prescribed},
         parameters=_parameters(system),
@@ -73,7 +73,7 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
         motion={one.coordinate: doc.Motion(value=text(one.value), rate=text(one.rate)) for one in system.motion}
         or UNSET,
         initial=_initial(system) or UNSET,
-        inputs=[doc.Input(name=x.name, meaning=x.meaning, held=text(x.held)) for x in system.inputs] or UNSET,
+        inputs=[doc.Input.from_result(x, held=text(x.held)) for x in system.inputs] or UNSET,
         outputs=[doc.Output(name=one.name, value=text(one.value)) for one in system.outputs] or UNSET,
         accepted_inertias=[doc.AcceptedInertia(body=name, violation=reason) for name, reason in accepted.items()]
         or UNSET,
@@ -143,7 +143,7 @@ def _small(small: SmallParameter) -> doc.SmallParameter:
 def _table(table: Table) -> doc.Table:
     points = [[str(x), str(y)] for x, y in table.points]
     held = table.held if table.jumps else UNSET
-    return doc.Table(name=table.name, points=points, between=table.between, outside=table.outside, held=held)
+    return doc.Table.from_result(table, points=points, held=held)
 
 
 def _initial(system: System) -> dict[str, doc.Initial]:
@@ -171,13 +171,7 @@ def counted(formula: Formula) -> Counted:
 
 
 def _failure(failure: NoResult) -> doc.Failure:
-    return doc.Failure(
-        code=failure.code,
-        limit=failure.limit,
-        severity=failure.severity,
-        reason=failure.reason,
-        hint=failure.hint,
-    )
+    return doc.Failure.from_result(failure)
 
 
 def _claim(result: ClaimResult, system: System) -> Claim:
@@ -203,7 +197,7 @@ def _claim(result: ClaimResult, system: System) -> Claim:
         remark=result.remark or UNSET,
         where=result.where or UNSET,
         difference_is=left_side(result) if result.difference is not None or result.parts else UNSET,
-        counterexample=UNSET if example is None else Counterexample(at=dict(example.at), shows=dict(example.shows)),
+        counterexample=UNSET if example is None else Counterexample.from_result(example),
         parts=[
             ClaimPart(
                 of=str(part.factor) if part.power is None else f"{result.claim.variable}**{part.power}",
@@ -219,12 +213,8 @@ def _claim(result: ClaimResult, system: System) -> Claim:
 
 def _parameters(system: System) -> list[doc.Parameter]:
     return [
-        doc.Parameter(
-            name=item.name,
-            sign=item.sign,
-            value=None if item.value is None else text(item.value),
-            meaning=item.meaning,
-            unit=unit_of(system, item.name) or UNSET,
+        doc.Parameter.from_result(
+            item, value=None if item.value is None else text(item.value), unit=unit_of(system, item.name) or UNSET
         )
         for item in system.parameters
     ]

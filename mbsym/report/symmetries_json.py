@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from msgspec.structs import asdict
-
 from mbsym.model.system import System
 from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.documents import symmetries as doc
@@ -15,9 +13,7 @@ from mbsym.report.documents.base import written
 
 def symmetries_json(system: System, values: Mapping[str, Fraction], found: Symmetries) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    basis = asdict(symmetries_data(found))
-    values_of = {name: str(value) for name, value in values.items()}
-    return written(doc.Symmetries(system=system.name, values=values_of, **basis))
+    return written(doc.Symmetries.from_result(symmetries_data(found), system=system.name, values=values))
 
 
 def symmetries_data(found: Symmetries) -> doc.SymmetryBasis:

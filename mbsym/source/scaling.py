@@ -43,11 +43,13 @@ class _Places:
 
 
 @dataclass(frozen=True)
-class _Item:
+class Item:
+    """``name=value`` as it was written, with the place of the name; ``bare`` where no value stands there."""
+
     name: str
     span: Span
     value: Expression
-    start: int
+    bare: bool = False
 
 
 def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling | None:
@@ -113,32 +115,37 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
     return Scaling(found.variables, found.time, found.parameters, found.new, weights)
 
 
-def _items(text: str, system: System, complaints: Complaints) -> Iterator[_Item]:
+def _items(text: str, system: System, complaints: Complaints) -> Iterator[Item]:
     """The assignments, their names looked up and each given once."""
     done: set[str] = set()
-    depth, start = 0, 0
+    for one in assignments(text, complaints):
+        if one.bare:
+            told = Message("[[text]] says of no name what it is", text=ascii_safe(one.name) or "nothing")
+            complaints.error("bad-assignment", told, one.span, "write name=expression, for example x=L*x1,t=tau/omega0")
+        elif one.name in done:
+            complaints.error("repeated-name", Message("'[[name]]' is given twice", name=one.name), one.span)
+        elif _known(one.name, one.span, system, complaints):
+            done.add(one.name)
+            yield one
+
+
+def assignments(text: str, complaints: Complaints, start: int = 0) -> Iterator[Item]:
+    """``name=expression`` between commas; what has no such form is bare."""
+    depth, first = 0, 0
     for k, letter in enumerate(text + ",") if text.strip() else ():
         depth += (letter in "([") - (letter in ")]")
         if letter != "," or (depth > 0 and k < len(text)):
             continue
-        piece, offset, start = text[start:k], start, k + 1
+        piece, offset, first = text[first:k], start + first, k + 1
         left, equals, right = piece.partition("=")
         name, blanks = left.strip(), len(left) - len(left.lstrip())
         span = Span(1, offset + blanks + 1, max(1, len(name)))
         if not equals or not name or not right.strip():
-            told = Message("[[text]] says of no name what it is", text=ascii_safe(piece.strip()) or "nothing")
-            complaints.error("bad-assignment", told, span, "write name=expression, for example x=L*x1,t=tau/omega0")
+            yield Item(piece.strip(), span, ONE, bare=True)
             continue
-        if not _known(name, span, system, complaints):
-            continue
-        if name in done:
-            complaints.error("repeated-name", Message("'[[name]]' is given twice", name=name), span)
-            continue
-        done.add(name)
-        at = offset + len(left) + 1
-        value = parse_expression(right, complaints, _Places(at))
+        value = parse_expression(right, complaints, _Places(offset + len(left) + 1))
         if value is not None:
-            yield _Item(name, span, value, at)
+            yield Item(name, span, value)
 
 
 def _known(name: str, span: Span, system: System, complaints: Complaints) -> bool:
@@ -164,7 +171,7 @@ def _taken(system: System) -> set[str]:
     return own
 
 
-def _resolved(images: dict[str, Expression], items: list[_Item], complaints: Complaints) -> dict[str, Expression]:
+def _resolved(images: dict[str, Expression], items: list[Item], complaints: Complaints) -> dict[str, Expression]:
     """What is put in, without names for which something is put in."""
     for _ in images:
         images = {name: substitute(value, images) for name, value in images.items()}
@@ -176,7 +183,7 @@ def _resolved(images: dict[str, Expression], items: list[_Item], complaints: Com
 
 
 def _dimensions(
-    system: System, items: list[_Item], found: Scaling, named: set[str], complaints: Complaints
+    system: System, items: list[Item], found: Scaling, named: set[str], complaints: Complaints
 ) -> Dimensions:
     """The dimensions of all names; complains where an expression has another one than what it is put in for."""
     hint = "new variables are pure numbers, and so are new parameters that stand in one place only, at a parameter"

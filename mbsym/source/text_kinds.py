@@ -109,6 +109,18 @@ def items(value: Scalar) -> Node:
     return Sequence(_three_words(inner) or parts if len(parts) == 1 else parts, value.span)
 
 
+def filled(value: Scalar, vector: bool) -> Node:
+    """A field of the form, where brackets may be left out: ``0, l/2, 0`` or ``0 l/2 0``, a list ``psi theta`` too."""
+    read = items(value)
+    if not isinstance(read, Scalar):
+        return read
+    parts = tuple(split(value, ",")) if value.text else ()
+    if len(parts) == 1:
+        words = [value.part(match.start(), match.end()) for match in re.finditer(r"\S+", value.text)]
+        parts = _three_words(value) or (tuple(words) if all(x.text.isalnum() for x in words) else parts)
+    return value if vector and len(parts) < 2 else Sequence(parts, value.span)
+
+
 def _three_words(line: Scalar) -> tuple[Scalar, ...]:
     """``0 l/2 0``: each of them an expression by itself; none where they are not three."""
     words = [line.part(match.start(), match.end()) for match in re.finditer(r"\S+", line.text)]

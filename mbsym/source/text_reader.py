@@ -18,11 +18,13 @@ from mbsym.source.keys import CONSTRAINTS, LOADS, VERSION
 from mbsym.source.labels import ASSUMPTIONS, BODY, FREE, HEADER, SECTIONS
 from mbsym.source.placed import Entry, Mapping, Node, Scalar, Sequence
 from mbsym.source.scope import closest
-from mbsym.source.text_kinds import claim, items, of_kind, row, split
+from mbsym.source.text_kinds import claim, filled, items, of_kind, row, split
 from mbsym.source.text_lines import HEADING, key_of, label_in, label_of, lines_of, spoken, word_of
 
 #: A label has no more words.
 MOST_WORDS = 8
+#: Fields of the form that may stay empty: zeros, no turn.
+_LEFT_OUT = ("connection point", "mass centre", "relative velocity", "gyrostatic moment", "axes", "angles")
 
 
 def read_text(text: str, complaints: Complaints) -> Node | None:
@@ -285,16 +287,19 @@ class TextReader:
             if found is None:
                 continue
             label, word, value = found
-            if not value.text and word != "tensor of inertia" and _goes_on(lines, position):
-                value = lines[position]
-                position += 1
+            if not value.text and word != "tensor of inertia":
+                if _goes_on(lines, position):
+                    value = lines[position]
+                    position += 1
+                elif BODY[word] in _LEFT_OUT:
+                    continue
             key = key_of(label, BODY[word])
             if word == "tensor of inertia" and not value.text:
                 rows = _rows(lines, position)
                 position += len(rows)
                 entries.append(Entry(key, Sequence(tuple(row(one) for one in rows), label.span)))
             elif key.text in ("axes", "angles"):
-                rotation.append(Entry(key, items(value)))
+                rotation.append(Entry(key, filled(value, vector=False)))
             elif key.text == "accept":
                 accept.append(Entry(key, value))
             elif key.text == "shapes":
@@ -332,7 +337,7 @@ class TextReader:
             return value
         if key in ("speeds", "orientation"):
             return self.numbers(value)
-        return items(value)
+        return filled(value, vector=key != "coordinates")
 
     def body_reference(self, value: Scalar) -> Scalar:
         """Bodies are referred to by number; the tree knows them by name."""

@@ -133,7 +133,8 @@ stay as they are.
     --in lam,eta     and the parameter eta is not what is taken out
     --in none        parameters alone
 
-results.json, report.wl and generated code have parameters alone in their formulas."""
+results.json, report.wl and generated code have parameters alone in their formulas.  Subsystems of problem 5 and their
+stability in problem 6 are about the matrices in the letters of 'notation', everywhere and whatever --in says."""
 
 _KINKED = """\
 sign(x) = -1, 0, 1 for x < 0, x = 0, x > 0;  abs(x) = x*sign(x);  step(x) = (1 + sign(x))/2, 1/2 at 0;
@@ -149,14 +150,14 @@ Formulas in a description
 
     numbers       exact: 0.1 is 1/10, 3/2 is 3/2, 1e-3 is 1/1000
     names         letters, digits and _ ; upper and lower case differ; pi is the number
-    operations    + - * / and ** with a rational exponent; parentheses
+    operations    + - * / and ** or ^ with a rational exponent; parentheses
     functions     {functions}
     in loads      {kinked}
     tables        {tabulated}
-    velocities    x_dot of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
+    velocities    x_dot or x' of a coordinate x: in loads (rayleigh, generalized force, force, torque) and claims
     speeds        the names under 'speeds': where velocities may stand in loads; components of unit vectors in a force,
                   a torque, a potential
-    accelerations x_ddot: in claims of equations of motion and of values
+    accelerations x_ddot or x'': in claims of equations of motion and of values
     time          t: in loads and claims
 
 Angles are in radians (30 degrees are pi/6); any number may be an angle, and fractions of pi and decimals stay exact:

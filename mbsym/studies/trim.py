@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import text
 from mbsym.report.content import Block, Strong, Subheading, paragraph
 from mbsym.studies.described import Source, analysis_of, public
 from mbsym.studies.request import Names
@@ -14,7 +15,7 @@ from mbsym.studies.study import DESCRIPTION, Answer, Asked, Exit, Refusal, Study
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.model.system import System
+    from mbsym.model.system import Input, System
     from mbsym.problems.trim import Trim
 
 
@@ -98,11 +99,14 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
 
 
 def answer(asked: Asked, request: Request, found: Trim) -> Answer:
-    return Answer(_lines(found), code=Exit.FAILED if found.impossible else Exit.OK)
+    held = [one for one in asked.system.inputs if request.solve and one.name not in request.solve]
+    return Answer(_lines(found, held), code=Exit.FAILED if found.impossible else Exit.OK)
 
 
-def _lines(found: Trim) -> Iterator[Block]:
-    if found.impossible:
+def _lines(found: Trim, held: Sequence[Input]) -> Iterator[Block]:
+    if found.impossible and found.assumed:
+        yield paragraph(Strong(Message("no values make this motion one of the system, where no divisor is 0")))
+    elif found.impossible:
         yield paragraph(Strong(Message("no values make this motion one of the system")))
     for name, value in found.solved if not found.impossible else ():
         yield paragraph(Message("[[name]] = [[value]]", name=name, value=value))
@@ -112,6 +116,7 @@ def _lines(found: Trim) -> Iterator[Block]:
         (Message("divided by, not to be 0"), [f"{x} != 0" for x in found.assumed]),
         (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in found.signed]),
         (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in found.conditions]),
+        (Message("held at their values on the motion"), [f"{one.name} = {text(one.held)}" for one in held]),
     ):
         if several:
             yield Subheading((title,))

@@ -345,3 +345,15 @@ values: {m: 1, k: 1}
 """
     (line,) = [x for x in told(tmp_path, apart, "--problems", "1-8", "--force") if x.startswith("Control ")]
     assert "Controllability of x, y by F: no (proved)" in line
+
+
+def test_long_conditions_are_told_by_the_letters_of_the_paper(tmp_path: Path) -> None:
+    """Banshchikov and Vetrov, (6): v6, v4, v2, v0, Dis > 0, of which the kinetic energy gives the first.
+
+    A potential minimum needs alpha > 0, alpha + gamma > 0 and v0 > 0 without 4 alpha: minors of K_2, of (3), in order.
+    """
+    lines = told(tmp_path, (SHIPPED / "satellite.yaml").read_text(encoding="utf-8"), "--problems", "6")
+    stabilised = "otherwise gyroscopically stabilised only, if v4 > 0, v2 > 0, v0 > 0, discriminant > 0"
+    assert f"{stabilised} (characteristic polynomial)" in lines
+    first = "otherwise unstable (Lyapunov's first method) if v4 < 0 or v2 < 0 or discriminant < 0"
+    assert f"{first} (characteristic polynomial)" in lines

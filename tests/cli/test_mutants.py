@@ -17,10 +17,10 @@ from test_reports import uncommented
 
 from mbsym.analysis import Analysis
 from mbsym.model.system import System
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, render
+from tests.report.readers import unreadable
 
 ROOT = Path(__file__).parents[2]
 SYSTEMS = ROOT / "systems"

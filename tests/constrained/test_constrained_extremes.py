@@ -15,8 +15,7 @@ from click.testing import CliRunner
 from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.extremes.extremes import extremes
-from mbsym.numerics.extremes.extremes_constrained import on_constraints
+from mbsym.numerics.extremes.extremes import extremes, on_constraints
 from mbsym.numerics.extremes.extremes_told import lost_rank, sentences
 from mbsym.numerics.extremes.singular_positions import SingularPositions, singular_positions
 from mbsym.numerics.probes import RATIO, Ladder, Probe, scaled

@@ -35,12 +35,12 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, simulate
 from mbsym.source import read
 from mbsym_cli.main import main
+from tests.report.readers import unreadable
 
 CASES = Path(__file__).parents[1] / "cases" / "constraints"
 GRAVITY = 9.81

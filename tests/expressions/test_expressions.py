@@ -57,10 +57,25 @@ def test_numbers_are_exact(written: str, value: str) -> None:
         ("a + b*c**2", "a + (b*(c**2))"),
         ("x**-1", "x**(-1)"),
         ("+x", "x"),
+        ("-2*x^2", "(-2)*(x**2)"),
+        ("x^-1", "x**(-1)"),
     ],
 )
 def test_precedence_is_that_of_python(written: str, grouped: str) -> None:
     assert good(written) == good(grouped)
+
+
+@pytest.mark.parametrize(
+    ("printed", "written"),
+    [("x'^2", "x_dot**2"), ("theta1''+c*x'", "theta1_ddot + c*x_dot"), ("sin(x')", "sin(x_dot)")],
+)
+def test_velocities_and_powers_are_read_as_results_print_them(printed: str, written: str) -> None:
+    assert good(printed) == good(written)
+
+
+@pytest.mark.parametrize("strange", ["x'''", "2'", "(x)'", "sin'(x)"])
+def test_a_prime_stands_behind_a_name_twice_at_most(strange: str) -> None:
+    assert parse(strange)[0] is None
 
 
 def test_exponents_are_folded_to_one_rational_number() -> None:

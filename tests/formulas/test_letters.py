@@ -16,6 +16,7 @@ from flint import fmpq
 
 import mbsym
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.elimination import eliminate
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import letters as module
 from mbsym.formulas.formula import Formula
@@ -86,6 +87,25 @@ def test_letters_that_were_not_asked_for_are_not_brought_in():
     given = {"d": "m*l**2", "f": "J + d"}
     assert written("(J + m*l**2)*x", ("f",), **given) == ("f*x", {"f"})
     assert written("m*l**2*x", ("f",), **given)[1] == set()
+
+
+def test_what_both_sides_of_a_definition_share_is_not_put_to_zero():
+    """rho (1 - W) = 1 + B - c/b is  (a + b - 1 - c) (rho (1 + c) - a) = 0, which says nothing of a + b = 1 + c."""
+    given = {"B": "(a - 1)/b", "W": "(1 - b + c)*(1 - a + c)/(a*b)", "rho": "(1 + B - c/b)/(1 - W)"}
+    text, _ = written("a*x/(b - c - 1)", **given)
+    a, b, c, x = (fmpq(n) for n in (3, 7, 2, 5))
+    values = {"a": a, "b": b, "c": c, "x": x, "B": (a - 1) / b, "W": (1 - b + c) * (1 - a + c) / (a * b)}
+    assert eval(text, {**values, "rho": a / (1 + c)}) == a * x / (b - c - 1)
+
+
+def test_nor_is_it_when_notation_eliminates_parameters():
+    """The same rho in conditions of stability: b is not 1 + c - a, and with rho (1 + c) = a no b is left in it."""
+    names = ("a", "b", "c", "rho")
+    ring = Ring((), (), names, {}, spare=24)
+    place = {name: ring.index("parameter", name) for name in names}
+    rho = lowered(ring, "(1 + (a - 1)/b - c/b)/(1 - (1 - b + c)*(1 - a + c)/(a*b))")
+    found = eliminate(ring, [(place["rho"], rho)], [place[name] for name in ("b", "a", "c")])
+    assert found(lowered(ring, "a*b")) == lowered(ring, "rho*(1 + c)*b")
 
 
 def test_without_letters_the_formula_is_the_same_object():

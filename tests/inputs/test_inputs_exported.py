@@ -17,8 +17,8 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report.code import c_source, python_module
-from mbsym.report.code.parsing import READERS
 from mbsym.report.exports import fmu, julia, modelica, octave, python_functions
+from tests.report.readers import READERS
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
 THETA, FORCE = 0.05, 3.0

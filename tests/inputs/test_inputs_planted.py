@@ -58,7 +58,7 @@ MISTAKES = [
     ),
     Mistake(
         "an input torque without its reaction",
-        "mechanics.loads.forces:_torque_action",
+        "mechanics.loads.kinds:_torque_action",
         "((load.body, given), (load.reaction_on, -given))",
         "((load.body, given),)",
         "driven",
@@ -66,7 +66,7 @@ MISTAKES = [
     ),
     Mistake(
         "the sign of an input torque",
-        "mechanics.loads.forces:_torque_action",
+        "mechanics.loads.kinds:_torque_action",
         "scene.to_axes(torque, body)",
         "-scene.to_axes(torque, body)",
         "driven",

@@ -25,11 +25,11 @@ from mbsym.maps.branches_events import Event, Named
 from mbsym.maps.branches_result import Branches, Doubt
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.maps.words import EVENTS, remark_words
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from tests.report.readers import read_latex
 
 #: A point of mass 1 with x'' = f(x, p), and perhaps y'' = g.
 BALL = """mbsym: 1

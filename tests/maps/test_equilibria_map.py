@@ -21,11 +21,11 @@ from mbsym.maps.result import Cell, Counted, Lack
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
 from mbsym.report.documents.branches import STANDINGS
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from tests.report.readers import read_latex
 
 BALL = """mbsym: 1
 name: ball

@@ -26,13 +26,13 @@ from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.maps.located import Locating
 from mbsym.report.maps.words import _CONDITIONS, LACKS
 from mbsym.report.messages import messages
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 from tests.conftest import needs_pdflatex
+from tests.report.readers import read_latex
 
 SATELLITE = ("satellite", (("alpha", -1, 1), ("gamma", 0, 1)), (("p1", "2/5"), ("p2", "1/5")))
 RIGID = ("gravity-gradient", (("A", 0, 2), ("B", 0, 2)), (("C", "1"),))

@@ -26,11 +26,11 @@ from mbsym.maps.section import Axis
 from mbsym.maps.slices import Stack, stack
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.maps.figure import page_names, panels
 from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from tests.report.readers import read_latex
 
 HEAD = "mbsym: 1\nname: {name}\nparameters: [{parameters}]\n"
 

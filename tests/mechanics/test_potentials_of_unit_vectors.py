@@ -7,7 +7,7 @@ import pytest
 import mbsym
 from mbsym.expressions.tree import names
 from mbsym.expressions.tree import text as written
-from mbsym.mechanics.loads import forces
+from mbsym.mechanics.loads import kinds as forces
 
 TWO = """
 mbsym: 1

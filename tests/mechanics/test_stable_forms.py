@@ -25,9 +25,9 @@ from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.loads import GRAVITY_ORDERS, NewtonianGravity
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
+from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.specialise import Specialised, substituted
 from mbsym.source import load

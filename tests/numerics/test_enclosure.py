@@ -18,7 +18,7 @@ from properties import settings
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.enclosure import segment as segments
+from mbsym.numerics.enclosure import enclose as segments
 from mbsym.numerics.enclosure.compare import Certificate, certified
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
 from mbsym.numerics.enclosure.field import Field, cap

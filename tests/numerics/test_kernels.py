@@ -37,9 +37,8 @@ from mbsym.mechanics.programs import forward_dynamics
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays, llvm, sine_cosine
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
-from mbsym.numerics.kernels.precise import precise
+from mbsym.numerics.kernels.precise import enclosures, precise
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.code.c_source import RESERVED, proposed
 from mbsym.report.code.identifiers import prefix_of

@@ -16,7 +16,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.model_error import ModelEstimate, Propagated, confirmed, model_error
+from mbsym.numerics.planning.model_choice import ModelEstimate, Propagated, confirmed, model_error
 from mbsym.numerics.planning.models import Model, described, droppable, faithful, modelled, orders
 from mbsym.numerics.rows import rows
 from mbsym.numerics.scenario import Scenario, scenario

@@ -18,7 +18,6 @@ from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import pilot, plan_bounds, planning
-from mbsym.numerics.planning.alternatives import COARSEST, _judged
 from mbsym.numerics.planning.models import Model
 from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Share
 from mbsym.numerics.planning.plan_items import (
@@ -30,7 +29,7 @@ from mbsym.numerics.planning.plan_items import (
     _worst,
     items_of,
 )
-from mbsym.numerics.planning.planning import Pins, planned
+from mbsym.numerics.planning.planning import COARSEST, Pins, _judged, planned
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.trade.yardstick import Yardstick
 from mbsym.simulation import Request, simulate

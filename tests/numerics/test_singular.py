@@ -16,8 +16,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.expressions.tree import Number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.extremes import singular as module
-from mbsym.numerics.extremes.singular import Singularities, singularities
-from mbsym.numerics.extremes.singular_kinds import CHART, MODEL
+from mbsym.numerics.extremes.singular import CHART, MODEL, Singularities, singularities
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.scenario import Scenario, changed, scenario
 from mbsym.source import load

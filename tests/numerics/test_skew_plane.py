@@ -7,7 +7,7 @@ import pytest
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.numerics.ledger.plane import skew_plane
+from mbsym.numerics.ledger.table import skew_plane
 from mbsym.numerics.ledger.work import AccuracyGoal, Work
 from mbsym.numerics.planning.kinds import SKEW
 

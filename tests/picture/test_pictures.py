@@ -234,7 +234,7 @@ bodies:
 
 def test_a_mistake_in_a_turn_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """With C_a transposed the poses part from the positions."""
-    from mbsym.picture.placing import Places
+    from mbsym.picture.build import Places
 
     right = Places._turned
 

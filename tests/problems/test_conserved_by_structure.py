@@ -84,3 +84,23 @@ def test_the_hint_at_a_motion_stays_short() -> None:
     hint = mbsym.loads(text, problems=(4,)).stage(4).failure.hint
     assert hint == "add for example  motion: {q1: 0}; what is left out is 0 at rest"
     assert mbsym.loads(text + "motion: {q1: 0}\n", problems=(4,)).stage(4).failure is None
+
+
+FALL = "mbsym: 1\nname: fall\nbodies:\n  - {name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "proposed"),
+    [
+        (FALL, True),
+        (FALL + "loads:\n  - uniform gravity: {vector: [0, -10, 0]}\n", False),  # y'' = -10
+        (FALL + "constraints:\n  - relation: x = 1 + y\n", False),
+        (FALL + "constraints:\n  - relation: x = sin(y)\n", True),
+    ],
+)
+def test_no_motion_is_proposed_that_does_not_exist(text: str, proposed: bool) -> None:
+    failure = mbsym.loads(text, problems=(4,)).stage(4).failure
+    assert failure is not None
+    assert ("add for example" in str(failure.hint)) == proposed
+    if proposed:
+        assert mbsym.loads(text + "motion: {x: 0, y: 0}\n", problems=(4,)).equilibrium.satisfied

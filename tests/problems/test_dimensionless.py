@@ -223,3 +223,18 @@ def test_groups_propose_a_scaling_that_converts(tmp_path: Path) -> None:
     system, complaints = read(out.read_text())
     assert system is not None, complaints.items
     assert set(system.parameter_names) == {"m2_hat", "l2_hat"}
+
+
+def test_a_run_in_dimensionless_variables_tells_its_units_and_names_no_physical_time(tmp_path: Path) -> None:
+    """x'' + x = 0 in t omega: its roots are +- i, whatever omega is in seconds."""
+    path = tmp_path / "a.yaml"
+    path.write_text(
+        "mbsym: 1\nname: mass\nparameters: {m: {sign: positive, value: 2}, k: {sign: positive, value: 8}}\n"
+        "bodies: [{name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}]\n"
+        "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n"
+    )
+    asked = ["run", str(path), "--scale", "t=s/w,k=m*w**2", "-p", "5,6", "-v", "--format", "json"]
+    told = CliRunner().invoke(main, [*asked, "--out", str(tmp_path / "out")]).output
+    assert "mass, in units in which w = 1, m = 1" in told
+    assert "Eigenvalues there, in the time t, of x: +- 1 i" in " ".join(told.split())
+    assert "physical" not in told

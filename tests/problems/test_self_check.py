@@ -516,7 +516,7 @@ CAUGHT = [
     ),
     Mistake(
         "the sign of a potential",
-        "mechanics.loads.forces:_force_function",
+        "mechanics.loads.kinds:_force_function",
         "-value if",
         "value if",
         "machine",
@@ -532,7 +532,7 @@ CAUGHT = [
     ),
     Mistake(
         "a follower force that does not follow",
-        "mechanics.loads.forces:_force_action",
+        "mechanics.loads.kinds:_force_action",
         "load.axes",
         '"0"',
         "machine",
@@ -540,7 +540,7 @@ CAUGHT = [
     ),
     Mistake(
         "a torque without its reaction",
-        "mechanics.loads.forces:_torque_action",
+        "mechanics.loads.kinds:_torque_action",
         "(load.reaction_on, -given)",
         "(None, -given)",
         "machine",

@@ -112,6 +112,45 @@ def test_a_degree_is_not_told_of_places_where_a_square_in_the_determinant_vanish
     assert sure.degree == 1
 
 
+@pytest.mark.parametrize(
+    ("matrix", "sign", "free", "regions"),
+    [
+        ("[[-a]]", "nonnegative", 0, [("a>", 1)]),  # a = 0: no negative eigenvalue, none where it holds is told of it
+        ("[[-a, 0], [0, -1]]", "nonnegative", 0, [("a>", 2)]),  # a = 0: the eigenvalues 0 and -1
+        ("[[1, -1], [-1, 1]]", "real", 1, [("", 0)]),  # eigenvalues 0 and 2
+        ("[[a, a], [a, a]]", "real", 1, [("a>", 0), ("a<", 1)]),  # eigenvalues 0 and 2 a
+        ("[[0, a], [a, 0]]", "nonzero", 0, [("", 1)]),  # eigenvalues a and -a: every order begins with a zero
+        ("[[0, 1, 0], [1, 0, 0], [0, 0, 0]]", "real", 1, [("", 1)]),  # 1, -1, 0
+        ("[[a, 1], [1, 0]]", "real", 0, [("", 1)]),  # det = -1: whatever the sign of the first minor
+        ("[[a, a], [a, 0]]", "real", 0, [("a!=", 1)]),  # det = -a^2
+        ("[[a, 1, 0], [1, 0, a], [0, a, -1]]", "real", 0, [("a - 1>", 1), ("a - 1<", 2)]),  # det = 1 - a^3
+    ],
+)
+def test_the_degree_where_K_is_singular_or_its_minors_vanish(matrix: str, sign: str, free: int, regions: Any) -> None:
+    """Sylvester's law of inertia; told is nothing of places where K loses rank."""
+    n = matrix.count("],") + 1
+    gyro = [[(j > i) - (j < i) for j in range(n)] for i in range(n)]
+    text = f"{{coordinates: {['x', 'y', 'z'][:n]}, G: {gyro}, K: {matrix}}}"
+    (part,) = found(text, f"{{a: {sign}}}").gyroscopic
+    told = [("".join(f"{x}{how}" for x, how in region.signs), region.degree) for region in part.regions]
+    assert (part.free, told) == (free, regions)
+    assert part.degree == (regions[0][1] if regions[0][0] == "" else None)
+
+
+@pytest.mark.parametrize(
+    ("matrices", "why"),
+    [
+        ("coordinates: [x, y], K: [[1, 0], [0, 2]], N: [[0, 1], [-1, 0]]", "the theorems ask for $N = 0$"),
+        ("coordinates: [x, y], A: [[0, 1], [-1, 2]]", "not about equations of first order"),
+    ],
+)
+def test_where_nothing_is_said_the_reason_is_and_nothing_is_called_checked(matrices: str, why: str) -> None:
+    analysis = analysed(f"{{{matrices}}}")
+    (said,) = sentences(analysis.stabilisation)
+    assert why in said.text
+    assert analysis.check("stabilisation") is None
+
+
 def test_signs_that_contradict_each_other_make_no_region() -> None:
     """K = [b+2 -2; -2 b+2] has the eigenvalues b and b + 4: b > 0 > b + 4 and b > 0 > b + 2 do not go together."""
     (part,) = found("{coordinates: [x, y], K: [[b+2, -2], [-2, b+2]], G: [[0, 1], [-1, 0]]}", "{b: real}").gyroscopic

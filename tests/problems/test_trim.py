@@ -159,3 +159,36 @@ def test_a_value_of_either_sign_is_told_with_the_sign_that_it_has_to_have() -> N
     found = mbsym.trim(mbsym.loads(text), solve=("k",))
     assert not found.impossible
     assert [(name, str(x), relation) for name, x, relation in found.signed] == [("k", "m*g/a", ">")]
+
+
+SPRING = (
+    HEAD
+    + """
+parameters: {k: positive, e: real, m: positive, g: positive, x0: real, y0: real}
+bodies: [{name: p, mass: m, connection point: [x, y, 0], coordinates: [x, y]}]
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - spring: {between: [{body: p, point: [0, 0, 0]}, {body: 0, point: [0, 1, 0]}], stiffness: k, length: e}
+motion: {x: x0, y: y0}
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "lines"),
+    [
+        # x: k x0 (1 - e/r) = 0, so e = r and the weight stays; but where x0 = 0 the length e = r - m g/k does it
+        (SPRING, "e", ["no values make this motion one of the system, where no divisor is 0"]),
+        (SPRING.replace("x: x0, y: y0", "x: 0, y: -2"), "e", ["  e = 3 - m*g/k"]),  # r = 3
+        (PENDULUM, "tau", ["  tau = m*l*g*cos(a)", "  held at their values on the motion", "    F = 0"]),
+        (PENDULUM.replace("{q: a}", "{q: a, F: 3}"), "tau", ["  tau = m*l*g*cos(a) - 6", "    F = 3"]),
+        (PENDULUM.replace("q: a", "q: 0"), "m", ["no values make this motion one of the system", "    tau = 0"]),
+    ],
+)
+def test_what_is_held_is_told_and_divisors_leave_open_what_they_exclude(
+    text: str, name: str, lines: list[str], tmp_path: Any
+) -> None:
+    file = tmp_path / "a.yaml"
+    file.write_text(text)
+    done = CliRunner().invoke(main, ["trim", str(file), "--solve", name])
+    assert not {line.strip() for line in lines} - {line.strip() for line in done.output.splitlines()}, done.output

@@ -133,7 +133,7 @@ def test_conserved_falls_with_its_check(monkeypatch: pytest.MonkeyPatch) -> None
     """Energy with the wrong sign of a potential: the closed equations conserve it, the motion does not."""
     wrong = Mistake(
         "the sign of a potential",
-        "mechanics.loads.forces:_force_function",
+        "mechanics.loads.kinds:_force_function",
         "-value if",
         "value if",
         "machine",

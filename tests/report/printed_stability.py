@@ -33,7 +33,10 @@ class TwoMeanings(AssertionError):
 
 @dataclass
 class Line:
-    """``label: formula relation 0``; None where it is not printed; ``under``: the label that is referred to."""
+    """``label: formula relation 0``; None where it is not printed; ``under``: the label that is referred to.
+
+    A formula alone has no label; a letter alone refers to what was shown as that, or is the formula.
+    """
 
     label: str
     formula: Value | None
@@ -115,7 +118,8 @@ class Read:
 
     def value(self, line: Line) -> Any:
         """The value of a line; None where it is not printed."""
-        if line.under:
+        refers = bool(line.under) and (line.under in self.shown or line.formula is None)
+        if refers:
             if line.under not in self.shown:
                 raise NameError(f"{line.under} is referred to, but not shown before")
             value = self.shown[line.under]
@@ -137,7 +141,7 @@ class Read:
         if value is None:
             self.shown.setdefault(line.label, None)
             return None
-        if not line.under:
+        if not refers:
             letters = {**self.letters, **own}
             told = value
             value = lambda names: told(Symbols(names, letters))  # noqa: E731
@@ -166,6 +170,17 @@ def both(every: list[bool | None], some: list[bool | None]) -> bool | None:
     if False in every or (some and all(x is False for x in some)):
         return False
     return None if None in every or (some and True not in some) else True
+
+
+def without_colon(label: str, formula: Callable[[], Value], relation: str) -> Line:
+    """What is said of a label that was shown, or of a formula; of a letter either."""
+    if re.search(r" of |, |minor|disc|condition ", label):
+        return Line(label, None, relation, under=label)
+    return Line(label, formula(), relation, under=label) if LABEL.fullmatch(label) else Line("", formula(), relation)
+
+
+#: A label that is a letter.
+LABEL = re.compile(r"-?[av]\d+")
 
 
 def bare(label: str) -> str:
@@ -253,7 +268,7 @@ def _terminal_line(words: str) -> Line:
         never = re.fullmatch(r"(.*?) = (.*)", label)
         if never is not None:
             return Line(_terminal_label(never[1]), readable(never[2]), relation)
-        return Line(symbol, None, relation, under=symbol)
+        return without_colon(symbol, lambda: readable(label), relation)
     if formula.startswith("["):
         return Line(symbol, None, relation)
     if re.fullmatch(r"-?[av]\d+\^\(\d+\)", formula) or re.search(r" of |, |minor|subdisc|condition ", formula):
@@ -380,7 +395,7 @@ def _latex_line(content: str) -> Line:
         never = re.fullmatch(r"(.*?) = (.*)", label)
         if never is not None:
             return Line(_latex_label(never[1]), latex(never[2]), relation)
-        return Line(symbol, None, relation, under=symbol)
+        return without_colon(symbol, lambda: latex(label), relation)
     if "terms, of degree" in formula:
         return Line(symbol, None, relation)
     if r"\text" in formula or "^{(" in formula:  # a label in words, or with a number above: no formula
@@ -466,7 +481,10 @@ def _html_line(part: Part, state: str, tokens: list[Token]) -> None:
     if colon is None and equals is not None:
         into.append(Line(_html_label(body[:equals]), mathml(body[equals + 1 :]), relation))
     elif colon is None:
-        into.append(Line(_html_label(body), None, relation, under=_html_label(body)))
+        words = any(kind == "mtext" for kind, _ in body) or any(
+            kind == "power" and ("mo", "(") in x for kind, x in body
+        )
+        into.append(without_colon(_html_label(body) if words or len(body) < 3 else "", lambda: mathml(body), relation))
     else:
         label, formula = body[:colon], body[colon + 1 :]
         written = [x for x in formula if x[0] == "mtext"]

@@ -21,7 +21,6 @@ from PIL import Image
 
 import mbsym
 from mbsym.picture.looking import projection
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.figures.animation import Animation, animation, view
 from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.figures.animation_page import animation_page, run_sentences
@@ -29,6 +28,7 @@ from mbsym.report.figures.figures import figures
 from mbsym.report.targets import TARGETS
 from mbsym.report.viewer.page import motion_of
 from mbsym.simulation import Simulation
+from tests.report.readers import unreadable
 
 
 @cache

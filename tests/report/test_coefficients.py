@@ -175,7 +175,8 @@ def test_the_point_at_which_the_satellite_flutters_is_told_by_what_is_printed(mo
     assert found is not None
     # It is shown once, as the coefficient that the discriminant holds: 4 alpha (...), not alpha (...); the paper's v0.
     text = TARGETS["latex"].render(analysis, (6,))
-    assert r"v_{0} \colon\quad v_{0} > 0" in text or r"v_{0} &\colon\quad v_{0} > 0" in text
+    assert r"\colon\quad v_{0} > 0" not in text  # the letter alone: v_0 > 0, as the paper has it
+    assert r"v_{0} &> 0" in text or r"v_{0} > 0" in text
     assert r"v_{0} = 4 \alpha" in text
     monkeypatch.setattr(analysis, "letters", ())
     assert r"v_{0} \colon\quad 4 \alpha" in TARGETS["latex"].render(analysis, (6,))

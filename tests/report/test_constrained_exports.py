@@ -30,10 +30,10 @@ from mbsym.model.system import acceleration_name
 from mbsym.report.code import c_source
 from mbsym.report.code.constrained_code import tied_of
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
 from mbsym.report.targets import FORMATS
+from tests.report.readers import unreadable
 
 SHIPPED = Path(__file__).parents[2] / "systems"
 COMPILER = shutil.which("cc")

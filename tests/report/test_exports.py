@@ -32,10 +32,10 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.exports import fmu
 from mbsym.report.exports.modelica import proposed
 from mbsym.report.targets import EXPORTS, FORMATS, TARGETS
+from tests.report.readers import unreadable
 
 #: Functions of every kind, the time, a spring and a damper between points, a length that is driven.
 FUNCTIONS = """

@@ -19,8 +19,8 @@ from mathml_reader import Reader, formulas, tokens_of, tree, written
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Formula
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.targets import TARGETS
+from tests.report.readers import unreadable
 
 ALL = (1, 2, 3, 4, 5, 6, 7)
 

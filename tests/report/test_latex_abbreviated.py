@@ -11,8 +11,8 @@ import pytest
 
 import mbsym
 from mbsym.report.latex.abbreviated import abbreviated
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.latex.report import render
+from tests.report.readers import read_latex
 
 SHIPPED = Path(__file__).parents[2] / "systems"
 LONG = " + ".join(f"x_{{{k}}} \\sin y_{{{k}}}" for k in range(20))

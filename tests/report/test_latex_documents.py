@@ -17,7 +17,6 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import conditions
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex.appendix import joined
 from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
@@ -26,6 +25,7 @@ from mbsym.report.targets import TARGETS
 from mbsym.source.yaml_writer import meaning
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
+from tests.report.readers import unreadable
 
 SYSTEMS = ("satellite.yaml", "double-pendulum.yaml", "heavy-top.yaml")
 #: Its claims are long formulas.

@@ -11,12 +11,12 @@ from conftest import SHIPPED, compiled_latex, derived, needs_pdflatex
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import wolfram_report
-from mbsym.report.code.parsing import unreadable
 from mbsym.report.latex import report as latex_report
 from mbsym.report.latex import values as latex_values
 from mbsym.report.latex import writer as latex_writer
 from mbsym.report.lengths import FILE, PAPER, Limit, formulas, withheld
 from mbsym.report.targets import TARGETS
+from tests.report.readers import unreadable
 
 REPORTS = ("latex", "wolfram", "json")
 

@@ -7,12 +7,8 @@ from collections.abc import Sequence
 from random import Random
 
 import pytest
-from conftest import SHIPPED
 
-import mbsym
-from mbsym.report.code import parsing, python_reading
-from mbsym.report.code.parsing import unreadable
-from mbsym.report.targets import TARGETS
+from tests.report.readers import unreadable
 
 GOOD = {
     "model.py": [
@@ -87,7 +83,7 @@ def test_the_line_is_told_and_nothing_is_executed() -> None:
     assert unreadable("report.tex", "a\n\n{") == "line 3: '{' is never closed"
 
 
-# --- what is read quickly is read like what is looked at piece by piece -----------------------------------------------
+# --- LaTeX ------------------------------------------------------------------------------------------------------------
 
 
 def mutated(text: str, pieces: Sequence[str], source: Random, at: str = ".|\n") -> str:
@@ -99,25 +95,6 @@ def mutated(text: str, pieces: Sequence[str], source: Random, at: str = ".|\n") 
         else:
             text = text[:place] + text[place + 1 :]
     return text
-
-
-ATTRIBUTES = [' onx="1"', " ONX='1'", ' href="#a"', ' src = "x"', ' style="a"', "\non\t=", ' data="data:image/x"', "a"]
-PAGE = (
-    '<p>\n<b class="x">one = two</b><a href="#t">on it</a>\n<script>x.onload = "<";</script><i>a\u00a0src=b</i></p>\n'
-)
-
-
-def test_no_attribute_of_a_page_is_passed_over(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Against every element looked at."""
-    source, refused = Random(5), 0
-    for _ in range(600):
-        page = mutated(PAGE, ATTRIBUTES, source, r"<\w+|\s")
-        quick = unreadable("report.html", page)
-        with monkeypatch.context() as patched:
-            patched.setattr(parsing, "_is_suspect", lambda text: True)
-            assert unreadable("report.html", page) == quick
-        refused += "none of ours" in quick or "asks for" in quick
-    assert refused > 60
 
 
 COMMANDS = ["{", "}", "$", r"\left(", r"\right.", r"\leftarrow\!", r"\[", r"\]", r"\foo", r"\begin{a}", r"\end{a}"]
@@ -183,46 +160,3 @@ def token_by_token(text: str) -> bool:
                 return True
             stack.append(token)
     return bool(stack)
-
-
-def refused(text: str) -> bool:
-    """By the syntax tree of the whole file and Python's own table of names."""
-    try:
-        python_reading._looked_through(text)
-    except (SyntaxError, ValueError, ArithmeticError, RecursionError):
-        return True
-    return False
-
-
-@pytest.fixture(scope="module")
-def model() -> str:
-    analysis = mbsym.load(SHIPPED / "simple-pendulum.yaml", (5, 7))
-    return str(TARGETS["python"].render(analysis, (5, 7)))
-
-
-def test_a_model_needs_no_closer_look(model: str) -> None:
-    assert python_reading._surely_sound(model)
-
-
-@pytest.mark.parametrize("text", BAD["model.py"])
-def test_what_is_wrong_is_never_surely_sound(text: str) -> None:
-    assert not python_reading._surely_sound(text)
-    assert not python_reading._surely_sound("from __future__ import annotations\n" + text)
-
-
-def test_a_wrong_name_anywhere_is_seen_without_a_closer_look(model: str) -> None:
-    seen, words = 0, list(re.finditer(r"[A-Za-z_]\w*", model))
-    for word in Random(5).sample(words, 400):
-        wrong = model[: word.start()] + "unheard_of" + model[word.end() :]
-        if refused(wrong):
-            seen += 1
-            assert not python_reading._surely_sound(wrong), word
-    assert seen > 50
-
-
-def test_many_names_are_told_apart() -> None:
-    """More than bytecode counts in one byte."""
-    lines = "".join(f"    a{k}()\n" for k in range(700))
-    defined = "".join(f"def a{k}():\n    pass\n\n" for k in range(700))
-    assert python_reading._surely_sound(f"{defined}def f():\n{lines}")
-    assert not python_reading._surely_sound(f"{defined}def f():\n{lines}    b()\n")

@@ -183,6 +183,14 @@ def _same(x: Any, y: Any) -> bool:
     return bool(abs(x - y) < arb("1e-30") * (1 + abs(y))) if isinstance(x - y, arb) else x == y
 
 
+def _label_of(value: Any, part: SubsystemStability, here: Point, surface: str) -> str:
+    """Of the requirement that a formula without a label is."""
+    for one in part.theory.requirements:
+        if any(_same(value, here(p)) for p in one.polynomials):
+            return one.label
+    raise AssertionError(f"{surface}: no condition is {value}")
+
+
 def _check_at(shown: Part, part: SubsystemStability, here: Point, names: Mapping[str, Any], surface: str) -> int:
     compared = 0
     wanted = {r.label: r for r in part.theory.requirements}
@@ -190,6 +198,8 @@ def _check_at(shown: Part, part: SubsystemStability, here: Point, names: Mapping
     told: dict[str, list[bool | None]] = {}
     for line in shown.lines:
         value = reading.value(line)
+        if not line.label and value is not None and surface != "wolfram":
+            line.label = _label_of(value, part, here, surface)
         told.setdefault(bare(line.label), []).append(None if value is None else truth(value, line.relation))
         if value is None or not line.label or line.under or line.alone in reading.letters:
             continue

@@ -362,7 +362,7 @@ def test_report_tex_has_the_units_of_coordinates_parameters_limits_and_eigenvalu
         assert table[name] == (f"$[{in_latex(unit)}]$" if unit else ""), name
     assert r"$x$ $[\mathrm{mm}]$, $\theta$ $[\mathrm{rad}]$" in text
     assert r"$-500 \leq x \leq 500$ $[\mathrm{mm}]$" in text
-    assert re.search(r"Eigenvalues there, in physical time, of \$x,\\, \\theta\$: .*?\[1/\\mathrm\{s\}\]\$\.", text)
+    assert re.search(r"Eigenvalues there, in the time \$t\$, of \$x,\\, \\theta\$: .*?\[1/\\mathrm\{s\}\]\$\.", text)
 
 
 def test_report_html_has_the_units_of_coordinates_parameters_limits_and_eigenvalues(written: Path) -> None:
@@ -372,7 +372,7 @@ def test_report_html_has_the_units_of_coordinates_parameters_limits_and_eigenval
     assert dict(rows) == raised
     assert re.search(r"Generalised coordinates: <math.*?</math> \[mm\], <math.*?</math> \[rad\]\.", text)
     assert re.search(r"Limits of the coordinates, which no force keeps: <math.*?</math> \[rad\]", text)
-    assert re.search(r"Eigenvalues there, in physical time, of .*? \[1/s\]\.</p>", text)
+    assert re.search(r"Eigenvalues there, in the time .*?, of .*? \[1/s\]\.</p>", text)
 
 
 def test_results_json_names_the_units_and_follows_its_schema(written: Path) -> None:
@@ -402,7 +402,7 @@ def test_the_step_of_a_method_is_a_time() -> None:
 
 
 def test_dimensionless_results_have_no_physical_unit(tmp_path: Path) -> None:
-    """In dimensionless time and notation the linear equations are numbers; only eigenvalues are in physical time."""
+    """In dimensionless time and notation the linear equations are numbers; only eigenvalues are in the time t."""
     folder = ROOT / "tests" / "source" / "test_units.py"
     units = re.search(r'SATELLITE = """(.*?)"""', folder.read_text(encoding="utf-8"), re.DOTALL)
     assert units is not None

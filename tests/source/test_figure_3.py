@@ -112,6 +112,47 @@ def test_it_is_read_as_people_fill_it_in() -> None:
     assert [text(x) for x in found.bodies[0].rotation.angles] == ["psi - chi"]
 
 
+#: As the printed form has it: fields without brackets, and fields that nobody fills in.
+WITHOUT_BRACKETS = BY_HAND.translate({ord(x): None for x in "(){}"}).replace(
+    "Body description 1", "Body description (1)"
+)
+
+
+@pytest.mark.parametrize("commas", [False, True])
+def test_brackets_may_be_left_out(commas: bool) -> None:
+    """A vector, axes, angles, one coordinate or several; the tensor has none anyway."""
+    written = WITHOUT_BRACKETS
+    for words in ("0 l/2 0", "0 -l 0", "3 0 0") if commas else ():
+        written = written.replace(words, ", ".join(words.split()))
+    written = written.replace("ψ - χ, 0, 0", "ψ-χ 0 0") if not commas else written
+    found, complaints = read(written, "form.txt")
+    plain, _ = read(BY_HAND, "form.txt")
+    assert [one.code for one in complaints.items] == ["declared-by-use"]
+    assert found is not None
+    assert plain is not None
+    assert str(replace(found.bodies[0], span=None)) == str(replace(plain.bodies[0], span=None))
+    assert found.coordinates == ("psi",)
+
+
+def test_an_empty_field_is_one_that_is_left_out() -> None:
+    """Zeros, no turn; two coordinates are two words."""
+    form = """Mechanical system: P
+Body description (1)
+Previous body number 0
+Body mass m
+Radius vector of mass center
+Numbers of rotation axes
+Rotation angles
+Radius vector of connection point x y 0
+Generalized coordinates x y
+"""
+    moving, _ = read(form, "form.txt")
+    assert moving is not None
+    assert moving.coordinates == ("x", "y")
+    assert [text(x) for x in moving.bodies[0].mass_centre] == ["0", "0", "0"]
+    assert not moving.bodies[0].rotation.angles
+
+
 def test_a_slip_is_one_complaint_at_its_place_and_speaks_of_labels() -> None:
     """In the column of the file, whatever the letters before it are called."""
     wrong = BY_HAND.replace("{ψ - χ, 0, 0}", "{ψ - χ, thetta(ψ), 0}").replace("Body mass M2\n", "\n")

@@ -109,3 +109,27 @@ def test_a_sweep_of_motions_knows_constraints(tmp_path) -> None:  # type: ignore
         whole = sqrt(v * v + k * k * 4)
         s = a * whole * 2 / k**2 + 0.5 * np.log((whole + v) / (whole - v))
         assert row["final"] == pytest.approx(whole / k / cosh(s), rel=1e-7)
+
+
+@pytest.mark.parametrize(("own", "values"), [("0", (0.0, 1.0, 3)), ("1", (0.0, 1.0, 3)), ("1", (0.5, 1.0, 2))])
+def test_members_of_which_other_rows_follow_from_others_are_not_moved_by_these_equations(
+    own: str, values: tuple[float, float, int]
+) -> None:
+    """On the sphere |r| = 1 and the plane e z = 0: a sphere where e = 0, else the circle z = 0, whatever pulls along z.
+
+    There the pendulum r'' = -g sin takes the point from (1, 0) on; z stays 0.
+    """
+    text = (
+        f"mbsym: 1\nname: two\nparameters: {{e: {{value: {own}, sign: real}}}}\n"
+        "bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]\n"
+        "loads: [{uniform gravity: {vector: [0, -1, -1]}}]\n"
+        "constraints:\n  - relation: x**2 + y**2 + z**2 = 1\n  - relation: x**2 + y**2 + z**2 + e*z = 1\n"
+        "initial: {x: 1, y: 0, z: 0}\n"
+    )
+    if not values[0]:
+        with pytest.raises(Unvaried, match="other rows of the constraints follow"):
+            mbsym.ensemble(mbsym.loads(text), 1, {"e": values})
+        return
+    found = mbsym.ensemble(mbsym.loads(text), 1, {"e": values})
+    assert found.final[2] == pytest.approx([0, 0], abs=1e-12)
+    assert found.final[3] ** 2 / 2 + found.final[4] ** 2 / 2 + found.final[1] == pytest.approx([0, 0], abs=1e-9)

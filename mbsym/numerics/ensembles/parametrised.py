@@ -46,7 +46,7 @@ class Parametrised(Dynamics):
 
     ``overrides`` are those of which the scenario was made: an initial state may be an expression in free parameters.
     ``fixed`` are initial values that stay while others are fitted to constraints.  Which rows of constraints follow
-    from others is told at the scenario's own values.
+    from others is told at the scenario's own values: ``keeps`` says of which scenarios that is true.
     """
 
     def __init__(
@@ -90,6 +90,11 @@ class Parametrised(Dynamics):
     def begun(self, values: Mapping[str, Expression]) -> Scenario:
         """The scenario of a run of its own with ``values`` in the place of others.  Raises Incomplete, Failure."""
         return begun(self._given(values), self.fixed, self.in_states).scenario
+
+    def keeps(self, other: Scenario) -> bool:
+        """Whether of another scenario's constraints the same rows follow from the same others."""
+        own, theirs = self.constraints, dynamics_of(other, self.ring).constraints
+        return own is None or (theirs is not None and theirs.chosen == own.chosen)
 
     def _given(self, values: Mapping[str, Expression]) -> Scenario:
         return scenario_of_run(described(self.system), self.overrides | dict(values), declared=self.in_states)

@@ -246,10 +246,16 @@ def _begun(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Any:
     for column in values.T:
         own = {name: number(Fraction(float(value))) for name, value in zip(varied, column, strict=True)}
         try:
-            starts.append([float(x) for x in dynamics.begun(own).state])
+            begun = dynamics.begun(own)
+            starts.append([float(x) for x in begun.state])
+            if dynamics.keeps(begun):
+                continue
+            why = "other rows of the constraints follow from others with {} than at the description's values"
+            remedy = "give the description values like those of the range, or narrow it"
         except (Failure, Incomplete) as reason:
-            told = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
-            raise Unvaried([(varied[0], f"no motion begins with {told}: {reason}", "narrow the range")]) from None
+            why, remedy = f"no motion begins with {{}}: {reason}", "narrow the range"
+        told = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
+        raise Unvaried([(varied[0], why.format(told), remedy)])
     return np.array(starts).T
 
 

@@ -30,7 +30,7 @@ from mbsym.numerics.events.crossings import NODES, Sign, free_of_zeros, nodes, p
 from mbsym.numerics.events.surfaces import Action, Direction, Event, slopes_code, values_code
 from mbsym.numerics.kernels.llvm import kernel, kernels
 from mbsym.numerics.methods.interface import Piece
-from mbsym.numerics.pieces import states_on
+from mbsym.numerics.methods.nested import states_on
 
 #: Pieces are looked at so many at a time.
 BATCH = 32

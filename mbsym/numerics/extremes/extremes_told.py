@@ -10,8 +10,7 @@ from math import isfinite
 from mbsym.expressions.message import Message, enumerated, joined, worded
 from mbsym.numerics.borders import BORDER
 from mbsym.numerics.extremes.extremes import LISTED, Compensated, Extremes, Row, VerdictRow
-from mbsym.numerics.extremes.singular import Singularities, SingularSet
-from mbsym.numerics.extremes.singular_kinds import BOTH, CHART, MODEL, OPEN
+from mbsym.numerics.extremes.singular import BOTH, CHART, MODEL, OPEN, Singularities, SingularSet
 from mbsym.numerics.extremes.singular_positions import SingularPositions
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.probes import EQUILIBRIUM, RATES, RATIO, SINGULAR

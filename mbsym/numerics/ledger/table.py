@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import Failure
-from mbsym.analysis import Analysis
-from mbsym.expressions.message import Message, joined
-from mbsym.numerics.ledger import code, described, formulas, motion, plane
-from mbsym.numerics.ledger.entry import OPERATIONS, Ledger, Measure, Saving
-from mbsym.numerics.ledger.work import BUDGET, AccuracyGoal, TooDear, Work
-from mbsym.numerics.methods.interface import Breakdown
+from mbsym.algebra.characteristic import BUDGET as DETERMINANT
+from mbsym.algebra.characteristic import characteristic_polynomial
+from mbsym.algebra.failures import Failure, Limit
+from mbsym.analysis import PROBLEMS, USUAL_PROBLEMS, Analysis
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.formulas.formula import Matrix
+from mbsym.model.system import rational
+from mbsym.numerics.body_motion import BodyMotions, body_motions
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.ledger import code, described, motion
+from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, Ledger, Measure, Saving
+from mbsym.numerics.ledger.work import BUDGET, AccuracyGoal, Counted, TooDear, Work
+from mbsym.numerics.methods.interface import Breakdown, Setting
+from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.planning.kinds import (
     AXES,
     CYCLIC,
@@ -45,12 +55,188 @@ from mbsym.numerics.planning.model_choice import PART, Scene, Tried, model_chose
 from mbsym.numerics.planning.models import Model, parted
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import outlined
+from mbsym.numerics.rows import rows
+from mbsym.problems.linearisation import Linearisation, components
 
-# What the equations leave out, held against an accuracy: the motion without it beside the motion with it.
+# Motion in a plane that no coordinates show: found along the motion, told, and not used.
 #
-# Both are those of ``mbsym simulate --accuracy``: the same models, the same measure of their errors, the same part of
-# the accuracy that a model may take.  Where no accuracy is asked for only the size of what is dropped is estimated,
-# which decides nothing.
+# All motion is normal to e where, for every body with inertia, omega_k = w_k e, and V_C.e = 0 for every mass centre.
+# The direction is that of the angular velocities, or normal to the velocities where no body has inertia.  That it stays
+# so is seen at the times of a run, not proved.
+
+
+#: The run's tolerance, the times at which it is looked at, and the part of the motion that may be out of the plane.
+TIGHT, _TIMES, FLAT = 1e-12, 201, 1e-8
+
+#: A direction is a coordinate axis where no other component is larger; the plane is then one of the coordinates'.
+ALONG = 1e-6
+
+
+def skew_plane(work: Work) -> Iterator[Saving]:
+    """Motion normal to a direction that is no axis of inertial space, until the time of the accuracy asked for."""
+    if work.wanted is None or work.scenario is None:
+        return
+    work.begin(work.price)
+    dynamics = Dynamics(work.scenario)
+    times = np.linspace(0.0, work.wanted.time, _TIMES)
+    try:
+        states = rows(choose(dynamics, TIGHT, work.wanted.time).method, dynamics, Setting(TIGHT), times).states
+        rates = arrays.kernel(dynamics.right_hand_side)(np.vstack([times, states]))[dynamics.size :]
+        found = body_motions(work.scenario, times, states, rates)
+    except (Breakdown, Failure):
+        return
+    turning, moving = _kinds(work, found)
+    e, off = plane_of(found, turning, moving)
+    if e is None or np.sum(np.abs(e) > ALONG) < 2:
+        return
+    direction = ", ".join(f"{x:.6g}" for x in e)
+    why = Message(
+        "at [[times]] times until [[time]] all angular velocities are along ([[direction]]) of "
+        "inertial space and all velocities normal to it, but for [[part]] of them; told, not "
+        "used: mbsym simulate integrates all coordinates",
+        times=_TIMES,
+        time=f"{work.wanted.time:g}",
+        direction=direction,
+        part=f"{off:.0e}",
+    )
+    measures = (
+        Measure(
+            "components of velocities and angular velocities",
+            COUNT,
+            3 * sum(turning) + 3 * sum(moving),
+            sum(turning) + 2 * sum(moving),
+        ),
+    )
+    names = tuple(name for name, a, b in zip(found.names, turning, moving, strict=True) if a or b)
+    yield Saving(SKEW, names, why, Certainty.VERIFIED, measures)
+
+
+def _kinds(work: Work, found: BodyMotions) -> tuple[list[bool], list[bool]]:
+    """Which bodies have inertia, and which a mass: of the others it does not matter how they move."""
+    bodies = [work.system.body(name) for name in found.names]
+    return [body.inertia is not None for body in bodies], [rational(body.mass) != 0 for body in bodies]
+
+
+def plane_of(found: BodyMotions, turning: list[bool], moving: list[bool]) -> tuple[Any | None, float]:
+    """(e, the largest part of the motion that is not normal to it); None where there is no such direction."""
+    spins = np.einsum("kijt,kit->jkt", found.axes, found.angular_velocities)[:, turning].reshape(3, -1)
+    speeds = np.moveaxis(found.velocities, 1, 0)[:, moving].reshape(3, -1)
+    if np.any(spins):
+        e = np.linalg.svd(spins, full_matrices=False)[0][:, 0]
+    else:
+        sides, sizes, _ = np.linalg.svd(speeds, full_matrices=False)
+        if not sizes[1] > FLAT**0.5 * sizes[0]:
+            return None, 0.0  # at rest, or along one line, which lies in many planes
+        e = sides[:, 2]
+    e = e * np.sign(e[np.argmax(np.abs(e))])
+    off = max(_part(spins - np.outer(e, e @ spins), spins), _part(e @ speeds, speeds))
+    return (e, off) if off <= FLAT else (None, off)
+
+
+def _part(of: Any, whole: Any) -> float:
+    largest = float(np.max(np.abs(whole), initial=0.0))
+    return float(np.max(np.abs(of), initial=0.0)) / largest if largest else 0.0
+
+
+#: What characteristic polynomials of all parts and of the whole cost, about.
+CHARACTERISTIC = 1.0
+
+#: Bounds that end a derivation because its result is too large, not because there is none.
+TOO_LARGE = (Limit.TERMS, Limit.WORK, Limit.MEMORY)
+
+
+def problems_not_asked(work: Work) -> Iterator[Saving]:
+    """Problems of every run that nobody asked for and nothing asked for needed, against deriving them."""
+    analysis = work.analysis
+    left = [n for n in USUAL_PROBLEMS if n not in analysis.problems and PROBLEMS[n].attribute not in analysis.derived]
+    for number in left:
+        work.require(0.0)
+        problem, stage = PROBLEMS[number], work.bounded.stage(number)
+        if stage.failure is None:
+            found = Counted(_terms(stage.value), 0, stage.seconds)
+        elif stage.failure.limit in TOO_LARGE:
+            found = _given_up(work, number)
+        else:
+            continue  # there is no such result, so nothing was saved
+        why = Message("liveness: nobody asked for it, and nothing that was asked for needs it")
+        if number == 3 and "linearisation" in analysis.derived:
+            why = joined([why, Message("the linearisation is that of the quadratised Lagrangian")], "; ")
+        what = Message("problem [[number]], [[title]]", number=number, title=worded(problem.title))
+        measures = found.measures(Counted(0, 0, 0.0), Message("it"))
+        yield Saving(NOT_ASKED, (what,), why, Certainty.PROVED, measures)
+
+
+def _given_up(work: Work, number: int) -> Counted:
+    """What a problem costs by itself until the budgets end it."""
+    alone = work.fresh(work.system)
+    started = time.thread_time()
+    alone.stage(number)
+    return Counted(None, alone.ring.work, time.thread_time() - started)
+
+
+def _terms(found: Any) -> int:
+    """Terms of a problem's result, or of all of them where there are several."""
+    return sum(item.formula.terms for item in found) if isinstance(found, tuple) else int(found.terms)
+
+
+def vanishing_entries(work: Work) -> Iterator[Saving]:
+    """Entries of M, D, G, K, N that are identically zero, and matrices that vanish as a whole."""
+    found = _linearisation(work)
+    if found is None:
+        return
+    letters = dict(zip("MDGKN", found.matrices, strict=True))
+    n = len(found.coordinates)
+    entries = sum(not m[i, j].is_zero for m in found.matrices for i in range(n) for j in range(n))
+    gone = [name for name, matrix in letters.items() if matrix.is_zero]
+    what = [Message("[[count]] of [[all]] entries", count=5 * n * n - entries, all=5 * n * n)]
+    if gone:
+        what.append(Message("[[matrices]] as a whole", matrices=", ".join(gone)))
+    why = Message("identities of the ring: their polynomials are 0")
+    measures = (Measure("entries of M, D, G, K, N", COUNT, 5 * n * n, entries),)
+    yield Saving(ENTRIES, tuple(what), why, Certainty.PROVED, measures)
+
+
+def subsystems(work: Work) -> Iterator[Saving]:
+    """Characteristic polynomials of subsystems, against that of the whole system."""
+    found = _linearisation(work)
+    parts = components(found.matrices) if found is not None else []
+    if found is None or len(parts) < 2 or 6 not in work.analysis.problems:
+        return
+    work.begin(CHARACTERISTIC)
+    divided = [_characteristic(work, found, part) for part in parts]
+    if any(item.terms is None for item in divided):
+        return
+    here = Counted(sum(x.terms or 0 for x in divided), sum(x.steps for x in divided), sum(x.seconds for x in divided))
+    there = _characteristic(work, found, range(len(found.coordinates)))
+    names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
+    why = Message("identities of the ring: no matrix couples them, so the determinant is the product of theirs")
+    measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
+    yield Saving(SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
+
+
+def _linearisation(work: Work) -> Linearisation | None:
+    if "linearisation" not in work.analysis.derived:
+        return None
+    found: Linearisation | None = work.result("linearisation")
+    return found
+
+
+def _characteristic(work: Work, found: Linearisation, part: Sequence[int]) -> Counted:
+    """The characteristic polynomial of some coordinates in the declared parameters, within its budget of products."""
+    ring = found.M[0, 0].ring
+
+    def cut(*matrices: Matrix) -> list[list[Any]]:
+        return [[ring.reduce(sum((m[i, j].polynomial for m in matrices), ring.zero)) for j in part] for i in part]
+
+    def size() -> int | None:
+        try:
+            polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
+        except Failure:
+            return None
+        return sum(len(x) for x in polynomial)
+
+    terms, seconds = work.timed(size)
+    return Counted(terms, DETERMINANT if terms is None else 0, seconds)
 
 
 #: Times at which two motions are compared, besides the steps between.
@@ -130,12 +316,12 @@ KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
     POINTS: described.point_masses,
     AXES: described.unused_axes,
     TURNS: described.constant_rotations,
-    SKEW: plane.skew_plane,
+    SKEW: skew_plane,
     CYCLIC: motion.cyclic_coordinates,
     DROPPED: motion.dropped_parameters,
-    ENTRIES: formulas.vanishing_entries,
-    SUBSYSTEMS: formulas.subsystems,
-    NOT_ASKED: formulas.problems_not_asked,
+    ENTRIES: vanishing_entries,
+    SUBSYSTEMS: subsystems,
+    NOT_ASKED: problems_not_asked,
     SYMMETRY: code.symmetry,
     SPARSITY: code.branch_sparsity,
     ROUTE: code.route,

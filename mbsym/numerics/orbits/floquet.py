@@ -42,8 +42,8 @@ from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.program import Node
 from mbsym.algebra.rationals import ball
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.balls import enclosures
 from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.methods.symplectic import without_potential
 from mbsym.numerics.probes import motion_state
 from mbsym.numerics.specialise import bound, substituted

@@ -8,7 +8,7 @@ scene, and doubled.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
@@ -16,20 +16,20 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import STABLE
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.alternatives import alternatives
 from mbsym.numerics.planning.choice import Choice, choose
-from mbsym.numerics.planning.contenders import Contender, contenders, first_setting, in_more_digits
 from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
-from mbsym.numerics.planning.model_choice import ModelChoice, Scene, model_chosen, model_settled, richest
+from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried, model_chosen, model_settled, richest
 from mbsym.numerics.planning.models import Model, described
-from mbsym.numerics.planning.pilot import ALIKE, Bench, Trial, searched
-from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Plan
+from mbsym.numerics.planning.pilot import ALIKE, USUAL_SLOPE, Bench, Trial, finest, searched
+from mbsym.numerics.planning.plan import ENERGY, Accuracy, Alternative, Bound, Plan
 from mbsym.numerics.planning.plan_bounds import GOAL, bounds_of, fits, shares_of, worth_of
 from mbsym.numerics.planning.plan_items import Settled, items_of
 from mbsym.numerics.planning.prices import cost
@@ -39,6 +39,151 @@ from mbsym.numerics.rows import MOST, places, rows
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import Part, Separate, separated
 from mbsym.numerics.trade.yardstick import KNOWN, Yardstick, yardstick
+
+# Which methods are tried for an accuracy, in which arithmetic, and from which setting on.
+
+
+#: Coarsest accuracies at which methods are worth a try: below, their steps are too many.
+COARSE_ONLY = {"rk45": 1e-8, "rk4": 1e-5}
+
+#: Numbers of 24 bits are tried for errors down to this.
+SINGLE = 3e-6
+
+#: Taylor series are compiled for fine accuracies, and for equations of moderate length.
+TAYLOR_FROM, TAYLOR_LONG = 1e-8, 3_000
+
+#: Methods that are another one in slower clothes.
+DUPLICATES = ("scipy-rk45", "scipy-dop853")
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A method in an arithmetic."""
+
+    method: Method
+    scalar: str
+
+
+def contenders(
+    dynamics: Dynamics, model: Model, target: float, stiff: bool, rows_are_many: bool
+) -> Iterator[Contender]:
+    """The most promising first.
+
+    A step of one length ends at every row: such a method is tried where rows are many anyway.  Implicit midpoints are
+    not: no scene was found where they reach an error over the whole time for less than explicit steps of high order.
+    Numbers of 24 bits are not, where states are led back: rounding takes them off constraints and lengths of 1, and
+    energies with them.
+    """
+    names = ["dop853"]
+    if stiff:
+        names = [name for name, method in METHODS.items() if method.traits.implicit and not method.traits.fixed]
+        names.append("dop853")
+    else:
+        names += ["rk45", "taylor", *(["rk4"] if rows_are_many else [])]
+    for scalar in (FLOAT64, FLOAT32):
+        if scalar == FLOAT32 and not (target >= SINGLE and available(FLOAT32) and dynamics.correction is None):
+            continue
+        for name in names:
+            method = METHODS.get(name)
+            if method is None or name in DUPLICATES or scalar not in method.traits.scalars:
+                continue
+            if target < COARSE_ONLY.get(name, 0.0):
+                continue
+            taylor_pays = target <= TAYLOR_FROM and dynamics.right_hand_side.operations <= TAYLOR_LONG
+            if name == "taylor" and (scalar == FLOAT32 or model.linear or not taylor_pays):
+                continue
+            yield Contender(method, scalar)
+
+
+def in_more_digits() -> Iterator[Contender]:
+    """Where float64 does not do."""
+    if available(EXTENDED):
+        for name in ("dop853", "taylor"):
+            if name in METHODS and EXTENDED in METHODS[name].traits.scalars:
+                yield Contender(METHODS[name], EXTENDED)
+
+
+def first_setting(contender: Contender, tolerance: float, best: Trial | None, end: float, spacing: float) -> Setting:
+    """Where the search begins: the tolerance that did for another, or steps as many as its evaluations pay for.
+
+    No step is longer than the ``spacing`` of the rows.
+    """
+    traits = contender.method.traits
+    if not traits.fixed:
+        found = best.setting.tolerance if best is not None and best.setting.tolerance else tolerance
+        return Setting(tolerance=min(max(found, finest(contender.method, contender.scalar)), 1e-3))
+    evaluations = best.work.evaluations if best is not None else 4_000
+    return Setting(step=min(float(f"{end / max(10, evaluations / 4):.1e}"), spacing))
+
+
+#: How the cost of a method grows with its accuracy: cost ~ error**(-1/order).
+ORDERS = {"dop853": 8, "rk45": 5, "taylor": 16}
+USUAL_ORDER = 5
+
+#: No tolerance is coarser.
+COARSEST = 1e-2
+
+
+def alternatives(
+    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
+) -> tuple[Alternative, Alternative]:
+    """(one digit more, one digit less)."""
+    more, less = (_other(bench, found, tried, taken, accuracy.finest, goal, factor) for factor in (0.1, 10.0))
+    return more, less
+
+
+def _other(
+    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, target: float, goal: float, factor: float
+) -> Alternative:
+    wanted = goal * factor
+    model = _model_of(tried, factor)
+    price = model.operations / max(1, taken.operations)
+    name = "" if model.model == taken.model else model.model.label
+    options: list[tuple[float, str, bool]] = [
+        (trial.cost * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
+    ]
+    judged = _judged(found, max(found.ratio / wanted, 1e-9), bench.spacing)
+    if judged is not None and not _tried_in_vain(bench, found, judged[2], wanted):
+        options.append((judged[0] * price, judged[1], False))
+    if not options:
+        needed = found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars
+        text = "[[scalar]] has no finer tolerance; extended arithmetic is needed"
+        why = Message(text if needed else "[[scalar]] has no finer tolerance", scalar=found.scalar)
+        return Alternative(target * factor, why=why, model=name)
+    cost, label, measured = min(options)
+    times = cost / found.cost
+    return Alternative(target * factor, label, found.seconds * times, measured, name, times=times)
+
+
+def _model_of(tried: Sequence[Tried], factor: float) -> Tried:
+    """The cheapest model that would be good enough; the faithful one has no error."""
+    return min((one for one in tried if one.ratio <= PART * factor), key=lambda one: one.operations)
+
+
+def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -> bool:
+    """Whether a setting at least as fine was not good enough: what is short is stepped over, whatever slopes say."""
+    same = [one for one in bench.trials if one.method is found.method and one.scalar == found.scalar]
+    return any(one.fineness <= fineness and one.ratio > wanted for one in same)
+
+
+def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
+    """(cost, label, tolerance or step) of the same method with an error ``worse`` times smaller.
+
+    None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows, and no tolerance is coarser than
+    ``COARSEST``: what errors are then smaller by costs what it costs there.
+    """
+    traits = found.method.traits
+    if found.setting.step is not None:
+        order = traits.order or USUAL_ORDER
+        growth = max(worse ** (1 / order), found.fineness / spacing)
+        return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
+    worse = max(worse, min(1.0, (found.fineness / COARSEST) ** USUAL_SLOPE))
+    tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
+    if tolerance < finest(found.method, found.scalar):
+        return None
+    growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
+    return found.cost * growth, f"{traits.name} {tolerance:.0e}", tolerance
+
 
 #: Methods whose steps end at every row are judged where there are so many rows at least.
 GRID = 1_001

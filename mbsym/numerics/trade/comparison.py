@@ -24,7 +24,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from mbsym.numerics.methods.interface import Breakdown
-from mbsym.numerics.pieces import states_on
+from mbsym.numerics.methods.nested import states_on
 from mbsym.numerics.planning.prices import FOLLOWED
 from mbsym.numerics.planning.sizes import RESTS, scaled
 

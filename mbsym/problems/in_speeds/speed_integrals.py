@@ -135,9 +135,9 @@ def candidates(
     for name, slopes in form.slopes.items():
         momentum = sum((ring.times(p, slope) for p, slope in zip(momenta, slopes, strict=True)), ring.zero)
         yield _integral(form, Message("momentum of [[name]]", name=name), "cyclic momentum", name, momentum), slopes
-    for name, xi in displacements:
+    for name, along in displacements:
         title = Message("momentum along the displacement of [[name]] that the constraints allow", name=name)
-        yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, xi)), xi
+        yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, along)), along
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
             if kind == "angular momentum":

@@ -34,9 +34,9 @@ from mbsym.algebra.truncated import Space, Truncated, bracket
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, matrix_of, normal_form
 from mbsym.problems.normal_forms.centre import on_double_pair
 from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.nilpotent import conjugate, on_double_root, pairing
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import NotVerified, definite
+from mbsym.problems.normal_forms.zero_root import conjugate, on_double_root, pairing
 
 #: Arcs of 2 pi/2^MOST_HALVINGS are not halved again.
 MOST_HALVINGS = 40

@@ -88,9 +88,12 @@ class LinearAtRest:
         if not self.conservative or self.found.turning or any(x != 0 for row in self.matrices[4] for x in row):
             return None
         kept = [i for i, name in enumerate(names) if name not in self.ignorable]
-        if not kept or len(kept) > MOST_DEGENERATE:
+        if not kept:
             return None
         stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
+        forces = (x for row in (*stiffness, *self.matrices[2]) for x in row)
+        if self.law is EnergyLaw.CONSERVED and all(ring.is_zero(x) is True for x in forces):
+            return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
         of = [names[i] for i in kept]
 
         def derivative(i: int, j: int, *further: int) -> Element | None:
@@ -106,6 +109,8 @@ class LinearAtRest:
                 return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
             if extremum is not Extremum.MINIMUM:
                 return None
+        elif len(kept) > MOST_DEGENERATE:
+            return None
         else:
             second = [[derivative(i, j) for j in range(len(kept))] for i in range(len(kept))]
             if any(x is None for row in second for x in row):

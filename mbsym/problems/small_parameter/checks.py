@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from random import Random
 from typing import Any
 
-from flint import fmpq, fmpq_poly
+from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.quotients import Quotient, Series
+from mbsym.algebra.tower import MOST_ROOTS, Element
+from mbsym.problems.small_parameter.oscillation_result import Harmonics, Oscillation
 from mbsym.problems.small_parameter.result import ScaledField
 
 #: Numerators and denominators of the random states.
@@ -84,3 +86,125 @@ def _polynomial(one: Series, at: Sequence[fmpq]) -> fmpq_poly:
 
 def _value(x: Quotient, at: Sequence[fmpq]) -> fmpq:
     return x.top(*at) / x.bottom(*at)
+
+
+# The second route of oscillations: the series put whole into the equations, with polynomials in eps, cos T and sin T.
+#
+# Parameters are random rationals; square roots, sin T and cos T are generators of a polynomial ring over QQ with their
+# relations, and everything is multiplied out exactly.  Nothing of the way by which the series were found is used.
+
+
+_SMALL = 20
+MOST_SEEDS = 8
+
+
+class Numbers:
+    """Elements of a tower at random rational parameters, in QQ[roots][eps, s, c] modulo the relations."""
+
+    def __init__(self, found: Oscillation, seed: int) -> None:
+        self.tower, random = found.tower, Random(seed)
+        names = [f"r{k}" for k in reversed(range(len(self.tower.squares)))]
+        self.context: Any = fmpq_mpoly_ctx.get([*names, "eps", "s", "c"], Ordering.lex)
+        gens = self.context.gens()
+        self.roots, (self.eps, self.sine, self.cosine) = gens[: len(names)][::-1], gens[len(names) :]
+        self.values = [fmpq(random.randint(2, _SMALL), random.randint(2, _SMALL)) for _ in self.tower.parameters]
+        self.relations = [self.sine**2 + self.cosine**2 - 1]
+        for root, square in zip(self.roots, self.tower.squares, strict=True):
+            self.relations.append(root**2 - self._of(square))
+
+    def reduced(self, p: Any) -> Any:
+        for relation in reversed(self.relations):
+            p = divmod(p, relation)[1]
+        return p
+
+    def _of(self, p: Any) -> Any:
+        total = self.context.constant(0)
+        for monomial, c in p.to_dict().items():
+            term = self.context.constant(c)
+            for k, e in enumerate(monomial):
+                if e and k < MOST_ROOTS:
+                    term = term * self.roots[MOST_ROOTS - 1 - k] ** e
+                elif e:
+                    term = term * self.values[k - MOST_ROOTS] ** e
+            total = total + term
+        return total
+
+    def __call__(self, x: Element) -> Any:
+        bottom = self._of(x.bottom)
+        return self.reduced(self._of(x.top)) / bottom.leading_coefficient()
+
+    def wave(self, one: Harmonics) -> Any:
+        """cos k T = T_k(c), sin k T = s U_(k-1)(c)."""
+        total = self.context.constant(0)
+        for k, (c, s) in one.waves.items():
+            first, second = _chebyshev(self.context.constant(1), self.cosine, k)
+            total = total + self(c) * first + self(s) * self.sine * second
+        return total
+
+    def series(self, parts: Sequence[Harmonics]) -> Any:
+        return sum((self.wave(one) * self.eps**n for n, one in enumerate(parts)), self.context.constant(0))
+
+    def slope(self, p: Any) -> Any:
+        """d/dT."""
+        place = len(self.roots) + 1
+        return p.derivative(place) * self.cosine - p.derivative(place + 1) * self.sine
+
+
+def _chebyshev(one: Any, x: Any, k: int) -> tuple[Any, Any]:
+    """T_k and U_(k-1)."""
+    first, second = [one, x], [one * 0, one]
+    while len(first) <= k:
+        first.append(2 * x * first[-1] - first[-2])
+        second.append(2 * x * second[-1] - second[-2])
+    return first[k], second[k]
+
+
+def oscillation_orders(rows: Any, names: Sequence[str], found: Oscillation, seed: int = 1) -> tuple[int | None, ...]:
+    """The lowest order of eps in f(X) - omega (1 + eps nu_1 + ...) X'(T) for each variable of ``found``, then for its
+    drifting ones.  None: nothing is left."""
+    try:
+        numbers = Numbers(found, seed)
+        speed = _speed(numbers, found)
+        series = _all_series(numbers, found)
+    except ZeroDivisionError:  # a denominator vanishes at these numbers
+        if seed > MOST_SEEDS:
+            raise
+        return oscillation_orders(rows, names, found, seed + 1)
+    context, eps = numbers.context, numbers.eps
+    rates = {}
+    for one in found.drifts:
+        series[one.variable] = numbers.series(one.waves)
+        rates[one.variable] = sum((numbers(x) * eps**n for n, x in enumerate(one.rates)), context.constant(0))
+    powers: dict[tuple[str, int], Any] = {}
+
+    def power(name: str, exponent: int) -> Any:
+        if (name, exponent) not in powers:
+            lower = power(name, exponent - 1) * series[name] if exponent > 1 else series[name]
+            powers[name, exponent] = numbers.reduced(lower)
+        return powers[name, exponent]
+
+    result: list[int | None] = []
+    for name in (*found.names, *rates):
+        left = numbers.slope(series[name]) * speed + rates.get(name, 0)
+        for k, terms in rows[names.index(name)].items():
+            for exponents, c in terms.items():
+                term = numbers(c) * eps**k
+                for other, e in zip(names, exponents, strict=True):
+                    if e:
+                        term = numbers.reduced(term * power(other, e))
+                left = left - term
+        left = numbers.reduced(left)
+        place = len(numbers.roots)
+        result.append(min((int(m[place]) for m in left.to_dict()), default=None))
+    return tuple(result)
+
+
+def _speed(numbers: Numbers, found: Oscillation) -> Any:
+    """omega (1 + eps nu_1 + ...)."""
+    zero = numbers.context.constant(0)
+    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(found.corrections)), zero)
+    return numbers(found.frequency) * (1 + shifts)
+
+
+def _all_series(numbers: Numbers, found: Oscillation) -> dict[str, Any]:
+    return {name: numbers.series(one) for name, one in zip(found.names, found.series, strict=True)}

@@ -16,9 +16,9 @@ from typing import Any
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message, joined
+from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
-from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 
 #: A condition on the amplitude may first appear in this order.
@@ -145,7 +145,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         other_amplitudes=others,
     )
     return replace(
-        found, residuals=residual_orders(there.rows, there.names, found), exponent=_exponent(there, found, names)
+        found, residuals=oscillation_orders(there.rows, there.names, found), exponent=_exponent(there, found, names)
     )
 
 

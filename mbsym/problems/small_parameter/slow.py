@@ -19,12 +19,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.quotients import LOWER, Polynomial, Quotient, Series
+from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Series
 from mbsym.expressions.message import Message
-from mbsym.problems.small_parameter.result import Graded, ScaledField
+from mbsym.problems.small_parameter.result import ScaledField
 from mbsym.problems.small_parameter.root import root
 
 #: Choices of fast variables that are looked at.
@@ -73,57 +72,10 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
 DECLARE = "declare them: 'small parameter: {eps: {fast: [x, y]}}'"
 
 
-class OnManifold:
-    """Polynomials of the field with series in place of the fast variables."""
-
-    def __init__(self, there: ScaledField, fast: Sequence[str]) -> None:
-        self.there = there
-        self.context = there.field.context
-        first = len(there.field.parameters)
-        self.places = [first + there.field.variables.index(name) for name in fast]
-        self._sorted: dict[int, dict[tuple[int, ...], Series]] = {}
-
-    def __call__(self, p: Graded, functions: Sequence[Series], known: int | None) -> Series:
-        """p(s, functions, eps) up to eps^known."""
-        total = Series(self.context, {}, known)
-        if known is not None and p:  # coefficients beyond are not needed: they would be long
-            functions = [one.up_to(known - min(0, *p)) for one in functions]
-        powers: dict[tuple[int, int], Series] = {}
-        for exponents, factor in self._parts(p).items():
-            term = factor
-            for place, exponent in enumerate(exponents):
-                if exponent:
-                    term = (term * self._power(place, exponent, functions, powers)).up_to(known)
-            total = total + term
-        return total
-
-    def _power(
-        self, place: int, exponent: int, functions: Sequence[Series], powers: dict[tuple[int, int], Series]
-    ) -> Series:
-        if exponent == 1:
-            return functions[place]
-        if (place, exponent) not in powers:
-            powers[place, exponent] = self._power(place, exponent - 1, functions, powers) * functions[place]
-        return powers[place, exponent]
-
-    def _parts(self, p: Graded) -> dict[tuple[int, ...], Series]:
-        """Exponents of the fast variables -> coefficient, free of them."""
-        if id(p) in self._sorted:
-            return self._sorted[id(p)]
-        parts: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], Any]]] = {}
-        for k, q in p.items():
-            for monomial, c in q.to_dict().items():
-                exponents = tuple(monomial[place] for place in self.places)
-                rest = list(monomial)
-                for place in self.places:
-                    rest[place] = 0
-                parts.setdefault(exponents, {}).setdefault(k, {})[tuple(rest)] = c
-        found = {
-            exponents: Series(self.context, {k: Quotient.of(self.context.from_dict(t)) for k, t in graded.items()})
-            for exponents, graded in parts.items()
-        }
-        self._sorted[id(p)] = found
-        return found
+def _on(there: ScaledField, fast: Sequence[str]) -> Composition:
+    """Puts series in place of the fast variables."""
+    first = len(there.field.parameters)
+    return Composition(there.field.context, [first + there.field.variables.index(name) for name in fast])
 
 
 def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series]:
@@ -140,7 +92,7 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series
                 fast=", ".join(fast),
             )
         )
-    on = OnManifold(there, fast)
+    on = _on(there, fast)
     slow = [i for i in range(len(variables)) if i not in indices]
     functions = [Series.constant(value) for value in start.values]
     for _ in range(MOST_STEPS):
@@ -169,7 +121,7 @@ def equations(
     fast: Sequence[int],
     slow: Sequence[int],
     functions: Sequence[Series],
-    on: OnManifold,
+    on: Composition,
     known: int | None,
 ) -> list[Series]:
     """eps^k_i (N_i - sum_j dh_i/ds_j N_j) on z = h, up to eps^known; what is left of the equations of the manifold."""
@@ -182,7 +134,7 @@ def equations(
         most = None if known is None else known - k
         rest = on(there.rows[i], functions, most)
         for j in slow:
-            slope = derivative(functions[place], first + j)
+            slope = functions[place].derivative(first + j)
             if slope.coefficients:
                 if j not in flows:
                     flows[j] = on(there.rows[j], functions, deep)
@@ -194,16 +146,10 @@ def equations(
 def divisors(there: ScaledField, fast: Sequence[str], functions: Sequence[Series]) -> tuple[Polynomial, ...]:
     """What is not zero where the expansion holds: det L, and the denominator of the equations at eps = 0 on h_0."""
     found = root(there, [there.field.variables.index(name) for name in fast])
-    below = OnManifold(there, fast)(there.denominator, [one.up_to(1) for one in functions], 1).coefficients.get(0)
+    below = _on(there, fast)(there.denominator, [one.up_to(1) for one in functions], 1).coefficients.get(0)
     quotients = [one for one in (None if found is None else found.determinant, below) if one is not None]
     parts = [p for one in quotients for p in (one.top, one.bottom)]
     return tuple(p for p in parts if not p.is_constant())
-
-
-def derivative(x: Series, place: int) -> Series:
-    """By a generator."""
-    slopes = {k: c.derivative(place) for k, c in x.coefficients.items()}
-    return Series(x.context, {k: c for k, c in slopes.items() if not c.is_zero}, x.known)
 
 
 def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], order: int) -> dict[str, Series]:
@@ -211,7 +157,7 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
 
     Raises NoClosedForm where the denominator vanishes at eps = 0 on the whole manifold.
     """
-    on = OnManifold(there, fast)
+    on = _on(there, fast)
     near = [one.up_to(order + 1) for one in functions]
     below = on(there.denominator, near, None)
     if 0 not in below.coefficients:

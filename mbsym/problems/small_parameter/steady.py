@@ -17,7 +17,6 @@ from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.result import Hurwitz, ScaledField, SteadyStates
-from mbsym.problems.small_parameter.slow import derivative
 
 #: Characteristic polynomials of a higher degree are not expanded.
 MOST_VARIABLES = 8
@@ -62,13 +61,13 @@ def steady_states(
                 Message("the motion does not lie on the manifold: [[name]] is another one there", name=name)
             )
     slow = list(flow)
-    small = [[on(derivative(flow[i], first + names.index(j))) for j in slow] for i in slow]
+    small = [[on(flow[i].derivative(first + names.index(j))) for j in slow] for i in slow]
     rows = [Series(context, {k: Quotient.of(p) for k, p in row.items()}) for row in there.rows]
     below = on(Series(context, {k: Quotient.of(p) for k, p in there.denominator.items()}))
     # D x' = N and N = 0 on the motion: A = (dN/dx)/D there.
     if any(on(row).coefficients for row in rows):
         raise NoClosedForm("the motion is no steady state of the equations")
-    scaled = [[on(derivative(row, first + k)) for k in range(len(names))] for row in rows]
+    scaled = [[on(row.derivative(first + k)) for k in range(len(names))] for row in rows]
     full = characteristic(context, scaled)  # det(S - D A), in which S^(n-k) has the k-th power of D too many
     whole, power = [], Series.constant(Quotient.of(context.constant(1)))
     deep = 2 * order + 8 + 2 * sum(max(0, k) for k in there.scales)

@@ -32,8 +32,8 @@ def check_stabilisation(scene: Scene[Any], linear: Linearisation, found: Stabili
     """
     wrong: set[str] = set()
     compared = 0
-    if len(linear.coordinates) > MOST_COORDINATES:
-        return None
+    if len(linear.coordinates) > MOST_COORDINATES or not (found.gyroscopic or found.dissipation or found.control):
+        return None  # too large, or nothing is said
     for values in _points(scene):
         there = at_values(scene, linear, values)
         if there is None:

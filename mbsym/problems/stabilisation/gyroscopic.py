@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice, permutations, product
+from itertools import combinations_with_replacement, islice, permutations, product
 
-from mbsym.algebra.characteristic import leading_minors
+from mbsym.algebra.characteristic import determinant, leading_minors
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, TooLargeError
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
@@ -21,61 +21,71 @@ MOST_FACTORS, MOST_TERMS = 3, 60
 MOST_ORDERS = 24
 
 
-def regions(whole: Cleared, stiffness: Rows) -> tuple[Region, ...]:
-    """Jacobi's rule: as many negative eigenvalues as changes of sign in 1, Delta_1, ..., Delta_n, none of them zero.
+def regions(whole: Cleared, stiffness: Rows) -> tuple[tuple[Region, ...], int]:
+    """Where K has how many negative eigenvalues, and how many of its eigenvalues vanish for all parameters.
 
-    Rows of zeros are left out.  One region for every choice of signs of the irreducible factors of the minors that is
-    not known to be impossible, and where no square in det K vanishes; none where in every order of the coordinates a
-    minor vanishes identically, or where there is too much to tell.
+    Jacobi's rule: as many negative ones as changes of sign in 1, Delta_1, ..., Delta_r, none of them zero, r the rank
+    of K.  One region for every choice of signs of the irreducible factors of Delta_r that is not known to be
+    impossible, and where no square in it vanishes; of other minors only where they decide.  None where there is too
+    much to tell.
     """
     minors = _minors(stiffness)
     if minors is None:
-        return ()
+        return (), 0
     powers = [irreducible_factors(minor) for minor in minors]
     factors: dict[str, Polynomial] = {}
-    for _, held in powers:
+    for _, held in reversed(powers):
         for factor, exponent in held:
             if exponent % 2 and whole.known.sign(factor) not in ("positive", "negative"):
                 factors.setdefault(str(factor), factor)
     if len(factors) > MOST_FACTORS or any(len(x) > MOST_TERMS for x in factors.values()):
-        return ()
-    # By continuity the degree is the same wherever det K keeps away from zero: borders of other minors need no word.
-    squares = (
-        [
-            (whole.formula(factor), "!=")
-            for factor, exponent in powers[-1][1]
-            if exponent % 2 == 0 and str(factor) not in factors and not whole.known.never_zero(factor)
-        ]
-        if powers
-        else []
-    )
-    found = []
+        return (), 0
+    # By continuity the degree is the same wherever Delta_r keeps away from zero: borders of other minors need no word.
+    last = powers[-1][1] if powers else ()
+    squares = [x for x, exponent in last if exponent % 2 == 0 and not whole.known.never_zero(x)]
+    deciding = sum(str(factor) in factors for factor, exponent in last if exponent % 2)
+    found: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
     for choice in product((1, -1), repeat=len(factors)):
         signs = dict(zip(factors, choice, strict=True))
-        if _excluded(whole.known, [factors[name] * sign for name, sign in signs.items()]):
-            continue
-        degree = _changes([_sign(unit, held, signs, whole.known) for unit, held in powers])
-        told = tuple((whole.formula(factors[name]), ">" if sign > 0 else "<") for name, sign in signs.items())
-        found.append(Region((*told, *squares), degree))
-    return tuple(found)
-
-
-def free_in(stiffness: Rows) -> int:
-    """How many rows are zero."""
-    return sum(all(x == 0 for x in row) for row in stiffness)
+        if not _excluded(whole.known, [factors[name] * sign for name, sign in signs.items()]):
+            degree = _changes([_sign(unit, held, signs, whole.known) for unit, held in powers])
+            found.setdefault(choice[:deciding], {})[choice] = degree
+    told = []
+    for outer, inner in found.items():
+        for choice, degree in inner.items() if len(set(inner.values())) > 1 else [(outer, next(iter(inner.values())))]:
+            signed = list(zip(factors.values(), choice, strict=False))
+            kept = [(x, "!=") for x in squares if all(x != y for y, _ in signed)]
+            where = [(whole.formula(x), how) for x, how in (*((x, ">" if s > 0 else "<") for x, s in signed), *kept)]
+            told.append(Region(tuple(where), degree))
+    return tuple(told), len(stiffness) - len(minors)
 
 
 def _minors(stiffness: Rows) -> Sequence[Polynomial] | None:
-    """Leading minors of the other rows and columns, in the first order of these in which none of them vanishes."""
+    """Leading minors up to the rank, none of them zero, in the first order of the coordinates, or else the first
+    combination of them, that has such."""
     held = [i for i, row in enumerate(stiffness) if any(x != 0 for x in row)]
-    for order in islice(permutations(held), MOST_ORDERS):
+    if not held:
+        return ()
+    n = len(held)
+    orders = ([[int(i == j) for j in order] for i in range(n)] for order in islice(permutations(range(n)), MOST_ORDERS))
+    for turn in (*orders, *([[(j + c) ** (i + 1) for j in range(n)] for i in range(n)] for c in (1, 2))):
+        half = [[sum(w * stiffness[held[i]][j] for i, w in enumerate(row) if w) for j in held] for row in turn]
+        turned = [[sum(w * row[j] for j, w in enumerate(other) if w) for other in turn] for row in half]
         try:
-            minors = leading_minors([[stiffness[i][j] for j in order] for i in order]) if order else ()
+            minors = leading_minors(turned)
+            rank = next((k for k, minor in enumerate(minors) if minor == 0), n)
+            if rank and (rank == n or _bordered_vanish(turned, rank)):
+                return minors[:rank]
         except TooLargeError:
             return None
-        if all(minor != 0 for minor in minors):
-            return minors
     return None
+
+
+def _bordered_vanish(matrix: Rows, rank: int) -> bool:
+    """Whether the symmetric matrix has this rank, its leading minor of this order being no zero."""
+    pairs = combinations_with_replacement(range(rank, len(matrix)), 2)
+    blocks = ([[*row[:rank], row[j]] for row in (*matrix[:rank], matrix[i])] for i, j in pairs)
+    return all(determinant(block) == 0 for block in blocks)
 
 
 def _sign(unit: object, held: Sequence[tuple[Polynomial, int]], signs: dict[str, int], known: Signs) -> int:

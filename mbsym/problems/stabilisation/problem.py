@@ -68,6 +68,7 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     there = None if values is None or not few else at_values(scene, linear, values)
     parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
     turning, damping, energies = [], [], []
+    pushed: list[str] = []
     given = scene.system.linear
     nonholonomic = linear.constrained is not None and not linear.constrained.holonomic
     # x' = A x has no energy, and of nonholonomic systems the matrices say nothing of it.
@@ -75,18 +76,12 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
         names = tuple(linear.coordinates[i] for i in at)
         mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
         if not circulatory.is_zero:
+            pushed += names
             continue
         whole = _cleared(scene, (mass, damped, gyro, stiff), signs)
         own = None if there is None else there.only(at)
-        turning.append(
-            Gyroscopic(
-                names,
-                () if whole is None else gyroscopic.regions(whole, whole.matrices[3]),
-                not gyro.is_zero,
-                not damped.is_zero,
-                0 if whole is None else gyroscopic.free_in(whole.matrices[3]),
-            )
-        )
+        regions, free = ((), 0) if whole is None else gyroscopic.regions(whole, whole.matrices[3])
+        turning.append(Gyroscopic(names, regions, not gyro.is_zero, not damped.is_zero, free))
         energies.append(_energy(whole, names, damped, own))
         if not damped.is_zero:
             damping.append(_dissipation(whole, names, own, None if there is None else _damping(scene, damped, values)))
@@ -96,7 +91,7 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     idle = () if linear.constrained is None else linear.constrained.idle
     apart = tuple(name for name in idle if name not in linear.coordinates)
     return Stabilisation(
-        tuple(turning), tuple(damping), control, least, found, why, tuple(energies), apart, nonholonomic
+        tuple(turning), tuple(damping), control, least, found, why, tuple(energies), apart, nonholonomic, tuple(pushed)
     )
 
 

@@ -23,8 +23,8 @@ class Region:
 class Gyroscopic(Shown):
     """Of one subsystem with N = 0: Poincare's degree of instability of K, region by region.
 
-    No region where the minors of K outgrew their budget, or vanish for all parameters.  ``free`` coordinates do not
-    occur in K.  ``present``: G is not zero; ``damped``: D is not zero; ``size``: how many coordinates there are.
+    No region where the minors of K outgrew their budget.  ``free`` eigenvalues of K vanish for all parameters.
+    ``present``: G is not zero; ``damped``: D is not zero; ``size``: how many coordinates there are.
     """
 
     coordinates: tuple[str, ...]
@@ -40,10 +40,7 @@ class Gyroscopic(Shown):
     @property
     def degree(self) -> int | None:
         """The degree, where it is the same everywhere; None where there are places of which nothing is said."""
-        if any(relation == "!=" for region in self.regions for _, relation in region.signs):
-            return None
-        found = {region.degree for region in self.regions}
-        return found.pop() if len(found) == 1 else None
+        return self.regions[0].degree if len(self.regions) == 1 and not self.regions[0].signs else None
 
 
 @dataclass(frozen=True)
@@ -152,7 +149,8 @@ class Stabilisation(Shown):
     """Problem 8.  ``control`` begins with the whole system; ``least`` are the smallest sets of inputs that suffice for
     almost all parameters, () where none does or there are none; ``no_feedback`` says why there is no ``feedback``.
     ``left_out``: coordinates of which a constrained system's independent equations know nothing.  Of a ``nonholonomic``
-    one nothing is said of gyroscopic forces, energy and dissipation: D, G, K, N split two matrices, no more."""
+    one nothing is said of gyroscopic forces, energy and dissipation: D, G, K, N split two matrices, no more.  Nor is it
+    of ``circulatory`` coordinates, in whose subsystem N is not zero."""
 
     gyroscopic: tuple[Gyroscopic, ...]
     dissipation: tuple[Dissipation, ...]
@@ -163,6 +161,7 @@ class Stabilisation(Shown):
     energy: tuple[EnergyFunction, ...]
     left_out: tuple[str, ...] = ()
     nonholonomic: bool = False
+    circulatory: tuple[str, ...] = ()
 
     @property
     def terms(self) -> int:

@@ -34,6 +34,7 @@ class Because(Enum):
     LINEAR_GYROSCOPIC = auto()
     HIGHER_MINIMUM = auto()  # (order)
     NO_MINIMUM = auto()  # (order)
+    NO_FORCES = auto()
     TERMS_OF_HIGHER_ORDER = auto()
     # of what no theorem carries
     GYROSCOPIC_ONLY = auto()

@@ -87,6 +87,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "K is only semidefinite, but terms of order [[1]] make a strict minimum of the (changed) potential energy."
     ),
     Because.NO_MINIMUM: "The (changed) potential energy has no minimum: terms of order [[1]] decide.",
+    Because.NO_FORCES: (
+        "The (changed) potential energy is constant, and no gyroscopic forces act: every position is one of rest, and "
+        "the smallest velocity leads away from it along a geodesic."
+    ),
     Because.TERMS_OF_HIGHER_ORDER: (
         "The first approximation leaves the nonlinear system open; terms of higher order decide (problem 11)."
     ),

@@ -61,6 +61,7 @@ class Fact(Enum):
     #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
     MINIMUM_OF_HIGHER_ORDER = "V has a strict minimum, by terms of higher order"
     NO_MINIMUM_IN_ONE_COORDINATE = "V has no minimum, and is a function of one coordinate alone"
+    POTENTIAL_CONSTANT = "V is the same at every position"
     ENERGY_CONSERVED = "the energy of the nonlinear system is constant"
     #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
     #: their values (``bundle``): shown of the whole system, never of a subsystem.
@@ -122,6 +123,7 @@ LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
 CHETAEV = "Chetaev's combination of integrals"
 CONVERSE = "converse of Lagrange-Dirichlet"
+GEODESICS = "motion along geodesics"
 LINEAR = "theory of linear equations"
 
 _PLAIN = (Fact.MASS_POSITIVE, Fact.POTENTIAL)
@@ -157,6 +159,8 @@ THEOREMS = (
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
     _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED),
+    # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
+    _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),
     _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
     _theorem(LINEAR, Ground.LINEAR, Because.LINEAR_BOUNDED, Fact.EXACTLY_LINEAR, Fact.BOUNDED),
     _theorem(LINEAR, None, Because.LINEAR_GROWS, Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK),

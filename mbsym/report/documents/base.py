@@ -14,10 +14,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from enum import Enum
+from fractions import Fraction
+from functools import cache
 from math import isfinite
-from typing import Annotated, Any, Literal, SupportsFloat, TypeVar
+from typing import Annotated, Any, Literal, Self, SupportsFloat, TypeVar, get_args, get_origin
 
 from msgspec import Meta, Struct, field, to_builtins
+from msgspec.structs import fields
 
 # Documents written as text.
 
@@ -57,6 +60,25 @@ def finite(value: SupportsFloat) -> float | None:
     return float(value) if isfinite(float(value)) else None
 
 
+@cache
+def _required(of: type[Struct]) -> dict[str, bool]:
+    """The fields without a default, and whether each is a mapping."""
+    return {
+        one.name: any(get_origin(x) is dict for x in (one.type, *get_args(one.type)))
+        for one in fields(of)
+        if one.required
+    }
+
+
+def _listed(value: object) -> object:
+    """With lists and dictionaries for whatever is like these, and the text of rational numbers."""
+    if isinstance(value, tuple):
+        return [_listed(one) for one in value]
+    if isinstance(value, Mapping):
+        return {name: _listed(one) for name, one in value.items()}
+    return str(value) if isinstance(value, Fraction) else value
+
+
 def _plain(value: object) -> object:
     """Numbers of NumPy and texts of types of their own as Python's."""
     for kind in (float, int, str):
@@ -67,6 +89,20 @@ def _plain(value: object) -> object:
 
 class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: name.rstrip("_")):
     """An object within a JSON file."""
+
+    @classmethod
+    def from_result(cls, source: object, /, **given: Any) -> Self:
+        """The part with what is ``given``, its other fields from the attributes of ``source`` that have their names.
+
+        Fields with a default keep it where they are not given.
+        """
+        found = given | {
+            name: dict(value) if mapping and isinstance(value, tuple) else value
+            for name, mapping in _required(cls).items()
+            if name not in given
+            for value in [getattr(source, name)]
+        }
+        return cls(**{name: _listed(x) for name, x in found.items()})
 
 
 #: The items of a list belong to the coordinates, one each.

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from fractions import Fraction
 
 from msgspec import UNSET
-from msgspec.structs import asdict
 
 from mbsym.expressions.tree import text
 from mbsym.mechanics.rest import Value
@@ -27,21 +26,17 @@ def equilibria_json(
     permanent: PermanentRotations | None = None,
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    data = doc.Equilibria(
+    data = doc.Equilibria.from_result(
+        found,
         system=system.name,
         units=units_by_name(system) or UNSET,
         values={name: str(x) if isinstance(x, Fraction) else text(x) for name, x in values.items()},
-        turning=dict(found.turning),
-        complete=found.complete,
-        remarks=list(found.remarks),
         equilibria=[_equilibrium(one) for one in found.equilibria],
         singular=[_equilibrium(one) for one in found.singular],
-        beyond=[doc.Beyond(**asdict(_equilibrium(one)), negative=list(one.beyond)) for one in found.beyond],
+        beyond=[doc.Beyond.from_result(_equilibrium(one), negative=list(one.beyond)) for one in found.beyond],
         families=[
-            doc.Family(
-                dimension=family.dimension,
-                equations=list(family.equations),
-                free=list(family.free),
+            doc.Family.from_result(
+                family,
                 angles_of=family.coordinates_of or None,
                 sample=[coordinate_value(item) for item in family.sample],
                 stability_of_the_sample=verdict_data(family.verdict),
@@ -65,11 +60,8 @@ def _equilibrium(one: RelativeEquilibrium) -> doc.Equilibrium:
 
 
 def _permanent(found: PermanentRotations) -> doc.PermanentRotations:
-    return doc.PermanentRotations(
-        body=found.body,
-        angle=found.angle,
-        axes=list(found.axes),
-        everywhere=found.everywhere,
+    return doc.PermanentRotations.from_result(
+        found,
         one_parameter_family=found.family,
         one_direction_of_each_line=found.either,
         equations=[
@@ -80,4 +72,4 @@ def _permanent(found: PermanentRotations) -> doc.PermanentRotations:
 
 
 def coordinate_value(item: CoordinateValue) -> parts.CoordinateValue:
-    return parts.CoordinateValue(name=item.name, value=item.text, exact=item.exact, number=item.value)
+    return parts.CoordinateValue.from_result(item, value=item.text, number=item.value)

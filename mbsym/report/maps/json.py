@@ -221,7 +221,7 @@ def _branches(system: System, found: Branches) -> branches.Branches:
         **head,
         coordinates=list(found.coordinates),
         proved=found.proved,
-        remarks=[branches.Remark(doubt=one.doubt, about=one.about) for one in found.remarks],
+        remarks=[branches.Remark.from_result(one) for one in found.remarks],
         intervals=[_interval(found, one, one.counted) for one in found.intervals if one.counted is not None],
         critical_values=[_critical(found, one) for one in found.criticals],
         branches=[_piece(one) for one in found.pieces],
@@ -230,12 +230,11 @@ def _branches(system: System, found: Branches) -> branches.Branches:
 
 def _interval(found: Branches, one: Cell, counted: Counted) -> branches.Interval:
     low, high = map(coordinate, found.ends(one))
-    return branches.Interval(
+    return branches.Interval.from_result(
+        counted,
         low=low,
         high=high,
         sample=str(one.sample),
-        count=counted.count,
-        stable=counted.stable,
         constant=one.certainty is Certainty.PROVED,
         equilibria=_listed(counted),
     )
@@ -243,37 +242,30 @@ def _interval(found: Branches, one: Cell, counted: Counted) -> branches.Interval
 
 def _critical(found: Branches, at: Cell) -> branches.CriticalValue:
     one = found.critical(at)
-    return branches.CriticalValue(
+    return branches.CriticalValue.from_result(
+        one,
         value=coordinate(at.sample),
         intervals=[None if side is None else side.number for side in found.sides(at)],
         events=[event.value for event in one.events],
         verdict_changes=found.verdict_changes(at),
-        continuum=one.continuum,
-        border=one.border,
         counts_agree=one.balance,
         equilibria=None if one.meetings is None else [_meeting(x) for x in one.meetings],
     )
 
 
 def _meeting(one: Meeting) -> branches.CriticalValueEquilibrium:
-    return branches.CriticalValueEquilibrium(
+    return branches.CriticalValueEquilibrium.from_result(
+        one.named,
         coordinates=[coordinate_value(x) for x in one.values],
         angles_of=one.coordinates_of or None,
-        event=one.named.event,
-        below=one.named.below,
-        above=one.named.above,
-        derivatives=dict(one.named.derivatives),
         stability=None if one.verdict is None else verdict_data(one.verdict),
     )
 
 
 def _piece(one: Piece) -> branches.Branch:
-    return branches.Branch(
-        interval=one.interval,
+    return branches.Branch.from_result(
+        one,
         equilibrium=one.number,
-        throughout=one.throughout,
-        start=one.start,
-        end=one.end,
         parameter=[_rounded(x) for x in one.parameter],
         points=[[_rounded(x) for x in q] for q in one.values],
     )
@@ -287,17 +279,8 @@ def _check(found: Check | None) -> doc.MapCheck | None:
     """What was tried a second time, and what did not agree."""
     if found is None:
         return None
-    findings = [
-        doc.Finding(
-            mistake=one.mistake,
-            region=one.region,
-            arc=one.arc,
-            corner=one.corner,
-            near=list(one.near),
-        )
-        for one in found.findings
-    ]
-    return doc.MapCheck(points=found.points, arcs=found.arcs, enclosed=found.enclosed, findings=findings)
+    findings = [doc.Finding.from_result(one) for one in found.findings]
+    return doc.MapCheck.from_result(found, findings=findings)
 
 
 def _place(one: Cell) -> dict[str, Any]:
@@ -331,27 +314,23 @@ def _soft(one: Cell) -> doc.SoftOrHard | None:
         return None
     along = None
     if found.stretches is not None:
-        along = [
-            doc.Along(axis=x.axis, from_=coordinate(x.start), to=coordinate(x.end), onset=x.onset)
-            for x in found.stretches
-        ]
-    return doc.SoftOrHard(
-        onset=found.onset,
+        along = [doc.Along.from_result(x, from_=coordinate(x.start), to=coordinate(x.end)) for x in found.stretches]
+    return doc.SoftOrHard.from_result(
+        found,
         reason=found.why.value,
         frequency=None if found.frequency is None else float(found.frequency),
         coefficient=None if found.coefficient is None else float(found.coefficient),
-        amplitude_of=found.amplitude_of,
         along=along,
     )
 
 
 def _condition(one: Condition) -> doc.Condition:
-    return doc.Condition(origin=one.origin.value, subsystem=one.part, about=one.about, reduced=one.reduced)
+    return doc.Condition.from_result(one, origin=one.origin.value, subsystem=one.part)
 
 
 def _demand(one: Demand) -> doc.Demand:
-    condition = asdict(_condition(one.condition))
-    return doc.Demand(**condition, polynomial=str(one.condition.polynomial), relation=one.relation)
+    condition = _condition(one.condition)
+    return doc.Demand.from_result(condition, polynomial=str(one.condition.polynomial), relation=one.relation)
 
 
 def _point(point: Any) -> list[parts.Number]:

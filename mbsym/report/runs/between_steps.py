@@ -24,7 +24,7 @@ def between_steps_json(passed: Passed | None) -> doc.BetweenSteps | None:
         return None
     return doc.BetweenSteps(
         switches=[float(t) for t in passed.switches],
-        narrow=[doc.Narrow(time=one.time, width=one.width, step=one.step) for one in passed.narrow],
+        narrow=[doc.Narrow.from_result(one) for one in passed.narrow],
         unresolved=[float(t) for t in passed.unresolved],
     )
 

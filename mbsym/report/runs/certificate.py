@@ -81,18 +81,16 @@ def _ended(found: Certificate) -> Message:
 
 def certificate_json(found: Certificate, names: list[str]) -> doc.Certificate:
     """Bounds are proved ones, at the enclosed rows."""
-    return doc.Certificate(
-        whole=found.whole,
+    return doc.Certificate.from_result(
+        found,
         ended=found.ended.replace(" ", "_") or None,
         reached=found.enclosure.reached,
-        rows=found.rows,
         bits=found.enclosure.bits,
         steps=len(found.enclosure.segments),
         asked=found.wanted,
         known=found.known,
         narrow=found.narrow,
         largest_radius=found.width,
-        largest_error=found.largest_error,
         events_proved=sum(radius is not None for radius in found.passages),
         largest_event_radius=max((radius for radius in found.passages if radius is not None), default=None),
         quantities={

@@ -148,10 +148,8 @@ def constraints_json(run: Simulation) -> doc.Constraints | UnsetType:
         rows=[name.label for name in known.names],
         left_out=[name.label for name in known.redundant],
         free_velocities=known.freedom,
-        start=doc.Start(
-            closest=closed.closest,
-            fixed=list(closed.fixed),
-            moved={move.name: doc.Moved(given=move.given, taken=move.found) for move in closed.moves},
+        start=doc.Start.from_result(
+            closed, moved={move.name: doc.Moved(given=move.given, taken=move.found) for move in closed.moves}
         ),
         drift=doc.Drift(positions=positions, velocities=velocities),
         singular=list(run.trajectory.work.singular),

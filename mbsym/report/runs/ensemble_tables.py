@@ -71,7 +71,8 @@ def ensemble_json(
     """The file's text; ``files`` are those that belong to it."""
     scenario = found.members.dynamics.scenario
     spread, compared = found.statistics, found.compared
-    content = doc.Ensemble(
+    content = doc.Ensemble.from_result(
+        found,
         system=scenario.system.name,
         description_sha256=meaning(scenario.system),
         status="partial" if found.interrupted else "whole",
@@ -81,14 +82,11 @@ def ensemble_json(
         seed=None if isinstance(variations[0], Grid) else seed,
         sampling="grid" if isinstance(variations[0], Grid) else sampling,
         time=doc.Time(from_=0.0, to=float(found.times[-1]), samples=len(found.times)),
-        method=found.method,
         tolerance=found.setting.tolerance,
         step=found.setting.step,
         ended=[
-            doc.Ended(
-                member=fate.member,
-                kind=fate.kind,
-                time=fate.time,
+            doc.Ended.from_result(
+                fate,
                 values=dict(zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True)),
             )
             for fate in found.fates
@@ -107,7 +105,6 @@ def ensemble_json(
             for place, name in enumerate(found.quantities)
         },
         compared=doc.Compared(members=list(compared.members), largest=finite(compared.largest)),
-        steps=found.steps,
         files=files,
     )
     return document(content)

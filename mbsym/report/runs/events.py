@@ -40,11 +40,9 @@ def events_json(run: Simulation) -> dict[str, Any]:
 
 def _event(found: Occurrences, place: int, event: Event) -> doc.WatchedEvent:
     times = found.times[found.which == place]
-    return doc.WatchedEvent(
-        name=event.name,
+    return doc.WatchedEvent.from_result(
+        event,
         condition=event.text,
-        direction=event.direction,
-        action=event.action,
         count=len(times),
         first=float(times[0]) if len(times) else None,
         last=float(times[-1]) if len(times) else None,

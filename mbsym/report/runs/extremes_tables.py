@@ -54,11 +54,8 @@ def extremes_csv(found: Extremes) -> str:
 def extremes_json(found: Extremes) -> str:
     """Everything, with the sentences; numbers that are infinite are null."""
     rows = [
-        doc.Row(
-            kind=row.kind,
-            subject=row.subject,
-            size=row.size,
-            quantity=row.quantity,
+        doc.Row.from_result(
+            row,
             digits=_rounded(row.found.digits),
             digits_of_worst_entry=_rounded(row.found.worst),
             formula_digits=round(row.found.formula, 2),
@@ -69,10 +66,8 @@ def extremes_json(found: Extremes) -> str:
         for row in found.rows
     ]
     verdicts = [
-        doc.StabilityAt(
-            kind=item.kind,
-            subject=item.subject,
-            size=item.size,
+        doc.StabilityAt.from_result(
+            item,
             exact=item.judged.exact.word,
             theorems=list(item.judged.exact.theorems),
             floats=dict(item.judged.floats),
@@ -94,9 +89,8 @@ def extremes_json(found: Extremes) -> str:
             for x in found.eigenvalues
         ],
         compensated=[
-            doc.Compensated(
-                subject=one.subject,
-                size=one.size,
+            doc.Compensated.from_result(
+                one,
                 operations_in_pairs=one.found.sensitive,
                 digits_without=round(one.found.before, 2),
                 digits_with=round(one.found.after, 2),
@@ -116,41 +110,23 @@ def _singular(found: Singularities | None) -> doc.Singular | None:
     if found is None or not found.how:
         return None
     sets = [
-        doc.Set(
-            names=list(one.names),
+        doc.Set.from_result(
+            one,
             values=[value.label for value in one.values],
-            equation=one.equation,
             places=[{name: float(x) for name, x in place.items()} for place in one.places],
-            finite=one.finite,
             fails=one.kind,
-            joint=one.joint,
-            proved=one.proved,
         )
         for one in found.sets
     ]
-    return doc.Singular(
-        complete=found.complete,
-        how=found.how,
-        ranges={name: float(bound) for name, bound in found.ranges.items()},
-        undecided=list(found.undecided),
-        sets=sets,
+    return doc.Singular.from_result(
+        found, ranges={name: float(bound) for name, bound in found.ranges.items()}, sets=sets
     )
 
 
 def _positions(found: SingularPositions) -> doc.SingularPositions:
     """Where constraints lose their rank."""
-    listed = [
-        doc.SingularPosition(
-            place=dict(one.place),
-            labels=dict(one.labels),
-            rank=one.rank,
-            usual=one.usual,
-            proved=one.proved,
-            family=one.family,
-        )
-        for one in found.found
-    ]
-    return doc.SingularPositions(starts=found.starts, more=found.more, found=listed)
+    listed = [doc.SingularPosition.from_result(one) for one in found.found]
+    return doc.SingularPositions.from_result(found, found=listed)
 
 
 def _rounded(digits: Any) -> dict[str, float]:

@@ -34,18 +34,16 @@ _SAID = {
 
 def floquet_json(system: System, found: Judged) -> str:
     """The file's text."""
-    content = doc.Floquet(
+    content = doc.Floquet.from_result(
+        found,
         system=system.name,
         description_sha256=meaning(system),
         verdict=found.word.name.lower(),
         motion="proved" if found.rests else "verified numerically",
-        lagrangian=found.lagrangian,
         frequency=str(found.frequency),
         period=found.period.str(30, radius=False),
         multipliers=[_multiplier(one) for one in found.multipliers],
-        simple=found.simple,
         monodromy=[[entry.str(DIGITS) for entry in row] for row in found.monodromy.tolist()],
-        steps=found.steps,
     )
     return written(content)
 

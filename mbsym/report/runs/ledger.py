@@ -113,26 +113,8 @@ def ledger_data(found: Ledger) -> doc.Ledger:
 
 
 def _saving(item: Saving) -> doc.Saving:
-    measures = [
-        doc.Measure(
-            quantity=measure.quantity,
-            unit=measure.unit,
-            without=measure.without,
-            with_=measure.taken,
-            at_least=measure.at_least,
-        )
-        for measure in item.measures
-    ]
-    return doc.Saving(
-        kind=item.kind,
-        what=list(item.what),
-        why=item.why,
-        how=item.how,
-        measures=measures,
-        standing=item.standing,
-        error=item.error,
-        tolerable=item.tolerable,
-    )
+    measures = [doc.Measure.from_result(measure, with_=measure.taken) for measure in item.measures]
+    return doc.Saving.from_result(item, measures=measures)
 
 
 def with_ledger(results: str, found: Ledger) -> str:

@@ -30,27 +30,22 @@ def orbit_csv(found: PeriodicMotion) -> str:
 def orbit_json(found: PeriodicMotion) -> str:
     """The file's text."""
     orbit, system = found.orbit, found.scenario.system
-    content = doc.Orbit(
+    content = doc.Orbit.from_result(
+        orbit,
         system=system.name,
         description_sha256=meaning(system),
         initial=dict(zip(orbit.names, map(float, orbit.state), strict=True)),
-        period=orbit.period,
         repeats=found.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
-        energy=orbit.energy,
-        closure=orbit.closure,
         verified=doc.Verified(closure=finite(orbit.verified), method=orbit.verifier),
         newton_steps=orbit.steps,
-        autonomous=orbit.autonomous,
         multipliers=[
             doc.Multiplier(real=float(mu.real), imaginary=float(mu.imag), size=float(abs(mu)))
             for mu in orbit.multipliers
         ],
-        uncertainty=orbit.uncertainty,
-        determinant=orbit.determinant,
         trivial=doc.Trivial(
             count=orbit.trivial,
-            reasons=[doc.Reason(reason=one.reason, moved=one.moved) for one in orbit.reasons],
+            reasons=[doc.Reason.from_result(one) for one in orbit.reasons],
         ),
         monodromy=[[float(x) for x in row] for row in orbit.monodromy],
     )

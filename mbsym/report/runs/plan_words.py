@@ -229,29 +229,22 @@ def repeating_command(file: str, settings: Sequence[str], request: Request, carr
 
 def model_json(model: Model) -> doc.Model:
     """What is in the equations."""
-    return doc.Model(gravity=model.gravity, linear=model.linear, without=list(model.without))
+    return doc.Model.from_result(model)
 
 
 def plan_json(plan: Plan, request: Request) -> doc.Plan:
     """The plan without seconds, which no two runs share."""
-    return doc.Plan(
-        accuracy=doc.Accuracy(everything=plan.accuracy.everything, named=dict(plan.accuracy.named)),
-        reached=plan.reached,
+    return doc.Plan.from_result(
+        plan,
+        accuracy=doc.Accuracy.from_result(plan.accuracy),
         bounds=[
-            doc.Bound(
-                quantity=bound.quantity,
-                target=bound.target,
-                total=bound.total,
-                how=bound.how,
-                shares=[doc.Share(name=x.name, error=x.error, how=x.how or "together") for x in bound.shares],
+            doc.Bound.from_result(
+                bound,
+                shares=[doc.Share.from_result(x, how=x.how or "together") for x in bound.shares],
                 proved_at_rows=UNSET if bound.proved is None else bound.proved,
             )
             for bound in plan.bounds
         ],
-        items=[
-            doc.Item(kind=x.kind, what=list(x.what), chosen=x.chosen, why=x.why, error=x.error, how=x.how)
-            for x in plan.items
-        ],
-        remarks=list(plan.remarks),
+        items=[doc.Item.from_result(x) for x in plan.items],
         options=repeating_options(request),
     )

@@ -126,7 +126,7 @@ def _ended(found: Trajectory) -> doc.Ended | None:
     names = [*found.system.coordinates, *found.system.velocities]
     state: dict[str, float | str] = dict(zip(names, map(float, found.breakdown.state), strict=True))
     ended = found.breakdown
-    return doc.Ended(kind=ended.kind, message=ended.message, time=float(ended.time), state=state)
+    return doc.Ended.from_result(ended, time=float(ended.time), state=state)
 
 
 def versions() -> dict[str, str]:

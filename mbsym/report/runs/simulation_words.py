@@ -179,38 +179,21 @@ def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstima
     if isinstance(found, NoEstimate):
         return doc.NoEstimate(available=False, why=found.why.name.lower())
     against = found.against
-    return doc.Estimate(
+    return doc.Estimate.from_result(
+        found,
         available=True,
-        final=found.final,
-        largest=found.largest,
         how="better run",
-        against=doc.Against(
-            method=against.method,
-            arithmetic=against.scalar,
-            tolerance=against.setting.tolerance,
-            step=against.setting.step,
-            longest_step=against.setting.longest,
+        against=doc.Against.from_result(
+            against.setting, method=against.method, arithmetic=against.scalar, longest_step=against.setting.longest
         ),
         lower_bound=found.parted is not None,
-        parted=found.parted,
         over=doc.Over(
             from_=0.0,
             to=found.compared.end,
             samples=found.compared.points,
             every_step=found.compared.followed,
         ),
-        quantities={
-            q.name: doc.QuantityError(
-                final=q.final,
-                largest=q.largest,
-                when=q.when,
-                size=q.size,
-                scale=q.scale,
-                floor=q.floor,
-                rests=q.rests,
-            )
-            for q in found.quantities
-        },
+        quantities={q.name: doc.QuantityError.from_result(q) for q in found.quantities},
     )
 
 

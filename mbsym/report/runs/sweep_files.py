@@ -102,18 +102,12 @@ def sweep_json(
         sampling=None if points.grids else points.sampling,
         seed=None if points.grids else points.seed,
         settings=dict(settings),
-        columns=[doc.Column(name=column.name, meaning=column.meaning) for column in columns],
+        columns=[doc.Column.from_result(column) for column in columns],
         shares=[_share(one) for one in totals.shares(random)] if judged else [],
         stable=_share(totals.stable(random)) if judged else None,
         singly=totals.singly if judged else None,
         ranges=[
-            doc.Range(
-                column=one.column,
-                least=finite(one.least),
-                mean=finite(one.mean),
-                greatest=finite(one.greatest),
-                missing=one.missing,
-            )
+            doc.Range.from_result(one, least=finite(one.least), mean=finite(one.mean), greatest=finite(one.greatest))
             for one in totals.ranges()
         ],
         dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
@@ -125,11 +119,11 @@ def sweep_json(
 def _variation(one: Variation) -> doc.Swept:
     if isinstance(one, Grid):
         return doc.Swept(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
-    return doc.Swept(name=one.name, kind=one.kind, first=one.first, second=one.second)
+    return doc.Swept.from_result(one, first=one.first, second=one.second)
 
 
 def _share(one: Share) -> doc.Share:
     found = None
     if one.interval is not None:
         found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
-    return doc.Share(word=one.word, count=one.count, total=one.total, interval=found)
+    return doc.Share.from_result(one, interval=found)

@@ -72,11 +72,10 @@ def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:
 
 def _constraints(found: Constraints, write: Write) -> doc.Constraints:
     rows = [
-        doc.ConstraintRow(
+        doc.ConstraintRow.from_result(
+            name,
             constraint=name.constraint + 1,
             component=name.component or None,
-            kind=name.kind,
-            holonomic=name.holonomic,
             position=None if position is None else write(position),
             velocity=write(velocity),
             independent=k in found.independent,
@@ -105,12 +104,7 @@ def _constraints(found: Constraints, write: Write) -> doc.Constraints:
         velocity_rank_beside=found.rank_beside,
         integrability=None
         if integrable is None
-        else doc.Integrability(
-            word=integrable.word,
-            growth=list(integrable.growth),
-            kept=integrable.kept,
-            known=integrable.certainty.value,
-        ),
+        else doc.Integrability.from_result(integrable, known=integrable.certainty.value),
         integrable_alone=[doc.IntegrableAlone(row=name.label, integrable=decided) for name, decided in found.alone],
         dependent=list(found.dependent),
         independent=list(found.free),

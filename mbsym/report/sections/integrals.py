@@ -18,10 +18,7 @@ if TYPE_CHECKING:
 
 def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
     """The section of results.json."""
-    return [
-        doc.Integral(name=item.name, kind=item.kind, of=item.of, formula=write(item.formula), status=item.status)
-        for item in found
-    ]
+    return [doc.Integral.from_result(item, formula=write(item.formula)) for item in found]
 
 
 _ENERGY = (

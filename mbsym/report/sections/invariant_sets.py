@@ -39,9 +39,8 @@ def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSet
         relations=[str(x) for x in found.relations],
         stand_for=dict(found.written),
         families=[
-            doc.Family(
-                integrals=list(family.integrals),
-                multipliers=list(family.multipliers),
+            doc.Family.from_result(
+                family,
                 complete=not (family.unfinished or family.singular or family.parts),
                 sets=[_set(one) for one in family.sets],
             )
@@ -53,14 +52,12 @@ def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSet
 
 def _set(one: StationarySet) -> doc.InvariantSet:
     stands = one.invariant is True
-    return doc.InvariantSet(
-        kind=one.kind,
-        dimension=one.dimension,
+    return doc.InvariantSet.from_result(
+        one,
         dimension_of_union=one.union,
         solved={name: str(x) for name, x in one.solved},
         relations=[str(x) for x in one.relations],
         nonzero=[str(x) for x in one.nonzero],
-        free=list(one.free),
         multipliers={name: None if x is None else str(x) for name, x in one.multipliers},
         motion={name: str(x) for name, x in one.motion},
         invariant={True: "proved", None: "undecided", False: "failed"}[one.invariant],
@@ -72,9 +69,8 @@ def _set(one: StationarySet) -> doc.InvariantSet:
 
 
 def _variation(found: SecondVariation) -> doc.SecondVariation:
-    return doc.SecondVariation(
-        outcome=found.outcome,
-        size=found.size,
+    return doc.SecondVariation.from_result(
+        found,
         positive=None if found.positive is None else _relations(found.positive),
         negative=None if found.negative is None else _relations(found.negative),
         for_some_value_of=list(found.chosen),
@@ -82,12 +78,11 @@ def _variation(found: SecondVariation) -> doc.SecondVariation:
 
 
 def _first(found: FirstApproximation) -> doc.FirstApproximation:
-    return doc.FirstApproximation(
+    return doc.FirstApproximation.from_result(
+        found,
         zero_roots=found.zeros,
         factors_in_lambda_squared=[[str(x) for x in factor] for factor in found.factors],
         necessary=_relations(found.necessary),
-        unstable=found.unstable,
-        complete=found.complete,
         roots_left_out=found.left,
     )
 

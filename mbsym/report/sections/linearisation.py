@@ -59,17 +59,12 @@ def data(found: Linearisation, system: System, write: Write) -> doc.Linearisatio
 
 
 def _reduction(about: Reduction, write: Write) -> doc.Reduction:
-    return doc.Reduction(
-        coordinates=list(about.coordinates),
-        speeds=list(about.speeds),
-        dependent_coordinates=list(about.dependent_coordinates),
-        dependent_speeds=list(about.dependent_speeds),
-        idle=list(about.idle),
+    return doc.Reduction.from_result(
+        about,
         following=list(about.following) or UNSET,
         leaf=about.leaf or UNSET,
         rates={name: write(rate) for name, rate in about.rates},
         assumed_nonzero=[write(x) for x in about.assumed],
-        holonomic=about.holonomic,
     )
 
 
@@ -92,7 +87,7 @@ def content(results: Results) -> Iterator[Block]:
         yield paragraph(Said("As $\\dot x = A x$ with $M = 0$, $D = 1$ and $K + N = -A$."))
     yield paragraph(
         say(
-            "In physical time and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not "
+            "In the time $t$ and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not "
             "written are zero.",
             q=named(found.coordinates),
         )
@@ -133,26 +128,26 @@ def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
         state = speeds(form.states)
         said = (
             say(
-                "In first-order form, in physical time, with the state $x = ([[state]])$ of independent coordinates "
+                "In first-order form, in the time $t$, with the state $x = ([[state]])$ of independent coordinates "
                 "and velocities and the deviations $w$ of the outputs $([[outputs]])$:",
                 state=state,
                 outputs=named(form.outputs),
             )
             if form.outputs
             else say(
-                "In first-order form, in physical time, with the state $x = ([[state]])$ of independent coordinates "
+                "In first-order form, in the time $t$, with the state $x = ([[state]])$ of independent coordinates "
                 "and velocities:",
                 state=state,
             )
         )
     elif form.outputs:
         said = say(
-            r"In first-order form, in physical time, with the state $x = (q, \dot q)$ and the deviations $w$ of the "
+            r"In first-order form, in the time $t$, with the state $x = (q, \dot q)$ and the deviations $w$ of the "
             "outputs $([[outputs]])$:",
             outputs=named(form.outputs),
         )
     else:
-        said = Said(r"In first-order form, in physical time, with the state $x = (q, \dot q)$:")
+        said = Said(r"In first-order form, in the time $t$, with the state $x = (q, \dot q)$:")
     yield paragraph(said)
     a, b, c, d = (Symbol(letter, look="script") for letter in "ABCD")
     x, v, plus = Symbol("x"), Symbol("v"), ("+",) if form.inputs else ()

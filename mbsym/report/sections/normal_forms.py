@@ -23,9 +23,8 @@ if TYPE_CHECKING:
 def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
     """The section of results.json."""
     symbols = found.in_symbols
-    return doc.NormalForms(
-        coordinates=list(found.coordinates),
-        cyclic=list(found.cyclic),
+    return doc.NormalForms.from_result(
+        found,
         hamiltonian=found.conservative,
         generalized_potential=found.taken_in,
         first_approximation=None if found.first is None else found.first.value,
@@ -37,9 +36,9 @@ def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
 
 
 def _judged(found: Judged) -> doc.NormalFormAtValues:
-    return doc.NormalFormAtValues(
+    return doc.NormalFormAtValues.from_result(
+        found,
         verdict=found.outcome,
-        theorem=found.theorem,
         reason=found.why,
         frequencies=list(map(enclosure, found.frequencies)),
         actions=[
@@ -48,9 +47,6 @@ def _judged(found: Judged) -> doc.NormalFormAtValues:
         determinants=[Determinant(order=order, value=enclosure(value)) for order, value in found.determinants],
         resonances=[list(one.vector) for one in found.resonances],
         coefficient=None if found.coefficient is None else enclosure(found.coefficient),
-        amplitude_of=found.amplitude_of,
-        along=found.along,
-        degree=found.degree,
     )
 
 

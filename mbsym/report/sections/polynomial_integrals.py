@@ -36,22 +36,13 @@ if TYPE_CHECKING:
 def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialIntegrals:
     """The section of results.json."""
     found = result.found
-    return doc.PolynomialIntegrals(
-        degree=found.degree,
+    return doc.PolynomialIntegrals.from_result(
+        found,
         weights=dict(zip(found.field.variables, found.grading.weights, strict=True)),
         quasi_homogeneous=found.grading.homogeneous,
-        complete=found.complete,
-        independent=found.independent,
         not_contained=list(found.aside),
         integrals=[
-            integrals.Integral(
-                weight=one.weight,
-                name=one.name,
-                new=one.is_new,
-                formula=str(formula),
-                independent=one.independent,
-                independence=one.certainty.value,
-            )
+            integrals.Integral.from_result(one, new=one.is_new, formula=str(formula), independence=one.certainty.value)
             for one, formula in zip(found.generators, result.formulas, strict=True)
         ],
         on_levels=[

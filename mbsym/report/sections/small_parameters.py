@@ -28,14 +28,13 @@ if TYPE_CHECKING:
 def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParameters:
     """The section of results.json."""
     slow, wave = found.slow, found.oscillation
-    return doc.SmallParameters(
+    return doc.SmallParameters.from_result(
+        found,
         small=found.small or None,
-        powers=dict(found.powers),
         slow_manifold=None if slow is None else expansion_data(slow, write),
         no_slow_manifold=found.no_slow,
         measured=None if slow is None else measured_data(flow_measured(found, system)),
         oscillation=None if wave is None else oscillation_data(wave, oscillation_measured(found, system)),
-        no_oscillation=found.no_oscillation,
         averaged=[_averaging(one, write) for one in averages(found, system)],
     )
 

@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 
 def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
     """The section of results.json."""
-    return doc.Stabilisation(
+    return doc.Stabilisation.from_result(
+        found,
         gyroscopic=[
             doc.Gyroscopic(
                 coordinates=list(part.coordinates),
@@ -55,10 +56,8 @@ def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisatio
             for part in found.gyroscopic
         ],
         energies=[
-            doc.BundleEnergy(
-                coordinates=list(part.coordinates),
-                conserved=part.conserved,
-                definite=part.definite,
+            doc.BundleEnergy.from_result(
+                part,
                 minors=[write(x) for x in part.minors],
                 definite_at_values=part.at_values,
                 bundle_at_values=None if part.bundle is None else list(map(str, part.bundle)),
@@ -66,10 +65,8 @@ def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisatio
             for part in found.energy
         ],
         dissipation=[
-            doc.Dissipation(
-                coordinates=list(part.coordinates),
-                complete=part.complete,
-                semidefinite=part.semidefinite,
+            doc.Dissipation.from_result(
+                part,
                 rank=_rank(part.rank, write),
                 undamped=[
                     doc.Undamped(
@@ -83,29 +80,20 @@ def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisatio
             for part in found.dissipation
         ],
         control=[
-            doc.Control(
-                coordinates=list(part.coordinates),
-                inputs=list(part.inputs),
-                rank=_rank(part.rank, write),
-                controllable_at_values=part.at_values,
-                stabilisable_at_values=part.stabilisable_at_values,
-            )
+            doc.Control.from_result(part, rank=_rank(part.rank, write), controllable_at_values=part.at_values)
             for part in found.control
         ],
         least_inputs=[list(one) for one in found.least],
         feedback=None if found.feedback is None else _feedback(found.feedback),
-        no_feedback=found.no_feedback,
-        left_out=list(found.left_out),
     )
 
 
 def _rank(found: Rank, write: Write) -> doc.Rank:
-    return doc.Rank(
-        full=found.full,
+    return doc.Rank.from_result(
+        found,
         sure=found.certainty.value,
         roots_without=[[write(x) for x in factor] for factor in found.factors],
         lost=None if found.locus is None else _locus(found.locus, write),
-        why_not=found.why_not,
     )
 
 
@@ -141,7 +129,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     yield paragraph(
         Said(
-            "About the linear equations of problem 5, in physical time; asymptotic stability and instability carry "
+            "About the linear equations of problem 5, in the time $t$; asymptotic stability and instability carry "
             "over to the equations of motion."
         )
     )

@@ -72,6 +72,8 @@ if TYPE_CHECKING:
 
 #: A polynomial that never has the sign it should have is written out up to this length.
 SHORT = 60
+#: A formula of so many characters that was shown before is written again, rather than its name.
+AS_A_NAME = 40
 
 
 def data(found: Stability, system: System, write: Write) -> doc.Stability:
@@ -85,9 +87,7 @@ def data(found: Stability, system: System, write: Write) -> doc.Stability:
         eigenvalues_at_values=[
             doc.Spectrum(
                 coordinates=list(part.coordinates),
-                roots=[
-                    doc.Root(real=x.real, imaginary=x.imaginary, multiplicity=x.multiplicity) for x in numbers(part)
-                ],
+                roots=[doc.Root.from_result(x) for x in numbers(part)],
             )
             for part in found.spectra
         ],
@@ -96,13 +96,12 @@ def data(found: Stability, system: System, write: Write) -> doc.Stability:
 
 def verdict_data(found: Verdict) -> parts.Verdict:
     """A verdict in every JSON file: its word, its theorems and reasons as codes, the reasons in sentences beside."""
-    return parts.Verdict(
+    return parts.Verdict.from_result(
+        found,
         verdict=found.word,
-        theorems=list(found.theorems),
         reasons=[
             parts.Reason(code=item.code.name.lower(), data=[_datum(x) for x in item.data]) for item in found.reasons
         ],
-        explanation=found.explanation,
     )
 
 
@@ -130,11 +129,8 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
 def _statement(item: Statement) -> doc.Statement:
     """``formula`` ``relation`` 0; null for a formula that is too long to be written out."""
     formula = item.formula if item.never is None else item.never
-    return doc.Statement(
-        label=item.label,
-        formula=None if formula is None else str(formula),
-        relation=item.relation,
-        never=item.never is not None,
+    return doc.Statement.from_result(
+        item, formula=None if formula is None else str(formula), never=item.never is not None
     )
 
 
@@ -154,12 +150,11 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
         found = shown.reference(item)
         return _statement(item) if found is None else doc.Listed(listed=found.under, relation=found.relation)
 
-    return doc.Case(
+    return doc.Case.from_result(
+        case,
         all_of=[named(item) for item in case.all_of],
         any_of=[named(item) for item in case.any_of],
-        otherwise=case.otherwise,
         verdict=case.word,
-        theorems=list(case.theorems),
     )
 
 
@@ -202,7 +197,7 @@ def content(results: Results) -> Iterator[Block]:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
-                say("Eigenvalues there, in physical time, of $[[names]]$", names=named(spectrum.coordinates)),
+                say("Eigenvalues there, in the time $t$, of $[[names]]$", names=named(spectrum.coordinates)),
                 ": ",
                 *roots,
                 *((" ", Unit(unit)) if unit else ()),
@@ -336,25 +331,31 @@ def _conditions(items: Sequence[Statement], seen: _Keyed) -> Iterator[Block]:
 
 
 def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
-    reference, label, key = seen.reference(item), label_of(item.label), seen.key(item)
+    reference, key = seen.reference(item), seen.key(item)
     remark: tuple[Inline, ...] = (worded(item.remark),) if item.remark else ()
     note: tuple[Inline, ...] = (worded(item.note),) if item.note else ()
+    label = label_of(item.label if reference is None else reference.label)
+    named: tuple[Math | str, ...] = (label, ":") if item.named else ()
     if reference is not None:
-        own: tuple[Math | str, ...] = () if reference.under == reference.label else (label_of(reference.label), ":")
-        yield Display(Relation(*own, label_of(reference.under), reference.relation, 0))
+        left: Math = label_of(reference.under)
+        if isinstance(left, Text) and len(reference.formula.readable()) <= AS_A_NAME:
+            left = Readable(reference.formula, True)
+        elif reference.under == reference.label:
+            named = ()
+        yield Display(Relation(*named, left, reference.relation, 0))
     elif item.formula is None:
         never = item.never is not None and item.never.terms < SHORT
         yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), key, note)
     elif item.told is not None:
         text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
         long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
-        yield Display(Relation(label, ":", item.told.formula, item.relation, 0), key, (long, *remark))
+        yield Display(Relation(*named, item.told.formula, item.relation, 0), key, (long, *remark))
         letters = seen.unshown(item.told)
         if letters:
             yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
     else:
         shown = Readable(item.formula, not item.note)
-        yield Display(Relation(label, ":", shown, item.relation, 0), key, note or remark)
+        yield Display(Relation(*named, shown, item.relation, 0), key, note or remark)
 
 
 def label_of(label: str) -> Math:

@@ -37,6 +37,7 @@ from mbsym.report.content import (
     Phrase,
     Relation,
     Said,
+    Symbol,
     Unit,
     joined,
     named,
@@ -47,7 +48,7 @@ from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import is_short, short_equations
 from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.integrals import CONSTANT
-from mbsym.report.sections.stability import condition_keys
+from mbsym.report.sections.stability import condition_keys, label_of
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, titles, verdict, where
 from mbsym.report.words.stabilisation_words import controllability
@@ -224,26 +225,33 @@ def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
         return  # the conditions of the others hold nowhere inside
     keys = list(condition_keys(part, number))
     seen: list[Formula] = []
-    last: list[Relation] = []
+    last: list[_Condition] = []
     for k, case in enumerate(known[:MOST_CASES]):
-        every, either = _conditions(case, seen)
-        told_where = _where(case, every, either, last, keys) if every or either else _counted(case)
+        every, either = _conditions(case, seen, keys)
+        told_where = _where(case, every, either, last) if every or either else _counted(case)
         yield Phrase((*((Said("otherwise"), " ") if k else ()), told_where))
         last = every
     if len(known) > MOST_CASES:
         yield Link(say("further cases: [[count]]", count=str(len(known) - MOST_CASES)), "problem-6")
 
 
-def _conditions(case: CaseStatement, seen: list[Formula]) -> tuple[list[Relation], list[Relation]]:
-    """What all has to hold, and what of which something has to; nothing where it is too long to be read.
+#: A condition, and where it stands in problem 6.
+_Condition = tuple[Relation, tuple[Numbered, ...]]
 
-    ``seen``: polynomials that stood before, as they stood.
+
+def _conditions(case: CaseStatement, seen: list[Formula], keys: Keys) -> tuple[list[_Condition], list[_Condition]]:
+    """What all has to hold, and what of which something has to; nothing where there is too much to be read.
+
+    ``seen``: polynomials that stood before, as they stood.  Beside a long one coefficients are told by their letters.
     """
     wanted = [*case.all_of, *case.any_of]
-    if len(wanted) > MOST_CONDITIONS or not all(one.formula is not None and is_short(one.formula) for one in wanted):
+    if len(wanted) > MOST_CONDITIONS or not all(
+        one.formula is not None and (is_short(one.formula) or "," not in one.bare) for one in wanted
+    ):
         return [], []
-    either = [_relation(one, seen) for one in case.any_of]
-    return [_relation(one, seen) for one in case.all_of], either
+    long = not all(one.formula is not None and is_short(one.formula) for one in wanted)
+    either = [_condition(one, long, seen, keys) for one in case.any_of]
+    return [_condition(one, long, seen, keys) for one in case.all_of], either
 
 
 def _counted(case: CaseStatement) -> Inline:
@@ -262,30 +270,36 @@ def _counted(case: CaseStatement) -> Inline:
     return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
 
 
-def _where(
-    case: CaseStatement,
-    every: list[Relation],
-    either: list[Relation],
-    before: list[Relation],
-    keys: Keys,
-) -> Inline:
+def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition], before: list[_Condition]) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
     verdict = Phrase(where(case.word, case.theorems))
-    if len(either) > 1 and not every and [one.parts for one in either] == [_reversed(one) for one in before]:
+    if len(either) > 1 and not every and [one.parts for one, _ in either] == [_reversed(one) for one, _ in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    told = [Phrase((one, *_numbered(one, keys))) for one in every]
-    others = [Phrase((one, *_numbered(one, keys))) for one in either]
-    conditions = Phrase((joined(told, ", "), *between, joined(others, " ", Said("or"), " ")))
+    of = next(((" (", Said("characteristic polynomial"), ")") for one, _ in (*every, *either) if _is_named(one)), ())
+    told = joined((Phrase((one, *number)) for one, number in every), ", ")
+    others = joined((Phrase((one, *number)) for one, number in either), " ", Said("or"), " ")
+    conditions = Phrase((told, *between, others, *of))
     # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
     text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
     return say(text, verdict=verdict, conditions=conditions)
 
 
-def _numbered(one: Relation, keys: Keys) -> tuple[Numbered, ...]:
-    """Where the condition stands in problem 6, a positive number times it, or its opposite reversed."""
+def _condition(item: Statement, long: bool, seen: list[Formula], keys: Keys) -> _Condition:
+    """The condition and its number; one that is too long to be read by its name, a coefficient beside it, too."""
+    assert item.formula is not None
+    name = label_of(item.bare)
+    if (long and isinstance(name, Symbol)) or not is_short(item.formula):
+        stands = OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation
+        return Relation(name, stands, 0), _numbered(item.formula, item.relation, keys)
+    one = _relation(item, seen)
     left, relation, _ = one.parts
     assert isinstance(left, Formula)
+    return one, _numbered(left, relation, keys)
+
+
+def _numbered(left: Formula, relation: Math | str, keys: Keys) -> tuple[Numbered, ...]:
+    """Where the condition stands in problem 6, a positive number times it, or its opposite reversed."""
     for item, key in keys:
         assert item.formula is not None
         ratio = rational_ratio(left.polynomial, item.formula.polynomial)
@@ -294,6 +308,10 @@ def _numbered(one: Relation, keys: Keys) -> tuple[Numbered, ...]:
         ):
             return (Numbered(key),)
     return ()
+
+
+def _is_named(one: Relation) -> bool:
+    return isinstance(one.parts[0], Symbol)
 
 
 def _reversed(one: Relation) -> tuple[Math | str, ...]:

@@ -113,14 +113,12 @@ def _polynomial(coefficients: Sequence[int], name: str) -> str:
 
 def as_text(system: System, found: Along) -> str:
     """JSON: ``between`` has one entry more than ``values``."""
-    whole = doc.Nonlinear(
+    whole = doc.Nonlinear.from_result(
+        found,
         system=system.name,
         parameter=found.name,
         low=str(found.low),
         high=str(found.high),
-        hamiltonian=found.hamiltonian,
-        coordinates=list(found.coordinates),
-        cyclic=list(found.cyclic),
         values=[
             doc.ExceptionalValue(
                 value=_number(one),

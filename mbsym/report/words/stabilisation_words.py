@@ -34,6 +34,16 @@ def sentences(found: Stabilisation) -> Iterator[Said]:
             "where the equations of motion do not depend on [[names]], and of these nothing is said.",
             {"names": named(found.left_out)},
         )
+    if found.circulatory:
+        yield Said(
+            "Of [[names]] nothing is said of gyroscopic forces, dissipation and energy: the theorems ask for $N = 0$.",
+            {"names": named(found.circulatory)},
+        )
+    elif not (found.gyroscopic or found.control or found.nonholonomic):
+        yield Said(
+            "There are no inputs, and the theorems on gyroscopic forces, dissipation and energy are not about "
+            "equations of first order: nothing is said."
+        )
     for part in found.gyroscopic:
         yield from _gyroscopic(part)
     yield from _together(found.gyroscopic)
@@ -60,7 +70,8 @@ def _gyroscopic(part: Gyroscopic) -> Iterator[Said]:
         return
     if part.free:
         yield Said(
-            "$K$ does not contain all of [[names]]; zero eigenvalues: [[free]].", {**names, "free": str(part.free)}
+            "$K$ for [[names]] is singular at all values of the parameters; zero eigenvalues, at least: [[free]].",
+            {**names, "free": str(part.free)},
         )
     if part.degree is not None:
         yield Said(

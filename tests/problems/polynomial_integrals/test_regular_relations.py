@@ -12,7 +12,7 @@ import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
 from mbsym.problems.polynomial_integrals import darboux_polynomials, grading, linear_relations, polynomial_integrals
-from mbsym.problems.polynomial_integrals.regular import is_regular_on
+from mbsym.problems.polynomial_integrals.darboux import is_regular_on
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 

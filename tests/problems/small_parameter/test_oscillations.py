@@ -17,8 +17,8 @@ from msgspec import UNSET
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.oscillating import oscillating
+from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
-from mbsym.problems.small_parameter.oscillation_checks import residual_orders
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain_writer import Writer
@@ -352,8 +352,8 @@ def test_a_planted_error_is_seen_twice(gyrostat, fast):
     from mbsym.problems.small_parameter.graded_rows import graded_rows
 
     graded = graded_rows(tower, fast.field, "eps", small, 3)
-    assert min(x for x in residual_orders(graded, fast.field.variables, wrong) if x is not None) == 2
-    assert min(x for x in residual_orders(graded, fast.field.variables, found) if x is not None) == 3
+    assert min(x for x in oscillation_orders(graded, fast.field.variables, wrong) if x is not None) == 2
+    assert min(x for x in oscillation_orders(graded, fast.field.variables, found) if x is not None) == 3
     assert measured_orders(gyrostat.system, replace(fast, found=wrong)).orders[place] < 2.8
 
 

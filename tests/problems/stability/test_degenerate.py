@@ -111,3 +111,33 @@ motion: {a: 0}
     found = mbsym.loads(text.replace("W: 3", f"W: {rate}")).stability.numerical
     assert found is not None
     assert found.word is word
+
+
+@pytest.mark.parametrize(
+    ("position", "coordinates", "loads", "word"),
+    [
+        # T = (1 + x^2) x'^2/2 keeps its value: |x'| stays away from zero.
+        ("[x, x**2/2, 0]", "x: 0", "", Word.UNSTABLE),
+        # Geodesics of a surface, and straight lines in polar coordinates, leave every small circle.
+        ("[x, y, x**2/2 + y**2 + x**2*y/2]", "x: 0, y: 0", "", Word.UNSTABLE),
+        ("[r*cos(a), r*sin(a), 0]", "r: 1, a: 0", "", Word.UNSTABLE),
+        # x'' = y', y'' = -x' but for terms of third order: circles of radius |v| about places near by.
+        ("[x, y, x*y]", "x: 0, y: 0", "generalized force: {x: y_dot, y: -x_dot}", None),
+        # Friction stops it near by: x'' (1 + x^2) + x x'^2 = -x'.
+        ("[x, x**2/2, 0]", "x: 0", "rayleigh: x_dot**2/2", None),
+    ],
+)
+def test_no_forces_at_all(position: str, coordinates: str, loads: str, word: Word | None) -> None:
+    names = ", ".join(one.partition(":")[0].strip() for one in coordinates.split(","))
+    acting = f"loads: [{{{loads}}}]\n" if loads else ""
+    text = f"""
+mbsym: 1
+name: Free
+bodies:
+  - {{name: one, attached to: 0, connection point: {position}, mass: 1, coordinates: [{names}]}}
+{acting}motion: {{{coordinates}}}
+"""
+    found = mbsym.loads(text).stability.numerical
+    assert found is not None
+    assert found.word is word if word is not None else found.word is not Word.UNSTABLE
+    assert ("motion along geodesics" in found.theorems) == (word is Word.UNSTABLE)

@@ -70,7 +70,7 @@ def test_texts() -> None:
 def test_the_command_tells_them(tmp_path: Path) -> None:
     result = CliRunner().invoke(main, ["run", "-v", str(SHIPPED / "dumbbell.yaml"), "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
-    assert "Eigenvalues there, in physical time, of alpha: +- 0.00173205 i" in result.output
+    assert "Eigenvalues there, in the time t, of alpha: +- 0.00173205 i" in result.output
     told = json.loads((tmp_path / "results.json").read_text())["stability"]["eigenvalues_at_values"]
     assert told[1] == {"coordinates": ["beta"], "roots": [{"real": 0.0, "imaginary": 0.002, "multiplicity": 1}]}
     assert r"$\pm 0.002 \,\mathrm{i}$" in (tmp_path / "report.tex").read_text()

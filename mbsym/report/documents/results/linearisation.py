@@ -66,12 +66,12 @@ class Linearisation(Matrices, frozen=True, kw_only=True):
         BY_COORDINATE,
     ] = UNSET
     subsystems: Annotated[list[LinearSubsystem], "decoupled parts", told_apart_by("coordinates")]
-    time: Annotated[Formula, "the time of the subsystems; t is physical time"]
+    time: Annotated[Formula, "the time of the subsystems; t is that of the description"]
     notation: Annotated[dict[str, Formula], "the description's symbols and what they stand for"]
 
 
 class StateSpace(Part, frozen=True):
-    """first-order form x' = A x + B v, w = C x + D v of problem 5, in physical time, x, v, w the deviations of states,
+    """first-order form x' = A x + B v, w = C x + D v of problem 5, in the time t, x, v, w the deviations of states,
     inputs and outputs; for descriptions with inputs or outputs
     """
 

@@ -28,7 +28,7 @@ class Gyroscopic(Part, frozen=True):
     """a subsystem"""
 
     coordinates: Annotated[list[str], "the coordinates that it is about"]
-    zero_eigenvalues: Annotated[int, "coordinates that do not occur in K", Meta(ge=0)]
+    zero_eigenvalues: Annotated[int, "eigenvalues of K that vanish for all parameters", Meta(ge=0)]
     regions: Annotated[list[Region], "regions of parameters; none where they were not found"]
 
 
