@@ -87,6 +87,7 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
         if system is None:
             return BAD_INPUT
         asked = Options()
+        asked.say = Language(request.language or system.language).say
         if request.settings:
             system = with_settings(path, system, request.settings, asked)
         if request.scale is not None and not asked.complaints:

@@ -138,7 +138,7 @@ def _table(found: Map) -> Table:
     line = len(found.axes) == 1
     pieces = Message("boxes") if isinstance(found, BoxMap) else Message("intervals") if line else Message("regions")
     size = Message("length") if line else Message("area")
-    heads = (HEADS[found.of], Message("theorem"), pieces, size, Message("of the whole"))
+    heads = (HEADS[found.of], Message("theorem"), pieces, size, Message("share"))
     cells = [
         (*words, str(len(parts)), f"{area:.4g}", share(area / found.whole if len(rows) > 1 else 1))
         for words, (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1])
