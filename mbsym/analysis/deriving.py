@@ -203,12 +203,8 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
     equations = cast("SpeedEquations", analysis.equations)
-    if analysis.system.constraints:
-        from mbsym.problems.constraints import first_order as tied
-
-        reduced = analysis.in_coordinates.reduced
-        return tied.first_order(analysis.speed_form, equations, reduced, analysis.equilibrium)
-    return first_order.first_order(analysis.speed_form, equations, analysis.equilibrium)
+    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    return first_order.first_order(analysis.speed_form, equations, analysis.equilibrium, reduced)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:

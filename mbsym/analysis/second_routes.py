@@ -166,16 +166,13 @@ def _first_order(analysis: Analysis) -> Check | None:
     found, linear = analysis.optional("first_order"), analysis.optional("linearisation")
     if found is None or linear is None:
         return None
-    if analysis.system.constraints:
-        from mbsym.problems.constraints import first_order as tied
-
-        return tied.check(analysis.speed_form, found, analysis.in_coordinates.reduced, analysis.equilibrium)
     from mbsym.problems import first_order
     from mbsym.problems.in_speeds.speeds import SpeedEquations
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
-    return first_order.check(analysis.speed_form, closed, found, linear, analysis.equilibrium)
+    reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
+    return first_order.check(analysis.speed_form, closed, found, linear, analysis.equilibrium, reduced)
 
 
 def _integrals(analysis: Analysis) -> Check | None:

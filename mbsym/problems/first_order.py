@@ -5,18 +5,26 @@ u' = 0, s' = 0 on the motion
 
     delta s' = (dg/dx) x,      M_0 delta u' = (df/dx) x,      so that      A = [dg/dx; M_0^-1 df/dx].
 
+With constraints on velocities u are the independent speeds, and M, f those of the equations without multipliers; the
+positions are those on which f depends, and on which their rates do, and coordinates that have roots of their own since
+their rates depend on themselves, if these do not vary on the motion.  Constraints on positions tie the deviations of
+these, and are refused.
+
 Deviations of unit vectors are not free: e_0 . delta e = 0 and the like, one zero root of A for each that belongs to no
 motion; so those of a quaternion, e_0 . delta e = 0.  Where the motion is not steady in these variables there is no
 such A.
 
-Second route: with T = d(s, u)/d(q, q') on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q;
+Second route: with T = d(s, u)/d(q, eta) on the motion and A_q that of the generalised coordinates,  A T = T' + T A_q,
+eta the generalised velocities, or those that constraints leave (``mechanics.constraints.expansion``);
 the rows of a quaternion there are  de/dq_i = 1/2 e o w_i,  w_i the axis about which q_i turns, in those of the body.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import ScalarMatrix, solved
@@ -28,7 +36,7 @@ from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import motion_values, rate_on_motion, turning, unperturbed_with, unsteady
+from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import velocity_name
@@ -36,6 +44,9 @@ from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.linearisation import Linearisation
+
+if TYPE_CHECKING:
+    from mbsym.problems.reduction import Reduced
 
 
 @dataclass(frozen=True, repr=False)
@@ -57,88 +68,191 @@ class FirstOrder(Shown):
         return self.A.terms
 
 
-def first_order(form: SpeedForm, equations: SpeedEquations, equilibrium: Equilibrium) -> FirstOrder:
-    """A in closed form.  Raises NoClosedForm where the motion does not exist, or is not steady in these variables."""
+def first_order(
+    form: SpeedForm, equations: SpeedEquations, at: Equilibrium, reduced: Reduced | None = None
+) -> FirstOrder:
+    """A in closed form; beside constraints with what the coordinates are ``reduced`` to.
+
+    Raises NoClosedForm where the motion does not exist, is not steady in these variables, or positions are constrained.
+    """
     ring = form.ring
     if form.system.inputs:
         raise NoClosedForm("inputs: x' = A x + B v is derived in coordinates only")
-    if equilibrium.impossible:
+    if at.impossible:
         raise NoClosedForm("the given motion does not exist")
-    variables = _variables(form, equations)
-    plain, at = _motion(form, equilibrium)
-    turned = _quaternions(form, plain)
-    values = {x.index: turned[x.name] if x.name in turned else _value(form, x, at) for x in variables}
-    varying = {name for value in values.values() for name in unsteady(plain, value)}
+    matrix, right, speeds, images = _independent(form, equations, reduced)
+    forcing = [x.polynomial for x in right]
+    rates = {x.name: ring.reduce(ring.substitute(form.rates[x.name], images)) for x in form.positions}
+    plain, motion = _motion(form, at, reduced)
+    turned = _quaternions(form, plain, reduced)
+    for positions in _positions(form, equations, forcing, rates, reduced):
+        variables = [*positions, *speeds]
+        values = {
+            x.index: turned[x.name] if x.name in turned else ring.substitute(_inner(form, x), motion) for x in variables
+        }
+        varying = {name for value in values.values() for name in unsteady(plain, value)}
+        if not varying:
+            break
     if varying:
-        raise NoClosedForm(
-            Message(
-                "the motion is not steady in speeds and positions: they vary with [[names]]",
-                names=", ".join(varying),
-            )
-        )
-    on = dict(at) | values
-    kinematic = [form.rates[x.name] for x in variables[: len(variables) - len(form.speeds)]]
-    forcing = [x.polynomial for x in equations.forcing]
-    slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in (*kinematic, *forcing)]
-    mass = [[ring.substitute(x, on) for x in row] for row in equations.mass_matrix.polynomials]
-    m = len(kinematic)
+        raise _not_steady(varying)
+    on = dict(motion) | values
+    formulas = [*(rates[x.name] for x in positions), *forcing]
+    slopes = [[ring.substitute(ring.derivative(y, x.name), on) for x in variables] for y in formulas]
+    mass = [[ring.substitute(x, on) for x in row] for row in matrix.polynomials]
+    m = len(positions)
     lower = solved(ring, mass, slopes[m:])
     if any(unsteady(plain, x) for row in (*slopes[:m], *lower) for x in row):
         raise NoClosedForm("the coefficients of the first approximation vary with time")
-    count = len(equations.relations)
+    there = {x.name for x in positions}
     return FirstOrder(
         names=tuple(x.name for x in variables),
         values=column(ring, list(values.values())),
         A=Matrix.of(ring, [*slopes[:m], *lower]),
-        relations=count,
-        norms=len(equations.quaternions),
+        relations=sum(all({a, b} <= there for a, b in pairs) for pairs in equations.relations),
+        norms=sum(name in equations.quaternions and {*parts} <= there for name, parts in equations.vectors),
     )
 
 
+def _independent(
+    form: SpeedForm, equations: SpeedEquations, reduced: Reduced | None
+) -> tuple[Matrix, Column, list[Variable], dict[int, Polynomial]]:
+    """M, f and u of the independent speeds, and what the others are."""
+    tied, embedded = equations.constraints, equations.embedded
+    if tied is None or reduced is None:
+        return equations.mass_matrix, equations.forcing, list(form.speeds), {}
+    if tied.position_rank or reduced.about.leaf:
+        raise NoClosedForm("constraints tie positions: their deviations are not free")
+    if tied.solved is None or embedded is None:
+        raise NoClosedForm("the equations without multipliers outgrow the budget of terms")
+    from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
+
+    free = [form.speeds[k] for k in tied.solved.embedding.free]
+    return embedded.mass_matrix, embedded.forcing, free, dependent_velocities(form, tied.solved)
+
+
 def check(
-    form: SpeedForm, equations: SpeedEquations, found: FirstOrder, linear: Linearisation, at: Equilibrium
+    form: SpeedForm,
+    equations: SpeedEquations,
+    found: FirstOrder,
+    linear: Linearisation,
+    at: Equilibrium,
+    reduced: Reduced | None = None,
 ) -> Check:
     """A T = T' + T A_q, with A_q from the matrices of the generalised coordinates and T' along the motion."""
     ring, names = form.ring, form.system.coordinates
-    plain, motion = _motion(form, at)
-    variables = _variables(form, equations)
-    turned = _quaternion_slopes(form, plain, motion)
-    rows = [
-        turned[x.name]
-        if x.name in turned
-        else [ring.substitute(ring.derivative(y, name), motion) for name in names]
-        + [ring.substitute(ring.velocity_derivative(y, name), motion) for name in names]
-        for x, y in ((x, _inner(form, x)) for x in variables)
-    ]
-    routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
-    moving = [[ring.substitute(rate_on_motion(plain, x), motion) for x in row] for row in rows]
-    mass, damping, gyroscopic, stiffness, circulatory = (matrix.polynomials for matrix in linear.matrices)
-    n = range(len(names))
-    below = [
-        [-stiffness[i][j] - circulatory[i][j] for j in n] + [-damping[i][j] - gyroscopic[i][j] for j in n] for i in n
-    ]
-    upper = [[ring.one if j == len(names) + i else ring.zero for j in range(2 * len(names))] for i in n]
-    whole = [*upper, *solved(ring, mass, below)]
+    plain, motion = _motion(form, at, reduced)
+    by_name = {x.name: x for x in (*form.positions, *form.speeds)}
+    turned = _quaternion_slopes(form, plain, motion, reduced)
+    moving, below, kept = _flow(form, linear, motion, reduced)
+    rates = [motion[ring.index("velocity", name)] for name in names]
+
+    def along(y: Polynomial) -> Polynomial:
+        """dy/dt on the motion."""
+        total = ring.derivative(y, "t")
+        running = [*zip(names, rates, strict=True), *((x.name, plain.lower(x.rate)) for x in form.system.prescribed)]
+        for name, rate in running:
+            total = total + ring.times(rate, ring.derivative(y, name))
+        return ring.substitute(ring.reduce(total), motion)
+
+    rows = []
+    for name in found.names:
+        y = _inner(form, by_name[name])
+        by_place = [ring.substitute(ring.derivative(y, q), motion) for q in names]
+        by_rate = [ring.substitute(ring.velocity_derivative(y, q), motion) for q in names]
+        if name in turned:
+            by_place, by_rate = turned[name], [ring.zero for _ in names]
+        through = [ring.dot(by_rate, column) for column in zip(*moving, strict=True)]
+        rows.append([ring.reduce(x + y) for x, y in zip_longest(through, by_place, fillvalue=ring.zero)])
     change = ScalarMatrix(ring, rows)
-    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, whole)
-    states = [*names, *(velocity_name(name) for name in names)]
+    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, [*moving, *below])
+    states = [*names, *(velocity_name(names[k]) for k in kept)]
     differences: dict[str, Polynomial] = {
-        Message("the row of [[name]] by [[by]]", name=x.name, by=by): ring.reduce(a - b - rate)
-        for x, one, other, moved in zip(variables, left, right, moving, strict=True)
-        for by, a, b, rate in zip(states, one, other, moved, strict=True)
+        Message("the row of [[name]] by [[by]]", name=name, by=by): ring.reduce(a - b - along(z))
+        for name, one, other, row in zip(found.names, left, right, rows, strict=True)
+        for by, a, b, z in zip(states, one, other, row, strict=True)
     }
+    routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
+    if reduced is not None:
+        routes = ("equations of the independent speeds differentiated", "constraints expanded in coordinates")
     return check_identities(ring, "first approximation in speeds", routes, differences, unsolved(plain, at))
 
 
-def _variables(form: SpeedForm, equations: SpeedEquations) -> list[Variable]:
-    return [*(x for x in form.positions if x.name not in equations.aside), *form.speeds]
+Rows = list[list[Polynomial]]
 
 
-def _motion(form: SpeedForm, equilibrium: Equilibrium) -> tuple[Scene, Mapping[int, Polynomial]]:
-    """A scene of the coordinates, and the motion in them, conditions and relations used."""
-    system = form.system.without_speeds
-    plain = Scene(system, form.ring, ring_environment(system, form.ring), form.ring, bodies=False)
-    return plain, unperturbed_with(plain, equilibrium.determined(plain))
+def _flow(
+    form: SpeedForm, linear: Linearisation, motion: Mapping[int, Polynomial], reduced: Reduced | None
+) -> tuple[Rows, Rows, Sequence[int]]:
+    """delta q' and eta' by (delta q, eta), and the places of eta among the velocities."""
+    ring, n = form.ring, len(form.system.coordinates)
+    if reduced is None:
+        mass, damping, gyroscopic, stiffness, circulatory = (matrix.polynomials for matrix in linear.matrices)
+        right = [
+            [*(-k - c for k, c in zip(*place, strict=True)), *(-d - g for d, g in zip(*rate, strict=True))]
+            for place, rate in zip(
+                zip(stiffness, circulatory, strict=True), zip(damping, gyroscopic, strict=True), strict=True
+            )
+        ]
+        moving = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
+        return moving, solved(ring, mass, right), range(n)
+    expansion, parts = reduced.expansion, reduced.equations
+    kept = [*range(n), *(n + k for k in expansion.speeds)]
+    moving = [[ring.substitute(one.get(j, ring.zero), motion) for j in kept] for one in expansion.velocities[:n]]
+    a, b, c = ([[ring.substitute(x, motion) for x in row] for row in rows] for rows in (parts.A, parts.B, parts.C))
+    place = {i: j for j, i in enumerate(expansion.coordinates)}
+    right = [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)]
+    return moving, solved(ring, a, right), expansion.speeds
+
+
+def _positions(
+    form: SpeedForm,
+    equations: SpeedEquations,
+    formulas: Sequence[Polynomial],
+    rates: Mapping[str, Polynomial],
+    reduced: Reduced | None,
+) -> Iterator[list[Variable]]:
+    """The positions of x, in the ways that may be steady.
+
+    Beside constraints those on which formulas depend, and on which the rates of these do; first with the coordinates
+    whose rates depend on themselves, too, directly or through others (the angle of a light trailer): they have roots of
+    their own although no equation of the speeds needs them.
+    """
+    if reduced is None:
+        yield [x for x in form.positions if x.name not in equations.aside]
+        return
+    ring, names = form.ring, list(rates)
+    needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
+
+    def reached(start: set[str]) -> set[str]:
+        found, pending = set(start), list(start)
+        while pending:
+            new = needs[pending.pop()] - found
+            found |= new
+            pending += new
+        return found
+
+    start = {name for x in formulas for name in ring.dependencies(x, names)}
+    by_themselves = {name for name in form.coordinates if name in needs and name in reached(needs[name])}
+    for found in (reached(start | by_themselves), reached(start)):
+        yield [x for x in form.positions if x.name in found]
+
+
+def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced | None) -> tuple[Scene, dict[int, Polynomial]]:
+    """A scene of the coordinates, and the motion in them with the velocities that constraints demand."""
+    system, ring = form.system.without_speeds, form.ring
+    plain = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
+    images = at.determined(plain)
+    found = dict(unperturbed_with(plain, images))
+    if reduced is None:
+        return plain, found
+    base = reduced.expansion.base
+    for name, value, rate in zip(system.coordinates, base.values, base.rates, strict=True):
+        if name in base.turning:
+            found.pop(ring.index("coordinate", name), None)
+        else:
+            found[ring.index("coordinate", name)] = ring.substitute(value, images)
+        found[ring.index("velocity", name)] = ring.substitute(rate, images)
+    return plain, found | {k: ring.substitute(x, images) for k, x in base.related.items() if k not in images}
 
 
 def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
@@ -149,18 +263,21 @@ def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
     return form.in_angles(form.ring.context.gen(variable.index))
 
 
-def _quaternions(form: SpeedForm, plain: Scene) -> dict[str, Polynomial]:
+def _not_steady(names: Iterable[str]) -> NoClosedForm:
+    what = "the motion is not steady in speeds and positions: they vary with [[names]]"
+    return NoClosedForm(Message(what, names=", ".join(names)))
+
+
+def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict[str, Polynomial]:
     """The components of quaternions on the motion, by name.  Raises NoClosedForm where they turn there."""
     values = {name: value for name, (value, _) in motion_values(form.system).items()}
     found: dict[str, Polynomial] = {}
+    turned = turning(plain) if reduced is None else reduced.expansion.base.turning
     for body in form.by_quaternion:
         used = {name for _, angle in body.rotation.turns() for name in names_in(angle)}
-        varying = used & {*turning(plain), *(item.name for item in form.system.prescribed), "t"}
+        varying = used & {*turned, *(item.name for item in form.system.prescribed), "t"}
         if varying:
-            names = ", ".join(sorted(varying))
-            raise NoClosedForm(
-                Message("the motion is not steady in speeds and positions: they vary with [[names]]", names=names)
-            )
+            raise _not_steady(sorted(varying))
         turns = []
         for axis, angle in body.rotation.turns():
             sine, cosine = plain.lower.angle(divide(substitute(angle, values), number(2)))
@@ -170,13 +287,15 @@ def _quaternions(form: SpeedForm, plain: Scene) -> dict[str, Polynomial]:
     return found
 
 
-def _quaternion_slopes(form: SpeedForm, plain: Scene, motion: Mapping[int, Polynomial]) -> dict[str, list[Polynomial]]:
-    """d(e)/d(q, q') of every component on the motion, by name:  1/2 e o w_i  and zeros."""
+def _quaternion_slopes(
+    form: SpeedForm, plain: Scene, motion: Mapping[int, Polynomial], reduced: Reduced | None
+) -> dict[str, list[Polynomial]]:
+    """de/dq of every component on the motion, by name:  1/2 e o w_i."""
     ring, names = form.ring, form.system.coordinates
     found: dict[str, list[Polynomial]] = {}
     if not form.by_quaternion:
         return found
-    values = _quaternions(form, plain)
+    values = _quaternions(form, plain, reduced)
     moving = Scene(plain.system, ring, plain.environment, ring)
     for body in form.by_quaternion:
         components = body.orientation[0].components
@@ -185,10 +304,5 @@ def _quaternion_slopes(form: SpeedForm, plain: Scene, motion: Mapping[int, Polyn
         for name in names:
             axis = [ring.substitute(ring.velocity_derivative(x, name), motion) for x in spin]
             columns.append([ring.reduce(x) for x in rates(ring, e, axis)])
-        zeros = [ring.zero] * len(names)
-        found |= {name: [*(column[k] for column in columns), *zeros] for k, name in enumerate(components)}
+        found |= {name: [one[k] for one in columns] for k, name in enumerate(components)}
     return found
-
-
-def _value(form: SpeedForm, variable: Variable, at: Mapping[int, Polynomial]) -> Polynomial:
-    return form.ring.substitute(_inner(form, variable), at)
