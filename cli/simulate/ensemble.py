@@ -111,7 +111,7 @@ def answers(
 ) -> int:
     """The motion's derivatives by initial values and parameters; the exit code."""
     from mbsym.report.runs.sensitivity_csv import sensitivity_csv, sentences
-    from mbsym.simulation.sensitivities import Sensitivities, sensitivities
+    from mbsym.simulation.motions import Sensitivities, sensitivities
 
     def work() -> Sensitivities:
         with status(wanted.quiet, f"{file.name}: how it answers to changes"):

@@ -47,7 +47,7 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     does, stops it only when the rest is delivered.
     """
     from mbsym.model.quantities import unit_of
-    from mbsym.numerics.further_columns import input_columns
+    from mbsym.numerics.body_motion import input_columns
     from mbsym.report.runs.certificate import enclosure_csv
     from mbsym.report.runs.constrained_run_words import drift_columns
     from mbsym.report.runs.simulation_json import simulation_json

@@ -388,7 +388,7 @@ class Signs:
         result = self._by_terms(p)
         if len(result) == 1:
             return result
-        # The question as asked has witnesses, and a long one: making them anew for each change costs more than it saves.
+        # The question as asked has witnesses, and a long one: made anew for each change they cost more than they save.
         # Those of numbers such as pi are no values of theirs.
         points = self.witnesses if (after < 0 or len(p) > LONG) and not self._numbers_in(p) else ()
         least = frozenset(_sign(p(*point)) for point in points)

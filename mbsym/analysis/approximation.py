@@ -49,8 +49,7 @@ def expanded(analysis: Analysis) -> Scene:
 
 def reduced(analysis: Analysis) -> Reduced:
     """A constrained system to first order about the unperturbed motion.  Raises Unavailable where none is given."""
-    from mbsym.mechanics.constraints.expansion import expansion
-    from mbsym.mechanics.constraints.perturbed import felt, on_leaf, projected
+    from mbsym.mechanics.constraints.expansion import expansion, felt, on_leaf, projected
     from mbsym.problems.reduction import Reduced, reduction
 
     _demand_motion(analysis)

@@ -11,7 +11,7 @@ from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.problems import stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.word import Word
@@ -102,7 +102,7 @@ def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
     Of conservative systems those on which none acts: there their momenta are constant, too.  Both of the nonlinear
     system: what only terms of high order hold is not overlooked.
     """
-    from mbsym.problems.normal_forms.generalized_potential import have_generalized_potential  # few ask for it
+    from mbsym.problems.normal_forms.expansion import have_generalized_potential  # few ask for it
 
     energies = analysis.energy
     applied = generalized_forces(analysis.held_scene)
@@ -124,7 +124,7 @@ def check(analysis: Analysis) -> Check | None:
     found = analysis.optional("normal_forms") if "normal_forms" in analysis.derived else None
     if found is None or found.at_values is None:
         return None
-    from mbsym.problems.normal_forms.checks import symbols_agree
+    from mbsym.problems.normal_forms.result import symbols_agree
 
     if analysis.speed_form is not None:
         analysis = analysis.in_coordinates

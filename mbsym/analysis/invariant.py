@@ -41,7 +41,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     Raises NoClosedForm where the field is not polynomial or nothing but the geometry is conserved.
     """
     from mbsym.analysis import polynomial  # few ask for it
-    from mbsym.problems.invariant_sets.arena import arena
+    from mbsym.problems.invariant_sets.branches import arena
     from mbsym.problems.invariant_sets.problem import invariant_sets
 
     count = len(analysis.system.coordinates)
@@ -88,7 +88,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     signs = {one.name: one.sign for one in analysis.system.parameters}
     floating = len(field.relations) if lagrangian else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
-    from mbsym.problems.invariant_sets.arena import identifiers
+    from mbsym.problems.invariant_sets.branches import identifiers
 
     plain = identifiers(field.variables, field.parameters)
     written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if lagrangian else {})

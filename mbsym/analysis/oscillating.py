@@ -32,7 +32,7 @@ from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
-from mbsym.problems.small_parameter.graded_rows import graded_rows
+from mbsym.problems.small_parameter.generating import graded_rows
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,

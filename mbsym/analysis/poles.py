@@ -12,7 +12,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.loads.kinds import generalized_forces
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis

@@ -26,9 +26,25 @@ from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion, UnitVector
 from mbsym.problems import perturbation
 from mbsym.problems.integrals import Integral
+from mbsym.problems.polynomial_integrals import (
+    ZeroLevels,
+    darboux_along_of,
+    darboux_of,
+    linear_relations,
+    other_levels_of,
+    zero_levels_of,
+)
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
-from mbsym.problems.polynomial_integrals.result import Cases, PolynomialIntegrals, Polynomials
+from mbsym.problems.polynomial_integrals.result import (
+    Cases,
+    DarbouxAlong,
+    DarbouxPolynomials,
+    OtherLevels,
+    PolynomialIntegrals,
+    Polynomials,
+    Relations,
+)
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.vector_field import Transfer, vector_field
 
@@ -289,3 +305,42 @@ class _Related(Oracles):
         for relation in self.system.relations:
             values[relation.name] = Lowering(state.numbers, values)(relation.value)
         return super()._oracle(State(state.numbers, values))
+
+
+# What divides its derivative, of a system: linear forms, Darboux polynomials, integrals where another one is zero.
+
+
+@dataclass(frozen=True)
+class InvariantRelations:
+    """``linear`` forms with conditions on the parameters; ``darboux`` polynomials of any weight for almost all of them.
+
+    ``levels``: integrals that hold where one of those found is zero, ``others``: where it has another value; None where
+    several unit vectors or angles are related, and none was looked at.
+    """
+
+    linear: Relations
+    darboux: DarbouxPolynomials
+    levels: ZeroLevels | None
+    others: OtherLevels | None
+
+
+def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
+    """All four, up to the degree of ``found``; ``positive``: parameters that are.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    grading = found.grading
+    return InvariantRelations(
+        linear_relations(there.field, grading.weights, positive, grading.free),
+        darboux_of(found, there.kinds, there.known),
+        zero_levels_of(found, there.kinds, there.known),
+        other_levels_of(found, there.kinds, there.known),
+    )
+
+
+def special_relations(there: Setting, found: PolynomialIntegrals, low: Fraction, high: Fraction) -> DarbouxAlong:
+    """At which values of the only parameter there are more Darboux polynomials, up to the degree of ``found``.
+
+    Raises NoClosedForm where more monomials are coupled than the bounds allow.
+    """
+    return darboux_along_of(found, there.kinds, there.known, low, high)

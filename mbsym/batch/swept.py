@@ -15,8 +15,7 @@ from mbsym.batch.digests import derivation
 from mbsym.model.system import System
 from mbsym.source import read, to_yaml
 from mbsym.sweeps.points import Measure
-from mbsym.sweeps.request import Asked, measure_of
-from mbsym.sweeps.sweep import Chunk, Columns
+from mbsym.sweeps.sweep import Asked, Chunk, Columns, measure_of
 
 
 class Workers:

@@ -136,6 +136,8 @@ class Presenter:
         self._levels: dict[int, int] = {}
         self._places: dict[int, int] = {}
         self._inverted: dict[int, Polynomial | None] = {}
+        self._roots: dict[int, Sum] = {}
+        self._arguments: list[Polynomial] = []
         self._pairs: dict[tuple[int, int], int] = {}
         self._shapes: dict[tuple[int, Angles], tuple[Polynomial, Sum]] = {}
         self._read: dict[int, tuple[Polynomial, int, Terms]] = {}
@@ -288,6 +290,8 @@ class Presenter:
         if index not in self._levels:
             generator = self.ring.generators[index]
             level = _MOTION.get(generator.kind, 1 if generator.kind in _PLACE else 0)
+            if generator.kind == "root":
+                self._roots[index] = self._argument(generator.argument)
             if generator.argument is not None:
                 level = max([0, *(self.level(k) for k in occurring([generator.argument]))])
                 if generator.kind == "reciprocal" and level <= _RECIPROCAL:
@@ -319,6 +323,12 @@ class Presenter:
             generator = self.ring.generators[index]
             self._inverted[index] = generator.argument if generator.kind == "reciprocal" else None
         return self._inverted[index]
+
+    def _argument(self, polynomial: Polynomial) -> Sum:
+        """What stands in a root or a reciprocal: of equal ones one object."""
+        if polynomial not in self._arguments:
+            self._arguments.append(polynomial)
+        return self(self._arguments[self._arguments.index(polynomial)])
 
     # --- terms -----------------------------------------------------------------------------------------------------
 
@@ -481,19 +491,33 @@ class Presenter:
         over += motion
         over += coordinates
         if not brackets:  # parameters, motion, coordinates: in order
+            over, under = self._roots_below(over, under)
             return Product(fmpq(coefficient), tuple(over), _ordered(self, under))
         for terms, exponent in brackets:
             bracket = self._bracket(terms, factored)
             if exponent % 2 and (coefficient < 0 or only_negative(bracket)) and takes_sign(bracket):
                 bracket, coefficient = self._negated(bracket), -coefficient
             over.append(Factor(bracket, exponent))
+        over, under = self._roots_below(over, under)
         return Product(fmpq(coefficient), _ordered(self, over), _ordered(self, under))
+
+    def _roots_below(self, over: list[Factor], under: list[Factor]) -> tuple[list[Factor], list[Factor]]:
+        """x/sqrt(R)^3, not x sqrt(R)/R^2."""
+        for root in [f for f in over if f.base in self._roots] if self._roots and under else ():
+            inner = tuple(powers(self._roots[root.base], 1))  # type: ignore[index]
+            for below in under:
+                if inner == (Factor(below.base),):
+                    over = [f for f in over if f is not root]
+                    lowered = Factor(root.base, 2 * below.exponent - root.exponent)
+                    under = [lowered if f is below else f for f in under]
+                    break
+        return over, under
 
     def _slot(self, index: int, exponent: int) -> tuple[int, tuple[Factor, ...]]:
         """Where a power stands in a product (0 parameters, 1 motion, 2 coordinates, 3 denominator), and its factors."""
         inverted = self._inverse_of(index)
         if inverted is not None:
-            return 3, tuple(powers(self(inverted), exponent))
+            return 3, tuple(powers(self._argument(inverted), exponent))
         level = self.level(index)
         base = index if index < self._waves.first else self._waves[index]
         return (1 if level >= _VELOCITY else 2 if level else 0), (Factor(base, exponent),)
@@ -565,7 +589,7 @@ class Presenter:
         return products
 
     def _times(self, product: Product, over: Sequence[Factor], under: Sequence[Factor]) -> Product:
-        over, under = [*over, *product.over], [*under, *product.under]
+        over, under = self._roots_below([*over, *product.over], [*under, *product.under])
         return self._signed(Product(product.coefficient, _ordered(self, over), _ordered(self, under)))
 
     def _unsigned(self, product: Product) -> Product:

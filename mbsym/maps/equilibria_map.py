@@ -20,8 +20,8 @@ from flint import Ordering, fmpq_mpoly_ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement, areas, decompose
+from mbsym.algebra.arrangements.arrangement import Branches as Drawn
 from mbsym.algebra.arrangements.arrangement import Region
-from mbsym.algebra.arrangements.drawing import Branches as Drawn
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane import Point

@@ -23,9 +23,8 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.judge import Judge as OneJudge
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
-from mbsym.maps.check import Check, check
+from mbsym.maps.check import Check, ExactVerdicts, beside, check
 from mbsym.maps.given import Complaint, Fault, Unfit
-from mbsym.maps.on_curves import ExactVerdicts, beside
 from mbsym.maps.result import Cell, Ground, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost

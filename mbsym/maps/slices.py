@@ -27,8 +27,7 @@ from flint import fmpq
 from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement, decompose
 from mbsym.algebra.arrangements.arrangement import CornerKind
-from mbsym.algebra.arrangements.likeness import Graph, alike, corresponding
-from mbsym.algebra.arrangements.space import critical_levels, flattened, levels_of
+from mbsym.algebra.arrangements.space import Graph, alike, corresponding, critical_levels, flattened, levels_of
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.line import Line

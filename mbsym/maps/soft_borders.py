@@ -40,8 +40,8 @@ from mbsym.analysis.higher import ignorable
 from mbsym.maps.images import Images
 from mbsym.maps.section import Section
 from mbsym.problems.normal_forms.along import judged_enclosed
-from mbsym.problems.normal_forms.centre import OnCurve, on_curve
 from mbsym.problems.normal_forms.dissipative import state_field
+from mbsym.problems.normal_forms.exact import OnCurve, on_curve
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers, expansion
 from mbsym.problems.normal_forms.problem import PRECISION
 from mbsym.problems.normal_forms.result import Judged as Higher

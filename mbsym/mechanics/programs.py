@@ -1,7 +1,7 @@
 """The equations as one straight-line program: what numbers are computed from.
 
-    M         by composite bodies (``mbsym.mechanics.composite``)
-    forcing   by the lean Newton-Euler recursion at q'' = 0 (``mbsym.mechanics.bias_forces``)
+    M         by composite bodies (``mbsym.mechanics.factorisation``)
+    forcing   by the lean Newton-Euler recursion at q'' = 0 (``mbsym.mechanics.articulated``)
     energy    = T - U, without the gyrostatic term h.omega, which no energy contains
 
 All over one hash-consed program, so what they share is computed once, and zeros (branches that do not feel a joint)
@@ -23,11 +23,11 @@ from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics import articulated, factorisation
+from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.bias_forces import bias_forces, forcing
-from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.energy import gyrostatic_term, kinetic_energy
+from mbsym.mechanics.factorisation import mass_matrix
 from mbsym.mechanics.given_matrices import refuse_matrices
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -136,7 +136,7 @@ def accelerated(system: System, state: State, found: Programs) -> State:
 #     O(n), where every coordinate belongs to one body's joint (``mbsym.mechanics.articulated``).
 # ``factorised mass matrix``
 #     M by composite bodies and M = L^T D L with the sparsity of the tree; O(n^2) to O(n^3) along a chain, with a small
-#     constant (``mbsym.mechanics.composite``, ``mbsym.mechanics.factorisation``).
+#     constant (``mbsym.mechanics.factorisation``, ``mbsym.mechanics.factorisation``).
 #
 # Both are exact; no inverse is formed.  Operations are counted for one more state: what depends on the parameters alone
 # is computed once.

@@ -30,7 +30,7 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
 from mbsym.expressions.tree import divide, number
-from mbsym.mechanics import quaternions
+from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
 from mbsym.mechanics.variables import program_environment, ring_environment

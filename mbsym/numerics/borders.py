@@ -31,7 +31,7 @@ from mbsym.expressions.tree import Expression
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
-from mbsym.numerics.planning.scales import kinds, scales
+from mbsym.numerics.planning.sizes import kinds, scales
 from mbsym.numerics.probes import Ladder, Probe, free_parameters, scaled
 from mbsym.numerics.scenario import Incomplete, Scenario, changed
 from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, compared, digits_of, tight

@@ -22,7 +22,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
 from mbsym.algebra.rationals import ball
 from mbsym.expressions.tree import Name
-from mbsym.mechanics import quaternions
+from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.speeds import Quaternion

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -25,14 +26,16 @@ from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.tree import Expression, add, differentiate, multiply
+from mbsym.mechanics.constraints.dynamics import conditions
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
+from mbsym.mechanics.programs import programs
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.numerics.kernels.arrays import kernel
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.numerics.specialise import bound
+from mbsym.numerics.specialise import bound, substituted
 
 Array = npt.NDArray[np.float64]
 
@@ -99,8 +102,6 @@ def inverse_dynamics(
     if not system.inputs:
         raise ValueError("the description has no inputs")
     if system.constraints:
-        from mbsym.numerics.inverse_constrained import inverse_constrained  # it builds on this module
-
         return inverse_constrained(system, motion, overrides, times)
     given = scenario(system, overrides, state=False)
     program, states, needed = _program(system, given, motion)
@@ -180,3 +181,238 @@ def _solved(columns: Array, right: Array) -> tuple[Array, npt.NDArray[np.int64]]
         found, _, rank[m], _ = np.linalg.lstsq(columns[:, :, m], right[:, m], rcond=NOTHING)
         values[:, m] = found
     return values, rank
+
+
+# Inverse dynamics with constraints: the inputs, where the motion of some coordinates is given and others follow.
+#
+#     f(t, q) = 0,   J q' + j = 0,   J q'' + c = 0        for the coordinates whose motion is not given, at every time
+#     B u + J^T lambda = r,   r = M q'' - f(q, q', t, 0)
+#
+# Positions follow by Newton's method from those at the time before (at t = 0 from the initial ones), so that a loop
+# stays in its assembly; velocities and accelerations are linear.  Positions that constraints in velocities alone lead
+# (where a wheel rolls to) are integrated from the initial ones,  q' = -J^+ g.  Then u and lambda are solved for in the
+# sense of least squares with M^-1 as weights (kinetic ones: the same in all units), lambda being left out first.
+
+
+#: A row that is off by more than this, beside its terms, is not satisfied; steps of Newton's method.
+OFF, STEPS = 1e-9, 50
+
+
+def inverse_constrained(
+    system: System, motion: Mapping[str, Expression], overrides: Mapping[str, Expression], times: Array
+) -> InverseDynamics:
+    """See the module; ``motion`` of some coordinates at least, from which the others follow.
+
+    Raises NotLinear as without constraints; ValueError where the others do not follow, or the motion does not satisfy
+    the constraints.
+    """
+    given = scenario(system, overrides, state=False)
+    rows = _Rows(system, given)
+    states = rows.followed(_Given(system, given, motion), times)
+    needed, columns, masses = _equations(system, given, states, times)
+    _, _, _, partials = rows.at(times, states)
+    n, k, m = len(system.coordinates), len(system.input_names), len(times)
+    values, rank = np.zeros((k, m)), np.zeros(m, dtype=np.int64)
+    residual, left, size = np.zeros((n, m)), 0.0, 0.0
+    for place in range(m):
+        lower = _root(masses[:, :, place])
+        right, own, ties = (np.linalg.solve(lower, x[..., place]) for x in (needed, columns, _transposed(partials)))
+        free = _beside(ties)
+        scales = np.linalg.norm(own, axis=0)
+        scales = np.where(scales > 0, scales, 1.0)
+        found, rank[place] = _smallest(free @ (own / scales), free @ right)
+        values[:, place] = found / scales
+        rest = free.T @ (free @ (own @ values[:, place] - right))
+        residual[:, place] = lower @ rest
+        left = max(left, float(np.linalg.norm(rest)))
+        size = max(size, float(np.linalg.norm(right)), float(np.linalg.norm(own @ values[:, place])))
+    remaining = left / size if size > 0 else 0.0
+    return InverseDynamics(
+        system, system.input_names, times, values, states[:n], states[n : 2 * n], states[2 * n :],
+        residual, remaining, rank,
+    )  # fmt: skip
+
+
+def _transposed(partials: Any) -> Any:
+    return np.swapaxes(partials, 0, 1)
+
+
+def _root(masses: Any) -> Any:
+    """L with M = L L^T; with ones where M is not positive, so that nothing is weighed."""
+    try:
+        return np.linalg.cholesky(masses)
+    except np.linalg.LinAlgError:
+        return np.eye(len(masses))
+
+
+def _smallest(matrix: Any, right: Any) -> tuple[Any, int]:
+    """The smallest x of least |matrix x - right|, and the rank; columns had length 1 before forces of constraints were
+    taken out: what is left of one may be rounding."""
+    left, sizes, turned = np.linalg.svd(matrix, full_matrices=False)
+    known = sizes > NOTHING
+    inverse = np.where(known, 1 / np.where(known, sizes, 1.0), 0.0)
+    return turned.T @ (inverse * (left.T @ right)), int(np.sum(known))
+
+
+def _beside(ties: Any) -> Any:
+    """Orthonormal rows beside the columns of J^T."""
+    lengths = np.linalg.norm(ties, axis=0)
+    left, sizes, _ = np.linalg.svd(ties / np.where(lengths > 0, lengths, 1.0))
+    return left[:, int(np.sum(sizes > OFF)) :].T
+
+
+class _Given:
+    """(q, q', q'') of the coordinates whose motion is given, at any times."""
+
+    def __init__(self, system: System, given: Scenario, motion: Mapping[str, Expression]) -> None:
+        program = bound(given)
+        rates = {item.name: item.rate for item in system.prescribed}
+        names = [*system.parameter_names, *rates, "t", "pi"]
+        lower = Lowering(program, {name: program.input(name) for name in names})
+        self._kernels = {}
+        for name, place in motion.items():
+            speed = rate_of(place, rates)
+            nodes = tuple(lower(x) for x in (place, speed, rate_of(speed, rates)))
+            self._kernels[name] = kernel(Code(program, ("t",), nodes))
+
+    def __call__(self, times: Array) -> dict[str, Any]:
+        """By name, shape (3, m).  Raises ValueError."""
+        found = {}
+        for name, own in self._kernels.items():
+            values = np.broadcast_to(own(np.array([times])), (3, len(times)))
+            if not np.isfinite(values).all():
+                first = times[~np.isfinite(values).all(axis=0)][0]
+                raise ValueError(f"at t = {first:.9g} the motion of {name} is infinite or no number")
+            found[name] = values
+        return found
+
+
+class _Rows:
+    """f, g, the acceleration form at q'' = 0 and J of all rows."""
+
+    def __init__(self, system: System, given: Scenario) -> None:
+        self.system, self.given, self.n = system, given, len(system.coordinates)
+        found = conditions(system, ring_of(system))
+        self.names = found.names
+        self.holonomic = sum(name.holonomic for name in self.names)
+        nodes = [row.position for row in found.rows if row.position is not None]
+        nodes += [row.velocity for row in found.rows]
+        nodes += [row.acceleration for row in found.rows]
+        nodes += [slope for row in found.rows for slope in row.partials]
+        numbers = bound(given)
+        inputs = ("t", *system.coordinates, *system.velocities)
+        self._kernel = kernel(Code(numbers, inputs, tuple(substituted(found.program, nodes, numbers))))
+
+    def at(self, times: Any, states: Any) -> tuple[Any, Any, Any, Any]:
+        """(f (h, m), g (r, m), c (r, m), J (r, n, m)) at q, q' in the first 2n rows of ``states``."""
+        values = self._kernel(np.vstack([np.atleast_1d(times), states[: 2 * self.n]]))
+        h, r = self.holonomic, len(self.names)
+        partials = values[h + 2 * r :].reshape(r, self.n, -1)
+        return values[:h], values[h : h + r], values[h + r : h + 2 * r], partials
+
+    def followed(self, given: _Given, times: Array) -> Any:
+        """q, q', q'' (3n, m) with those that follow.  Raises ValueError."""
+        n, names, known = self.n, self.system.coordinates, given(times)
+        states = np.zeros((3 * n, len(times)))
+        for place, name in enumerate(names):
+            if name in known:
+                states[place::n] = known[name]
+        open_ = [place for place, name in enumerate(names) if name not in known]
+        q = np.array([float(x) for x in self.given.positions])
+        rolled = self._rolled(given, times, states[:, 0:1], q, open_) if open_ else None
+        for m, t in enumerate(times):
+            one = states[:, m : m + 1]
+            one[open_, 0] = q[open_] if rolled is None else rolled[:, m]
+            self._placed(t, one, open_)
+            _, g, _, partials = self.at(t, one)
+            one[[n + k for k in open_], 0] = self._solved(partials[:, :, 0], g[:, 0], open_, t)
+            _, _, c, partials = self.at(t, one)
+            needed = c[:, 0] + partials[:, :, 0] @ one[2 * n :, 0]
+            one[[2 * n + k for k in open_], 0] = self._solved(partials[:, :, 0], needed, open_, t)
+            self._check(t, one)
+            q = one[:n, 0]
+        return states
+
+    def _rolled(self, given: _Given, times: Array, first: Any, q: Any, open_: list[int]) -> Any | None:
+        """Open positions (k, m) by the velocities that the rows leave them; None where rows on positions suffice."""
+        from scipy.integrate import solve_ivp
+
+        n, names = self.n, self.system.coordinates
+        start = first.copy()
+        start[open_, 0] = q[open_]
+        if np.linalg.matrix_rank(self.at(times[0], start)[3][: self.holonomic, open_, 0], tol=OFF) == len(open_):
+            return None
+        self._placed(times[0], start, open_)
+
+        def rates(t: float, x: Any) -> Any:
+            one = np.zeros((3 * n, 1))
+            for name, values in given(np.array([t])).items():
+                one[names.index(name) :: n, 0] = values[:, 0]
+            one[open_, 0] = x
+            _, g, _, partials = self.at(t, one)
+            return self._solved(partials[:, :, 0], g[:, 0], open_, t)
+
+        if len(times) < 2:
+            return start[open_]
+        done = solve_ivp(rates, (times[0], times[-1]), start[open_, 0], "DOP853", times, rtol=1e-12, atol=1e-13)
+        if not done.success:
+            raise ValueError(f"at t = {done.t[-1] if done.t.size else times[0]:.9g} the motion cannot be followed")
+        return done.y
+
+    def _placed(self, t: float, one: Any, open_: list[int]) -> None:
+        """Positions are led to the rows that have a position."""
+        h = self.holonomic
+        for _ in range(STEPS if open_ and h else 0):
+            f, _, _, partials = self.at(t, one)
+            step = self._solved(partials[:h, :, 0], f[:, 0], open_, t, partly=True)
+            one[open_, 0] += step
+            if not np.max(np.abs(step)) > 1e-14 * (1 + np.max(np.abs(one[: self.n]))):
+                break
+
+    def _solved(self, partials: Any, right: Any, open_: list[int], t: float, partly: bool = False) -> Any:
+        """x with J x = -right for the coordinates that are open."""
+        if not open_:
+            return np.zeros(0)
+        if not np.isfinite(partials).all() or not np.isfinite(right).all():
+            raise ValueError(f"at t = {t:.9g} the constraints have no finite value")
+        found, _, rank, _ = np.linalg.lstsq(partials[:, open_], -right, rcond=OFF)
+        if rank < len(open_) and not partly:
+            listed = ", ".join(self.system.coordinates[k] for k in open_)
+            why = "the constraints do not determine it" if len(open_) == 1 else "the constraints do not determine all"
+            raise ValueError(f"at t = {t:.9g} the motion of {listed} does not follow from what is given: {why}")
+        return found
+
+    def _check(self, t: float, one: Any) -> None:
+        n, h = self.n, self.holonomic
+        f, g, c, partials = (x[..., 0] for x in self.at(t, one))
+        slopes = np.abs(partials)
+        sizes = [1 + np.abs(one[k * n : (k + 1) * n, 0]) for k in range(3)]
+        off = [np.abs(f) / (slopes[:h] @ sizes[0] + 1e-300), np.abs(g) / (slopes @ sizes[1] + 1e-300)]
+        off.append(np.abs(c + partials @ one[2 * n :, 0]) / (slopes @ sizes[2] + np.abs(c) + 1e-300))
+        for values, what in zip(off, ("", " (velocities)", " (accelerations)"), strict=True):
+            if len(values) and not np.max(values) < OFF:
+                name = self.names[int(np.argmax(np.nan_to_num(values, nan=np.inf)))]
+                raise ValueError(f"at t = {t:.9g} the motion does not satisfy {name.label}{what}")
+
+
+def _equations(system: System, given: Scenario, states: Any, times: Array) -> tuple[Any, Any, Any]:
+    """(M q'' - f at u = 0 (n, m), B (n, k, m), M (n, n, m))."""
+    program: Program = bound(given)
+    n, k = len(system.coordinates), len(system.input_names)
+    moving = [*system.coordinates, *system.velocities, *(acceleration_name(name) for name in system.coordinates)]
+    names = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi", *moving]
+    environment = {name: program.input(name) for name in (*names, *system.input_names)}
+    ring = ring_of(system)
+    found = residuals(Scene(system, program, environment, ring))
+    needed = [found[name] for name in system.coordinates]
+    slopes = jacobian(program, needed, [program.input(name) for name in system.input_names])
+    check_linear(program, system, slopes)
+    tree = programs(system, ring, open_tree=True)
+    masses = substituted(tree.program, [x for row in tree.mass_matrix for x in row], program)
+    code = Code(program, ("t", *moving, *system.input_names), (*needed, *(x for row in slopes for x in row), *masses))
+    values = np.asarray(kernel(code)(np.vstack([times, states, np.zeros((k, len(times)))])), dtype=float)
+    if not np.isfinite(values).all():
+        first = times[~np.isfinite(values).all(axis=0)][0]
+        raise ValueError(f"at t = {first:.9g} what the motion needs is infinite or no number")
+    columns = -values[n : n + n * k].reshape(n, k, -1)
+    return values[:n], columns, values[n + n * k :].reshape(n, n, -1)

@@ -29,7 +29,7 @@ from mbsym.numerics.methods.interface import (
     Work,
     together,
 )
-from mbsym.numerics.planning.reduction import without
+from mbsym.numerics.planning.reduced import without
 from mbsym.numerics.scenario import Scenario
 
 

@@ -34,10 +34,9 @@ from mbsym.model.loads import (
 from mbsym.model.system import INERTIAL, Body, System, Vector
 from mbsym.numerics.scenario import Incomplete, exact
 from mbsym.picture import outlined
-from mbsym.picture.build import picture_at
+from mbsym.picture.build import picture_at, start
 from mbsym.picture.lettering import Letters
 from mbsym.picture.looking import AXES, at, combined, dot, projection, unit
-from mbsym.picture.start import start
 from mbsym.picture.values import Acting, Drawn, Ellipsoid, Hinge, Measure, Numbers, Operands, Picture, Stretch
 
 #: The drawing fits into so many centimetres, letters apart.

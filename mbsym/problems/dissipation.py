@@ -47,9 +47,8 @@ from mbsym.expressions.tree import (
     names,
 )
 from mbsym.mechanics.frames import forward
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.mechanics.loads.kinds import KINDS, generalized_forces
 from mbsym.mechanics.motion import motion_values, relations, turning, unperturbed_with
 from mbsym.mechanics.variables import expressions
 from mbsym.model.loads import (

@@ -37,8 +37,8 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.problems.energy import Energy
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from typing import Any
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import convective_rate

@@ -34,9 +34,9 @@ from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
 from mbsym.formulas.formula import Column, Matrix, column
 from mbsym.formulas.notebook import Shown
+from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady
-from mbsym.mechanics.quaternions import of_turns, rates
 from mbsym.mechanics.speeds import SpeedForm, Variable
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import velocity_name

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from mbsym.analysis.invariant_relations import InvariantRelations
-from mbsym.analysis.polynomial import Setting
+from mbsym.analysis.polynomial import InvariantRelations, Setting
 from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import (
     Along,

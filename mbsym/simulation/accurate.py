@@ -16,7 +16,7 @@ from mbsym.numerics.planning.choice import rates
 from mbsym.numerics.planning.models import Model
 from mbsym.numerics.planning.pilot import finest
 from mbsym.numerics.planning.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
-from mbsym.numerics.planning.plan_bounds import DOUBLED
+from mbsym.numerics.planning.plan_items import DOUBLED
 from mbsym.numerics.planning.planning import FREE, Pins, planned
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of

@@ -129,7 +129,7 @@ class Simulation:
             return {name: self[name] for name in self.given.system.variables} if self.given is not None else {}
         if self.given is None or not self.given.system.speeds or self.trajectory.table is not None:
             return {}
-        from mbsym.numerics.further_columns import speed_columns  # few systems have speeds of their own
+        from mbsym.numerics.body_motion import speed_columns  # few systems have speeds of their own
 
         return speed_columns(self.given, self.times, self.trajectory.states)
 

@@ -27,26 +27,27 @@ from mbsym.numerics.conservation import (
     Conservation,
     Measure,
     Standing,
+    along,
     between_switches,
     confronted,
     energy_standing,
+    invariants,
     standing,
+    values,
     visited,
 )
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure.compare import analytic, certified
-from mbsym.numerics.extremes.stepped_over import stepped_over
-from mbsym.numerics.invariants import along, invariants, values
-from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.extremes.singular_positions import stepped_over
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.models import droppable, scenario_of
+from mbsym.numerics.planning.models import LinearisedDynamics, droppable, scenario_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.planning.sizes import kinetic_between
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of, state_names
-from mbsym.numerics.unseen import between_rows, nearest_to_singular
+from mbsym.numerics.watched import between_rows, nearest_to_singular
 from mbsym.simulation.request import COORDINATES, DECLARED, Request, wrong_with
 from mbsym.simulation.result import Chosen, FollowedIntegral, Simulation
 from mbsym.simulation.sampling import chosen_for

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.orbits.adjoint import Gradient
     from mbsym.numerics.planning.plan import Plan
     from mbsym.simulation import Simulation
-    from mbsym.simulation.sensitivities import Sensitivities
+    from mbsym.simulation.motions import Sensitivities
 
 
 ARITHMETIC = ("float64", "float32", "extended")
@@ -235,7 +235,7 @@ def sensitivities(
     """
     from mbsym import simulation
     from mbsym.numerics.scenario import scenario
-    from mbsym.simulation.sensitivities import sensitivities as derived
+    from mbsym.simulation.motions import sensitivities as derived
 
     system = moving_system(source)
     read = simulation.read_values(system, values or {})

@@ -38,7 +38,7 @@ from mbsym.studies.study import (
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.sweeps.points import Measure, Points
-    from mbsym.sweeps.request import Asked as Wanted
+    from mbsym.sweeps.sweep import Asked as Wanted
     from mbsym.sweeps.sweep import Chunk, Executor
     from mbsym.sweeps.sweep import Folder as Store
 
@@ -110,7 +110,7 @@ class Request:
     @property
     def wanted(self) -> Wanted:
         from mbsym.sweeps.points import Points
-        from mbsym.sweeps.request import Asked
+        from mbsym.sweeps.sweep import Asked
 
         points = Points(tuple(one.variation for one in self.vary), self.points or 0, self.seed, self.sampling)
         ends = {one.variation.name: one.ends for one in self.vary}
@@ -176,7 +176,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     from mbsym.source.yaml_writer import meaning
     from mbsym.studies.section import unfit_section
     from mbsym.sweeps import sweep
-    from mbsym.sweeps.request import measure_of
+    from mbsym.sweeps.sweep import measure_of
 
     watch("deriving")
     wanted, system = request.wanted, asked.system

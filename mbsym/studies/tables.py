@@ -18,7 +18,7 @@ from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System
 from mbsym.numerics.extremes.extremes import Extremes
 from mbsym.numerics.extremes.singular import SingularSet
-from mbsym.numerics.trade.trade_study import Study
+from mbsym.numerics.trade.tradeoff import Study
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria
 from mbsym.studies.described import moving_system
 
@@ -155,8 +155,7 @@ def _tradeoff(
     """See ``mbsym.tradeoff``."""
     from mbsym.numerics.methods.table import METHODS
     from mbsym.numerics.scenario import scenario
-    from mbsym.numerics.trade.trade_study import studied
-    from mbsym.numerics.trade.tradeoff import advice
+    from mbsym.numerics.trade.tradeoff import advice, studied
     from mbsym.simulation import read_values
 
     names = tuple(METHODS) if methods is None else tuple(methods)

@@ -26,7 +26,7 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
-    from mbsym.numerics.trade import trade_study
+    from mbsym.numerics.trade import tradeoff as trade_study
     from mbsym.numerics.trade.tradeoff import Measured
     from mbsym.report.content import Block
 
@@ -82,7 +82,7 @@ class Found:
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotClosed, Breakdown where there is no reference solution, Failure where the equations have no program."""
     from mbsym.numerics.methods import table
-    from mbsym.numerics.trade.trade_study import studied
+    from mbsym.numerics.trade.tradeoff import studied
 
     given, notes = closed_motion(asked.motion, declared=True)
     methods = [table.METHODS[name] for name in request.methods]

@@ -34,7 +34,7 @@ from mbsym.numerics.kernels.interface import Code
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
 from mbsym.problems.stability.routh import ignoring_cyclic, momenta_are_constant, only_momenta
-from mbsym.sweeps.polynomials import Horner
+from mbsym.sweeps.formula import Horner
 
 #: What is tried where a sequence of remainders ends early for all parameters; the seed of the points where that shows.
 SHIFTS, SEED = (0, 1, 2, 3, 5), 20261122

@@ -16,8 +16,8 @@ from mbsym.algebra.matrices import added
 from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.numerics.kernels.interface import Code
+from mbsym.sweeps.formula import written
 from mbsym.sweeps.points import Column
-from mbsym.sweeps.polynomials import written
 
 #: Parts of a root below this share of the largest root are rounding, of a root that may be a multiple one.
 NEGLIGIBLE = 1e-7
@@ -78,7 +78,7 @@ class RootsMeasure:
 def _eigenvalues(m: Any, c: Any, k: Any, following: Sequence[int]) -> Any:
     """Of M x'' + C x' + K x = 0, arrays (points, n, n); not a number where M is singular or the entries are none.
 
-    The rows of ``following`` are of first order, there C takes M's place: ``mbsym.problems.stability.state_matrix``.
+    The rows of ``following`` are of first order, there C takes M's place: ``mbsym.problems.stability.linear_form``.
     """
     count, n = m.shape[0], m.shape[1]
     moving = [i for i in range(n) if i not in following]

@@ -16,10 +16,10 @@ from properties import settings
 from mbsym.algebra import compensated as module
 from mbsym.algebra.compensated import compensated
 from mbsym.algebra.program import PRODUCT_ROUNDING, SUM_ROUNDING, Node, Program
+from mbsym.numerics.kernels.arrays import stepwise
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import available, kernel
 from mbsym.numerics.kernels.precise import enclosures
-from mbsym.numerics.kernels.stepwise import stepwise
 
 FINITE = st.floats(-1e60, 1e60).filter(lambda x: x == 0 or abs(x) > 1e-60)
 

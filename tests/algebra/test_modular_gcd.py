@@ -9,8 +9,7 @@ import pytest
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane.fields import Extension
-from mbsym.algebra.plane.modular import common_divisor, divides, proved_coprime
+from mbsym.algebra.plane.fields import Extension, common_divisor, divides, proved_coprime
 from mbsym.algebra.plane.numbers import AlgebraicNumber, number, roots_between
 
 

@@ -10,7 +10,7 @@ import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.arrangements import Arrangement, Corner, CornerKind, Region, decompose, decomposition
-from mbsym.algebra.arrangements.laws import Law, breaches, euler
+from mbsym.algebra.arrangements.arrangement import Law, breaches, euler
 from mbsym.algebra.arrangements.stacks import Fibre
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, Budget, decompose_line

@@ -8,7 +8,7 @@ import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.arrangements import critical_levels, decompose, decompose_space
-from mbsym.algebra.arrangements.laws import breaches
+from mbsym.algebra.arrangements.arrangement import breaches
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, Budget
 

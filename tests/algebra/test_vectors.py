@@ -166,13 +166,13 @@ PLANTED = [
     Mistake("velocity not turned", RECURSIONS, "forward(turns, carried + relative_velocity, name)", "carried", "", ()),
     Mistake(
         "a weight in inertial axes",
-        "mechanics.loads.gravity:_uniform_action",
+        "mechanics.loads.kinds:_uniform_action",
         "field[name] *",
         "field['0'] *",
         "",
         (),
     ),
-    Mistake("a force not turned back", "mechanics.bias_forces:forcing", "frame.back(force), ", "force, ", "", ()),
+    Mistake("a force not turned back", "mechanics.articulated:forcing", "frame.back(force), ", "force, ", "", ()),
     Mistake("R for R^T", "mechanics.intermediates:NamedScene.back", "].T @ v", "] @ v", "", ()),
 ]
 

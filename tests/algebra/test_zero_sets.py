@@ -16,8 +16,7 @@ from properties import settings
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Ring
-from mbsym.algebra.zero_sets import zero_sets
-from mbsym.algebra.zeros_in_boxes import EXACT, SIGNS
+from mbsym.algebra.zeros_in_boxes import EXACT, SIGNS, zero_sets
 
 RING = Ring(["a", "b", "x", "h"], [], [], {"a": 1, "b": 1, "h": 2}, spare=4)
 S, C = RING.generator("sine", "a"), RING.generator("cosine", "a")

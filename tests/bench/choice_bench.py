@@ -38,10 +38,10 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64  # noqa: E402
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable  # noqa: E402
 from mbsym.numerics.methods.table import METHODS  # noqa: E402
 from mbsym.numerics.planning.models import modelled  # noqa: E402
+from mbsym.numerics.planning.pilot import rows  # noqa: E402
 from mbsym.numerics.planning.plan import Accuracy, Plan  # noqa: E402
 from mbsym.numerics.planning.planning import planned  # noqa: E402
 from mbsym.numerics.planning.reduced import reduced  # noqa: E402
-from mbsym.numerics.rows import rows  # noqa: E402
 from mbsym.numerics.scenario import Scenario, scenario  # noqa: E402
 
 TRUTH = HERE.parent / "truth" / "independent"

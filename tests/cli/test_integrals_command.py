@@ -11,8 +11,7 @@ import sympy
 from click.testing import CliRunner
 
 import mbsym
-from mbsym.analysis.invariant_relations import special_relations
-from mbsym.analysis.polynomial import integrals_of, setting
+from mbsym.analysis.polynomial import integrals_of, setting, special_relations
 from mbsym.report.schemas import schema
 from mbsym.studies.integrals.relations import darboux_values
 from mbsym_cli.main import main

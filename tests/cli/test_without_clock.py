@@ -164,7 +164,7 @@ READS = {
         ["trade.reference", "trade.reference_search", "ensembles.ensemble", "extremes.extremes", "trade.fidelity"], TOLD
     ),
     **dict.fromkeys(
-        ["simulate", "rows", "planning.planning", "trade.tradeoff", "ledger.formulas", "methods.landing"], TOLD
+        ["simulate", "planning.pilot", "planning.planning", "trade.tradeoff", "ledger.table", "methods.landing"], TOLD
     ),
     "ledger.work": f"{TOLD}; how often a timing is repeated for its least value",
     "enclosure.enclose": ASKED,

@@ -24,7 +24,7 @@ import pytest
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.soundness import complain
 from mbsym.analysis.stages import Unavailable
-from mbsym.mechanics.constraints import perturbed
+from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.model.system import System
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics

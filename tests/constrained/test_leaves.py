@@ -13,7 +13,7 @@ import pytest
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.analysis.pipeline import Analysis
-from mbsym.mechanics.constraints import perturbed
+from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
 from mbsym.problems.stability.reasons import Because

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 import mbsym
-from mbsym.mechanics.constraints import expansion, perturbed
+from mbsym.mechanics.constraints import expansion
+from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import FAILED
 
 SYSTEMS = Path(__file__).parents[2] / "systems"

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import pytest
 
 import mbsym
-from mbsym.formulas.notation import notation
+from mbsym.formulas.mathml import notation
 from mbsym.report.messages import messages
 
 REPORT = Path(mbsym.__file__).parent / "report"

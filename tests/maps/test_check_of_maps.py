@@ -13,9 +13,8 @@ import mbsym
 from mbsym.algebra.arrangements import Arrangement, decompose
 from mbsym.algebra.plane import Box, Point, decompose_line
 from mbsym.maps.boundaries import boundaries
-from mbsym.maps.check import Check, Mistake, check
+from mbsym.maps.check import Check, ExactVerdicts, Mistake, check
 from mbsym.maps.mapping import exact_map
-from mbsym.maps.on_curves import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.word import Word

@@ -13,7 +13,7 @@ import mbsym
 from mbsym.algebra.arrangements import Arrangement, decompose
 from mbsym.algebra.plane import Box, Point
 from mbsym.maps.boundaries import boundaries
-from mbsym.maps.on_curves import ExactVerdicts
+from mbsym.maps.check import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.reasons import Because

@@ -19,7 +19,7 @@ from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomi
 from mbsym.algebra.plane.numbers import number, roots_between
 from mbsym.algebra.plane.point_field import PointField, SimpleField
 from mbsym.algebra.roots import RootCount, counted, counted_real
-from mbsym.maps.on_curves import ExactVerdicts
+from mbsym.maps.check import ExactVerdicts
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because

@@ -9,7 +9,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis import Analysis, Unavailable
-from mbsym.mechanics.generalized import generalized_forces
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.problems.checks import EXACT
 from mbsym.source.document import read
 from mbsym.source.text_writer import to_text

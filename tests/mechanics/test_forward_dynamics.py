@@ -21,9 +21,9 @@ from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Program
 from mbsym.analysis import Analysis
 from mbsym.mechanics import articulated, factorisation
+from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.bias_forces import bias_forces, forcing
-from mbsym.mechanics.composite import mass_matrix
+from mbsym.mechanics.factorisation import mass_matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.oracle import Oracle, State
@@ -327,14 +327,14 @@ def test_operations_of_parameters_alone_are_free() -> None:
 # --- planted mistakes ---
 
 MISTAKES = [
-    ("mechanics.composite:_Composite._climb", " + frame.offset.cross(force)", ""),
+    ("mechanics.factorisation:_Composite._climb", " + frame.offset.cross(force)", ""),
     ("mechanics.articulation:turned_symmetric", "p - across", "p + across"),
     ("mechanics.articulation:shifted", "- mixed", "+ mixed"),
     ("mechanics.articulation:shifted", "twice = h + moved", "twice = h + h"),
     ("mechanics.articulation:split", "algebra.zero, Vector", "own.mass, Vector"),
-    ("mechanics.bias_forces:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
-    ("mechanics.bias_forces:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
-    ("mechanics.bias_forces:_moved", "algebra.number(2)", "algebra.number(1)"),
+    ("mechanics.articulated:_w_tensor", "p[0][1] - c", "p[0][1] + c"),
+    ("mechanics.articulated:_rotational", "tensor[k][k] - tensor[j][j]", "tensor[j][j] - tensor[k][k]"),
+    ("mechanics.articulated:_moved", "algebra.number(2)", "algebra.number(1)"),
     ("mechanics.loads.kinds:base_acceleration", "base - field", "base + field"),
 ]
 

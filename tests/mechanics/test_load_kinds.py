@@ -14,9 +14,8 @@ import pytest
 import mbsym
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import KINDS
+from mbsym.mechanics.loads.kinds import KINDS, generalized_forces
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model import loads as model
 

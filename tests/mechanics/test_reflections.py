@@ -9,8 +9,8 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.mechanics.reflections import reflections
 from mbsym.mechanics.rest import at_numbers, given_values, rest
+from mbsym.mechanics.symmetry import reflections
 from mbsym.problems.relative_equilibria.equilibria import Equilibria, equilibria
 from mbsym.studies.equilibria import STUDY
 from mbsym_cli.study import command_of

@@ -9,10 +9,9 @@ import pytest
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods import blocks
-from mbsym.numerics.methods.blocks import Blocks
+from mbsym.numerics.methods import landing as blocks
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.methods.landing import LandingRun
+from mbsym.numerics.methods.landing import Blocks, LandingRun
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 

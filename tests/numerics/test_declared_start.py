@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mbsym
-from mbsym.mechanics.quaternions import product as turned
+from mbsym.mechanics.frames import product as turned
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.states import StateDynamics, in_coordinates, scenario_in_states
 from mbsym.source import to_yaml

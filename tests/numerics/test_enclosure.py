@@ -21,11 +21,10 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.enclosure import enclose as segments
 from mbsym.numerics.enclosure.compare import Certificate, certified
 from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, TOO_DEAR, Enclosure, enclosed
-from mbsym.numerics.enclosure.field import Field, cap
-from mbsym.numerics.enclosure.model import Model, Ring
+from mbsym.numerics.enclosure.field import Field, Model, Ring, cap
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.rows import rows
+from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.scenario import scenario
 from mbsym.report.runs.certificate import certificate_lines
 

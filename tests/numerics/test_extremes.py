@@ -31,9 +31,8 @@ from mbsym.numerics.extremes.extremes import LISTED, extremes
 from mbsym.numerics.extremes.extremes_told import _onward, sentences
 from mbsym.numerics.extremes.singular import singularities
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
-from mbsym.numerics.probes import RATIO, SINGULAR, ladders, ratios, scaled, singular
+from mbsym.numerics.probes import RATIO, SINGULAR, ladders, ratios, scaled, scene_units, singular
 from mbsym.numerics.scenario import changed, scenario
-from mbsym.numerics.scene_units import scene_units
 from mbsym.numerics.sequences import SEQUENCES, angles_of, orientation, rankings
 from mbsym.numerics.trade.digits import FULL, Arithmetic, Quantity, Truth, compared, input_names, measured, quantities
 from mbsym.problems.stability.exact import verdict_at

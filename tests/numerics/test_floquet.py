@@ -27,7 +27,7 @@ from mbsym.numerics.orbits.floquet import (
     jacobian_on_motion,
     judged,
 )
-from mbsym.numerics.orbits.flow import Flow
+from mbsym.numerics.orbits.variational import Flow
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym.simulation import read_values

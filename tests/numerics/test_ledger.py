@@ -32,7 +32,7 @@ from mbsym.mechanics.variables import expressions, ring_of
 from mbsym.model.loads import GeneralizedForce
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.ledger import code
+from mbsym.numerics.ledger import table as code
 from mbsym.numerics.ledger.entry import (
     OPERATIONS,
     SECONDS,

@@ -20,8 +20,8 @@ from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, Tabl
 from mbsym.expressions.tree import Call, Name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays, llvm
+from mbsym.numerics.kernels.arrays import stepwise
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
-from mbsym.numerics.kernels.stepwise import stepwise
 from mbsym.numerics.methods import sides
 from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.methods.table import METHODS

@@ -18,7 +18,7 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.model_choice import ModelEstimate, Propagated, confirmed, model_error
 from mbsym.numerics.planning.models import Model, described, droppable, faithful, modelled, orders
-from mbsym.numerics.rows import rows
+from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.scenario import Scenario, scenario
 
 SYSTEMS = Path(__file__).parents[2] / "systems"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mbsym.numerics.events.features import DIP, PEAK, TURN
-from mbsym.numerics.methods import narrow
+from mbsym.numerics.methods import sides as narrow
 
 
 class Step:

@@ -17,8 +17,10 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning import pilot, plan_bounds, planning
+from mbsym.numerics.planning import pilot, planning
+from mbsym.numerics.planning import plan_items as plan_bounds
 from mbsym.numerics.planning.models import Model
+from mbsym.numerics.planning.pilot import Yardstick
 from mbsym.numerics.planning.plan import ENERGY, Accuracy, Bound, Share
 from mbsym.numerics.planning.plan_items import (
     Settled,
@@ -31,7 +33,6 @@ from mbsym.numerics.planning.plan_items import (
 )
 from mbsym.numerics.planning.planning import COARSEST, Pins, _judged, planned
 from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.numerics.trade.yardstick import Yardstick
 from mbsym.simulation import Request, simulate
 from mbsym.simulation.accurate import simulate_accurately
 

@@ -19,12 +19,11 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.reduction import resting
+from mbsym.numerics.planning.reduced import resting
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade.fidelity import measured, model_advice
 from mbsym.numerics.trade.reference import Reference, reference
-from mbsym.numerics.trade.trade_study import studied
-from mbsym.numerics.trade.tradeoff import Tradeoff, advice, tradeoff
+from mbsym.numerics.trade.tradeoff import Tradeoff, advice, studied, tradeoff
 from mbsym_cli.main import main
 
 ROOT = Path(__file__).parents[2]

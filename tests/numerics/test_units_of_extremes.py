@@ -14,7 +14,7 @@ from mbsym.mechanics.variables import ring_of
 from mbsym.numerics.borders import BORDER
 from mbsym.numerics.extremes.extremes import Extremes, extremes
 from mbsym.numerics.extremes.extremes_told import sentences
-from mbsym.numerics.planning import scales
+from mbsym.numerics.planning import sizes as scales
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import digits
 from mbsym.report.runs.extremes_tables import tables

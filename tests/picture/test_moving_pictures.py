@@ -13,7 +13,7 @@ import pytest
 import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.numerics.kernels import arrays
-from mbsym.numerics.linearised import LinearisedDynamics
+from mbsym.numerics.planning.models import LinearisedDynamics
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.problems.stability.word import Word
 from mbsym.report.viewer.modes import Modes, modes, modes_json

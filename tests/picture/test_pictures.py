@@ -15,8 +15,7 @@ from mbsym.algebra.failures import Failure, GivenByMatrices
 from mbsym.numerics.positions import AXIS, END, JOINT, MASS_CENTRE, positions
 from mbsym.numerics.scenario import Incomplete
 from mbsym.picture import as_json, picture, picture_at
-from mbsym.picture.build import closed, gaps
-from mbsym.picture.start import start
+from mbsym.picture.build import closed, gaps, start
 from mbsym.picture.values import Acting, Measure, Picture, Stretch
 from mbsym.source import read
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 import mbsym
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.relative_equilibria import cosines as rest_cosines
+from mbsym.problems.relative_equilibria import oriented as rest_cosines
 from mbsym.problems.relative_equilibria.equilibria import EXACT, Equilibria, RelativeEquilibrium, equilibria
 
 Array = NDArray[np.float64]

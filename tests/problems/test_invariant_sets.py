@@ -13,7 +13,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind
-from mbsym.problems.invariant_sets.arena import arena
+from mbsym.problems.invariant_sets.branches import arena
 from mbsym.problems.invariant_sets.problem import invariant_sets
 from mbsym.problems.vector_field import vector_field
 from mbsym.report.language import Language

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.invariant_sets import Definiteness, Gap, Kind, StationarySet
-from mbsym.problems.invariant_sets.arena import identifiers
+from mbsym.problems.invariant_sets.branches import identifiers
 from mbsym_cli.main import main
 
 

@@ -12,7 +12,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.mechanics import quaternions
+from mbsym.mechanics import frames as quaternions
 from mbsym.problems.checks import EXACT, FAILED
 from mbsym.source import to_text, to_yaml
 

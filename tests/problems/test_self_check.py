@@ -451,7 +451,7 @@ CAUGHT = [
     ),
     Mistake(
         "the moment that a composite body's force has about the previous joint, in the mass matrix",
-        "mechanics.composite:_Composite._climb",
+        "mechanics.factorisation:_Composite._climb",
         " + frame.offset.cross(force)",
         "",
         "machine",
@@ -460,7 +460,7 @@ CAUGHT = [
     # --- loads ---
     Mistake(
         "the sign of a spring's force function",
-        "mechanics.loads.springs:_spring_force_function",
+        "mechanics.loads.kinds:_spring_force_function",
         "Fraction(-1, 2)",
         "Fraction(1, 2)",
         "spinning",
@@ -468,7 +468,7 @@ CAUGHT = [
     ),
     Mistake(
         "the sign of a spring's force",
-        "mechanics.loads.springs:_spring_action",
+        "mechanics.loads.kinds:_spring_action",
         "-pull",
         "pull",
         "spinning",
@@ -476,7 +476,7 @@ CAUGHT = [
     ),
     Mistake(
         "the sign of a damper",
-        "mechanics.loads.springs:_damper_action",
+        "mechanics.loads.kinds:_damper_action",
         "-scene.algebra.times",
         "scene.algebra.times",
         "machine",
@@ -484,7 +484,7 @@ CAUGHT = [
     ),
     Mistake(
         "a spring between points that repels",
-        "mechanics.loads.springs:_point_spring_action",
+        "mechanics.loads.kinds:_point_spring_action",
         "pair.span * algebra.reduce(factor)",
         "pair.span * algebra.reduce(-factor)",
         "machine",
@@ -492,7 +492,7 @@ CAUGHT = [
     ),
     Mistake(
         "a dashpot between points that pushes",
-        "mechanics.loads.springs:closing",
+        "mechanics.loads.kinds:closing",
         "speeds[1] - speeds[0]",
         "speeds[0] - speeds[1]",
         "machine",
@@ -500,7 +500,7 @@ CAUGHT = [
     ),
     Mistake(
         "a damper between points that does not act along their line",
-        "mechanics.loads.springs:_point_damper_action",
+        "mechanics.loads.kinds:_point_damper_action",
         "pair.span * algebra.reduce(algebra.times(coefficient, rate))",
         "towards * coefficient",
         "machine",
@@ -508,7 +508,7 @@ CAUGHT = [
     ),
     Mistake(
         "no reaction at the other end of a spring",
-        "mechanics.loads.springs:Pair.action",
+        "mechanics.loads.kinds:Pair.action",
         "(pull, -pull)",
         "(pull, pull)",
         "machine",
@@ -524,7 +524,7 @@ CAUGHT = [
     ),
     Mistake(
         "the sign of a dissipation function",
-        "mechanics.loads.springs:_rayleigh_action",
+        "mechanics.loads.kinds:_rayleigh_action",
         "-scene.lower",
         "scene.lower",
         "machine",
@@ -556,7 +556,7 @@ CAUGHT = [
     ),
     Mistake(
         "the height of a joint in uniform gravity",
-        "mechanics.loads.gravity:_uniform_force_function",
+        "mechanics.loads.kinds:_uniform_force_function",
         "field[parent].dot(motion.offset)",
         "algebra.zero",
         "machine",
@@ -565,7 +565,7 @@ CAUGHT = [
     # --- Newtonian gravity ---
     Mistake(
         "the trace term of gravity dropped",
-        "mechanics.loads.gravity:_newtonian_force_function",
+        "mechanics.loads.kinds:_newtonian_force_function",
         "second + algebra.times(half, trace)",
         "second",
         "free orbit",
@@ -573,7 +573,7 @@ CAUGHT = [
     ),
     Mistake(
         "the trace of the mass centre's moment dropped",
-        "mechanics.loads.gravity:_newtonian_force_function",
+        "mechanics.loads.kinds:_newtonian_force_function",
         " - algebra.times(half, c.dot(c))",
         "",
         "circular orbit",
@@ -581,7 +581,7 @@ CAUGHT = [
     ),
     Mistake(
         "the linear term U_1 of gravity dropped",
-        "mechanics.loads.gravity:_newtonian_force_function",
+        "mechanics.loads.kinds:_newtonian_force_function",
         "orbit.potential - algebra.times(orbit.weight, along)",
         "orbit.potential",
         "circular orbit",
@@ -597,7 +597,7 @@ CAUGHT = [
     ),
     Mistake(
         "the gravity torque reversed",
-        "mechanics.loads.gravity:_newtonian_action",
+        "mechanics.loads.kinds:_newtonian_action",
         "e.cross(tensor @ e)",
         "(tensor @ e).cross(e)",
         "circular orbit",
@@ -605,7 +605,7 @@ CAUGHT = [
     ),
     Mistake(
         "the constant pull dropped from the force of gravity",
-        "mechanics.loads.gravity:_newtonian_action",
+        "mechanics.loads.kinds:_newtonian_action",
         "along - orbit.weight",
         "along",
         "circular orbit",
@@ -638,7 +638,7 @@ CAUGHT = [
     ),
     Mistake(
         "the moments dropped from the generalised forces",
-        "mechanics.generalized:generalized_forces",
+        "mechanics.loads.kinds:generalized_forces",
         " + wrench.moment.dot(spin)",
         "",
         "machine",
@@ -748,7 +748,7 @@ BLIND = [
     ),
     Mistake(
         "a term of the force function that does not vary (problem 2)",
-        "mechanics.loads.gravity:_newtonian_force_function",
+        "mechanics.loads.kinds:_newtonian_force_function",
         "second + algebra.times(half, trace)",
         "second",
         "circular orbit",

@@ -24,8 +24,8 @@ import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.prices import cost
-from mbsym.numerics.rows import rows
 from mbsym.simulation import Simulation
 
 SOLUTIONS = json.loads((Path(__file__).parent / "independent" / "solutions.json").read_text(encoding="utf-8"))

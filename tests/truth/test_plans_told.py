@@ -14,10 +14,10 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import planning
 from mbsym.numerics.planning.choice import Choice
+from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import planned
 from mbsym.numerics.planning.prices import cost, cost_of_rows
-from mbsym.numerics.rows import rows
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.report.runs.plan_words import bound_lines, choice_lines
 

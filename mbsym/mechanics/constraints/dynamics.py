@@ -45,13 +45,12 @@ from mbsym.algebra.failures import NOT_THERE, Failure, SingularPoint
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
+from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import articulation
-from mbsym.mechanics.bias_forces import bias_forces, forcing
-from mbsym.mechanics.composite import mass_matrix
 from mbsym.mechanics.constraints.dependence import Compliance, Dependent, measured
 from mbsym.mechanics.constraints.rows import Row, RowName, constraint_rows, kept_rows
 from mbsym.mechanics.constraints.speed_rows import speed_rows, state_rows
-from mbsym.mechanics.factorisation import Elimination
+from mbsym.mechanics.factorisation import Elimination, mass_matrix
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.programs import scene_without_accelerations
 from mbsym.mechanics.speed_programs import restoring, speed_program

@@ -21,8 +21,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 
 from mbsym.algebra import rationals
-from mbsym.numerics.enclosure.field import Field, cap, upper
-from mbsym.numerics.enclosure.model import LARGER, TINY, Model, Ring, model
+from mbsym.numerics.enclosure.field import LARGER, TINY, Field, Model, Ring, cap, model, upper
 from mbsym.numerics.kernels.interface import Code
 
 # One step of an enclosure: where a set of states is after a while, and everywhere in between.

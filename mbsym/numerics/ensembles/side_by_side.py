@@ -36,10 +36,10 @@ from mbsym.numerics.ensembles.ensemble_text import (
     STEPS,
     adaptive_text,
     fixed_text,
+    library,
     rows_of,
 )
 from mbsym.numerics.kernels.interface import FLOAT64, Code
-from mbsym.numerics.kernels.lanes import library
 from mbsym.numerics.kernels.llvm import Library, kernel
 from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, STEP_LIMIT, STUCK, Setting
 from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME

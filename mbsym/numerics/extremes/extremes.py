@@ -35,9 +35,8 @@ from mbsym.numerics.extremes.singular import RANGE, Singularities, SingularSet, 
 from mbsym.numerics.extremes.singular_positions import SingularPosition, SingularPositions, singular_positions
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.probes import DISTANCES, RATIO, SINGULAR, Ladder, Probe, ladders
+from mbsym.numerics.probes import DISTANCES, RATIO, SINGULAR, Ladder, Probe, SceneUnits, ladders, scene_units
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.scene_units import SceneUnits, scene_units
 from mbsym.numerics.trade.digits import Arithmetic, Digits, Quantity, Truth, Watch, measured, quantities
 
 # Extremes of systems with constraints: equations with their rows, and states that satisfy them all.

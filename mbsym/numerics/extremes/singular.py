@@ -2,7 +2,7 @@
 
     det M(q) = 0,     and of each joint of three turns the determinant of (x1', x2', x3') -> omega, +-cos x2 or +-sin x2
 
-Factors and their real zeros come from ``mbsym.algebra.zero_sets``.  On a set M v = 0 for some v = q', and
+Factors and their real zeros come from ``mbsym.algebra.zeros_in_boxes``.  On a set M v = 0 for some v = q', and
 
 * if v moves nothing that the description shows (no joint, no mass centre, no body with inertia about that axis), the
   coordinates fail there: two of them do the same.  Others are regular there;
@@ -30,8 +30,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.rationals import ball
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.zero_sets import zero_sets
-from mbsym.algebra.zeros_in_boxes import UNDECIDED, Zero, Zeros, ZeroSet
+from mbsym.algebra.zeros_in_boxes import UNDECIDED, Zero, Zeros, ZeroSet, zero_sets
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
 from mbsym.formulas.python import python_text

@@ -11,8 +11,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import names
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.states import ball_states
 from mbsym.mechanics.variables import expressions, ring_environment, ring_of
 from mbsym.model.system import INERTIAL, System

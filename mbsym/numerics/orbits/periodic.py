@@ -30,7 +30,7 @@ from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
-from mbsym.numerics.orbits.flow import Flow
+from mbsym.numerics.orbits.variational import Flow
 
 #: Newton's steps at most, and how small what is left over must be, as part of the state's size.
 MOST_STEPS, CLOSED = 40, 1e-11

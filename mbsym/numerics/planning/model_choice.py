@@ -30,8 +30,8 @@ from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.models import Model, droppable, faithful, modelled, orders, scenario_of
+from mbsym.numerics.planning.pilot import Rows, rows
 from mbsym.numerics.planning.prices import cost
-from mbsym.numerics.rows import Rows, rows
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, substituted
 

@@ -28,17 +28,27 @@ from mbsym.numerics.planning.choice import Choice, choose
 from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried, model_chosen, model_settled, richest
 from mbsym.numerics.planning.models import Model, described
-from mbsym.numerics.planning.pilot import ALIKE, USUAL_SLOPE, Bench, Trial, finest, searched
+from mbsym.numerics.planning.pilot import (
+    ALIKE,
+    KNOWN,
+    MOST,
+    USUAL_SLOPE,
+    Bench,
+    Trial,
+    Yardstick,
+    finest,
+    places,
+    rows,
+    searched,
+    yardstick,
+)
 from mbsym.numerics.planning.plan import ENERGY, Accuracy, Alternative, Bound, Plan
-from mbsym.numerics.planning.plan_bounds import GOAL, bounds_of, fits, shares_of, worth_of
-from mbsym.numerics.planning.plan_items import Settled, items_of
+from mbsym.numerics.planning.plan_items import GOAL, Settled, bounds_of, fits, items_of, shares_of, worth_of
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import Reduced, reduced
 from mbsym.numerics.planning.sizes import scaled_by_another, usual_sizes
-from mbsym.numerics.rows import MOST, places, rows
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import Part, Separate, separated
-from mbsym.numerics.trade.yardstick import KNOWN, Yardstick, yardstick
 
 # Which methods are tried for an accuracy, in which arithmetic, and from which setting on.
 

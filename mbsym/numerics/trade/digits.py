@@ -9,7 +9,7 @@ condition    max_i sum_j |df_i/dx_j x_j| / s_i, over the parameters, coordinates
              to a relative error u gives a result known to condition * u, whatever the formula (Higham, section 1.6)
 
 so a loss of log10(condition) digits is in the question, and only what goes beyond it is in the formula.
-Errors are max |error_i| / s_i with the sizes s_i of ``mbsym.numerics.planning.scales``, which do not depend on units
+Errors are max |error_i| / s_i with the sizes s_i of ``mbsym.numerics.planning.sizes``, which do not depend on units
 (``digits``), and for the worst entry of its own (``worst``).
 """
 
@@ -35,11 +35,11 @@ from mbsym.mechanics.programs import ForwardDynamics, forward_dynamics, programs
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import System
 from mbsym.numerics.compensation import Compensation, compensated_code
+from mbsym.numerics.kernels.arrays import stepwise
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
-from mbsym.numerics.kernels.stepwise import stepwise
-from mbsym.numerics.planning.scales import kinds, scales
+from mbsym.numerics.planning.sizes import kinds, scales
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.specialise import Specialised, bound, substituted
 

@@ -28,10 +28,10 @@ from mbsym.model.states import InStates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.ledger.described import relative_size
-from mbsym.numerics.linearised import LinearisedDynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable
+from mbsym.numerics.planning.models import LinearisedDynamics
 from mbsym.numerics.planning.prices import cost
-from mbsym.numerics.planning.reduction import Reduction, resting
+from mbsym.numerics.planning.reduced import Reduction, resting
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
 

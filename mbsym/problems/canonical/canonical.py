@@ -41,8 +41,8 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.momenta import denominator_names, momentum_names
 from mbsym.model.system import System, velocity_name

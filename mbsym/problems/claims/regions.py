@@ -26,9 +26,19 @@ from mbsym.problems.claims.remarks import Remark, Said, said
 from mbsym.problems.claims.result import Derived, in_parameters, on_relations
 from mbsym.problems.knowledge import signs as signs_now
 from mbsym.problems.stability import SubsystemStability
-from mbsym.problems.stability.covering import Cell, Lift, atoms, cells_of, everywhere, joined
 from mbsym.problems.stability.problem import in_parameters as of_parameters
-from mbsym.problems.stability.requirements import Case, Place, Requirement, against
+from mbsym.problems.stability.requirements import (
+    Case,
+    Cell,
+    Lift,
+    Place,
+    Requirement,
+    against,
+    atoms,
+    cells_of,
+    everywhere,
+    joined,
+)
 from mbsym.problems.stability.symbolic import on_border
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends

@@ -12,8 +12,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.splitting import Branch, Solved, SplitLimits, exchanged, split
 from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import second_variation
-from mbsym.problems.invariant_sets.arena import Arena
-from mbsym.problems.invariant_sets.branches import Place
+from mbsym.problems.invariant_sets.branches import Arena, Place
 from mbsym.problems.invariant_sets.result import (
     Definiteness,
     Family,

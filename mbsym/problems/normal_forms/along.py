@@ -30,12 +30,10 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import absolute
 from mbsym.problems.normal_forms.birkhoff import matrix_of as matrix_of_hamiltonian
-from mbsym.problems.normal_forms.centre import matrix_of, on_pair, on_zero
 from mbsym.problems.normal_forms.dissipative import judged_field, state_field
 from mbsym.problems.normal_forms.equal import equal_frequencies
-from mbsym.problems.normal_forms.exact import even_part, over_tower, two_eigenvectors
-from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion
-from mbsym.problems.normal_forms.generalized_potential import taken_in
+from mbsym.problems.normal_forms.exact import even_part, matrix_of, on_pair, on_zero, over_tower, two_eigenvectors
+from mbsym.problems.normal_forms.expansion import Expansion, SingularMass, expansion, taken_in
 from mbsym.problems.normal_forms.problem import ORDER, PRECISION, at_numbers, at_zero_root, enclosed, twist
 from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
 from mbsym.problems.stability.verdict import Verdict

@@ -19,11 +19,14 @@ from mbsym.algebra.truncated import Space, Truncated
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.rest import rational_values
 from mbsym.model.system import velocity_name
-from mbsym.problems.normal_forms.centre import Reduced, matrix_of, on_pair, on_zero
 from mbsym.problems.normal_forms.exact import (
+    Reduced,
     common_factor,
     in_ring,
+    matrix_of,
     occurring_parameters,
+    on_pair,
+    on_zero,
     over_tower,
 )
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers

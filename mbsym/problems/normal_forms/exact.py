@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, lcm
 from typing import Any
@@ -12,10 +13,11 @@ from flint import arb, fmpq, fmpq_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
-from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, message_of
-from mbsym.algebra.matrices import dot, faddeev
+from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint, message_of
+from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower, angle_in
+from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
@@ -218,3 +220,222 @@ def primitive(tower: Tower, x: Element) -> Element:
         common = gcd(common, int(coefficient.p))
         denominator = lcm(denominator, int(coefficient.q))
     return tower.element(Element(tower, tower.reduced(product * fmpq(denominator, common)), tower.one.bottom))
+
+
+# Critical cases with dissipation: the motion on the centre manifold, over any scalars.
+#
+# For x' = A x + f(x), f of second order, with one pair +-i w of imaginary roots (lambda = i w), A q = lambda q,
+# p A = lambda p, p q = 1, the centre manifold is
+#
+#     x = q z + q* z* + h20 z^2/2 + h11 z z* + h02 z*^2/2 + ...
+#     (2 lambda - A) h20/2 = f_2's coefficient of z^2,      -A h11 = that of z z*,      z' = lambda z + c z^2 z* + ...
+#
+# with c = p.(coefficient of z^2 z* in f).  With r = 2 |q_j z|, the amplitude of x_j in first approximation,
+#
+#     r' = a r^3 + ...,      a = Re c / (4 q_j q_j*)
+#
+# which is a of r' = d r + a r^3 (Guckenheimer & Holmes (3.4.11)) where a parameter moves the roots by d.  a < 0: soft
+# (asymptotically stable where all other roots are to the left), a > 0: hard (unstable).  With one root zero instead
+#
+#     u' = a2 u^2 + a3 u^3 + ...,      x = q u + h u^2 + ...
+#
+# a2 != 0: unstable; a2 = 0: asymptotically stable for a3 < 0, unstable for a3 > 0.
+#
+# Sources: A. M. Lyapunov, The General Problem of the Stability of Motion (1892), sections 28-41; V. A. Pliss (1964); J.
+# Guckenheimer & P. Holmes, Nonlinear Oscillations (1983), sections 3.2 and 3.4; Yu. A. Kuznetsov, Elements of Applied
+# Bifurcation Theory, section 5.4.
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state."""
+
+    quadratic: Any
+    cubic: Any
+    lengths: tuple[Any, ...]
+
+
+def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
+    """A of x' = A x + ..."""
+    m = len(field)
+    return [[row[tuple(int(k == j) for k in range(m))] for j in range(m)] for row in field]
+
+
+def on_pair(
+    field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
+) -> Reduced:
+    """The pair ``root``, -root, simple.  Raises what ``inverse`` raises where the root is not simple, or 0 or 2 root is
+    one."""
+    source = field[0].space
+    zero, one = source.zero, source.one
+    matrix = matrix_of(field)
+    q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
+    conjugate = [row[column] for row in adjugate_at(matrix, -root, zero, one)]
+    third = _third(field, root, q, conjugate, matrix, inverse)
+    return Reduced(zero, dot(p, third), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+
+
+def on_double_pair(
+    field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
+) -> Any:
+    """c of z_1' = lambda z_1 + z_2, z_2' = lambda z_2 + c z_1^2 z_1* + ... for a double ``root`` lambda with one
+    eigenvector q: (A - lambda) q_1 = q, p A = lambda p, p q_1 = 1.  |z_1| then obeys r'' = c r^3 + ...
+
+    q and q_1 are a column of adj(s - A) and of its derivative at s = lambda.  Raises what ``inverse`` raises
+    where there are two eigenvectors.
+    """
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix = matrix_of(field)
+    whole, places = adjugate_at(matrix, root, zero, one), range(m)
+    i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
+    q, p = [row[j] for row in whole], whole[i]
+    conjugate = [row[j] for row in adjugate_at(matrix, -root, zero, one)]
+    generalised = [row[j] for row in adjugate_slope_at(matrix, root, zero, one)]
+    factor = inverse(dot(p, generalised))
+    third = _third(field, root, q, conjugate, matrix, inverse)
+    return dot(p, third) * factor * inverse(dot(q, conjugate))
+
+
+def _third(
+    field: Sequence[Truncated],
+    root: Any,
+    q: Sequence[Any],
+    conjugate: Sequence[Any],
+    matrix: Sequence[Sequence[Any]],
+    inverse: Callable[[Any], Any],
+) -> list[Any]:
+    """The coefficients of z^2 z* in the field on x = q z + q* z* + h20 z^2/2 + h11 z z* + ..."""
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    space = Space(2, 3, zero, one)
+    plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
+    second = [row.beyond(1).composed(plane) for row in field]
+    doubled = [[(root * 2 if i == j else zero) - matrix[i][j] for j in range(m)] for i in range(m)]
+    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second])
+    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second])]
+    bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
+    return [row.beyond(1).composed(bent)[2, 1] for row in field]
+
+
+def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Callable[[Any], float]) -> Reduced:
+    """One simple zero root.  Raises what ``inverse`` raises where it is not simple."""
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix = matrix_of(field)
+    q, p, _ = _eigenvectors(matrix, zero, zero, one, inverse, size)
+    space = Space(1, 3, zero, one)
+    line = [space.linear((q[i],)) for i in range(m)]
+    second = [row.beyond(1).composed(line)[2,] for row in field]
+    quadratic = dot(p, second)
+    # (q p - A) h = second - quadratic q: regular, and p h = 0
+    moved = [[q[i] * p[j] - matrix[i][j] for j in range(m)] for i in range(m)]
+    right = [x - quadratic * y for x, y in zip(second, q, strict=True)]
+    h = _applied(inverted(moved, inverse, zero, one), right)
+    bent = [row + Truncated(space, {(2,): x}) for row, x in zip(line, h, strict=True)]
+    third = [row.beyond(1).composed(bent)[3,] for row in field]
+    return Reduced(quadratic, dot(p, third), tuple(q))
+
+
+def _eigenvectors(
+    matrix: Sequence[Sequence[Any]],
+    root: Any,
+    zero: Any,
+    one: Any,
+    inverse: Callable[[Any], Any],
+    size: Callable[[Any], float],
+) -> tuple[list[Any], list[Any], int]:
+    """q and p with p q = 1: a column and a row of adj(root - A), those whose common entry is largest; which column.
+
+    adj(root - A) is q p times a number, for a simple root.
+    """
+    whole, places = adjugate_at(matrix, root, zero, one), range(len(matrix))
+    i, j = max(((i, j) for i in places for j in places), key=lambda at: size(whole[at[0]][at[1]]))
+    q, p = [row[j] for row in whole], whole[i]
+    factor = inverse(dot(p, q))
+    return q, [x * factor for x in p], j
+
+
+def _applied(matrix: Sequence[Sequence[Any]], vector: Sequence[Any]) -> list[Any]:
+    return [dot(row, vector) for row in matrix]
+
+
+# The first Lyapunov coefficient on a curve of parameters on which one pair of roots is imaginary, as a formula.
+#
+# det(lambda - A) = E(lambda^2) + lambda O(lambda^2).  Where E and O have one common root -w^2, and no more,
+#
+#     resultant(E, O) = 0,      their first subresultant  S1 mu + S0  has that root:  w^2 = S0/S1,   S1 != 0
+#
+# which is a fraction of polynomials in the parameters; a of r' = a r^3 then is one on that curve, too (``centre``).  As
+# long as S1, det A, and top and bottom of a do not vanish on a piece of the curve, a has one sign there and no root
+# crosses the imaginary axis.
+#
+# Source: L. Orlando (Gantmacher, The Theory of Matrices, chapter XV); Yu. A. Kuznetsov, Elements of Applied Bifurcation
+# Theory, section 5.4.
+
+
+@dataclass(frozen=True)
+class OnCurve:
+    """``resultant``, ``slope`` S1, ``constant`` det(-A), ``coefficient`` a: fractions in the tower's parameters.
+
+    ``coefficient`` holds where ``resultant`` is zero and the others are not; r is the amplitude of ``amplitude_of``.
+    """
+
+    resultant: Element
+    slope: Element
+    constant: Element
+    coefficient: Element
+    amplitude_of: str
+
+
+def on_curve(
+    tower: Tower, field: Sequence[Truncated], positions: Sequence[str], size: Callable[[Element], float]
+) -> OnCurve:
+    """``size``: how large an element is at a point of the curve, so that nothing is divided by that vanishes there.
+
+    Raises SingularPoint where a divisor vanishes all along, NoClosedForm where formulas outgrow their budget.
+    """
+    coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1]
+    even, odd = trimmed(coefficients[::2]), trimmed(coefficients[1::2])
+    resultant = subresultant(tower, even, odd, 0)[0]
+    constant, slope = _linear(tower, even, odd)
+    root = tower.square_root(-constant / slope)
+    found = on_pair(field, root, tower.reciprocal, size)
+    j = max(range(len(positions)), key=lambda k: size(found.lengths[k]))
+    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
+    return OnCurve(resultant, slope, coefficients[0], real / (found.lengths[j] * 4), positions[j])
+
+
+def _linear(tower: Tower, even: Sequence[Element], odd: Sequence[Element]) -> list[Element]:
+    """S0, S1.  Raises SingularPoint where a common root is never alone: one is a constant, the other not linear."""
+    degrees = len(even) - 1, len(odd) - 1
+    if degrees == (1, 0):
+        return list(even)  # the constant vanishes on the curve
+    if min(degrees) < 1:
+        raise SingularPoint("the even and the odd part of the polynomial have no common root that is alone")
+    if min(degrees) == 1:
+        return list(odd if degrees[1] == 1 else even)
+    return subresultant(tower, even, odd, 1)
+
+
+def subresultant(tower: Tower, p: Sequence[Element], q: Sequence[Element], j: int) -> list[Element]:
+    """The j-th subresultant of two polynomials (low to high), j + 1 coefficients: of degree j where gcd has degree j.
+
+    Determinants of the rows x^(n-j-1) p ... p, x^(m-j-1) q ... q: the last column is that of the power x^i.  j is 0,
+    or less than both degrees.
+    """
+    m, n = len(p) - 1, len(q) - 1
+    rows = [_shifted(tower, p, k, m + n - j) for k in reversed(range(n - j))]
+    rows += [_shifted(tower, q, k, m + n - j) for k in reversed(range(m - j))]
+    size = m + n - 2 * j
+    found = []
+    for i in range(j + 1):
+        columns = [*(m + n - j - 1 - k for k in range(size - 1)), i]
+        table = [[row[c] for c in columns] for row in rows]
+        found.append(determinant_by_traces(table, tower.zero, tower.one))
+    return found
+
+
+def _shifted(tower: Tower, p: Sequence[Element], by: int, length: int) -> list[Element]:
+    row = [tower.zero] * by + list(p)
+    return row + [tower.zero] * (length - len(row))

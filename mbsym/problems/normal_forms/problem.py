@@ -31,8 +31,7 @@ from mbsym.problems.normal_forms.exact import (
     resonance,
     two_eigenvectors,
 )
-from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion
-from mbsym.problems.normal_forms.generalized_potential import has_forces, taken_in
+from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion, has_forces, taken_in
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
 from mbsym.problems.normal_forms.zero_root import BALLS, Scalars, zero_root

@@ -37,8 +37,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.birkhoff import NormalForm, absolute, diagonalised, matrix_of, normal_form
-from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why
+from mbsym.problems.normal_forms.result import Judged, Outcome, Resonance, Theorem, Why, defects
 
 #: Whether k_1 w_1 + k_2 w_2 + ... = 0 for the absolute frequencies: exactly, or None where that is not known.
 Decides = Callable[[tuple[int, ...], Sequence[arb]], bool | None]

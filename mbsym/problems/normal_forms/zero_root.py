@@ -30,8 +30,7 @@ from flint import acb, acb_poly, arb, ctx
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, faddeev, inverted
 from mbsym.algebra.truncated import Space, Truncated, bracket, flow
 from mbsym.problems.normal_forms.birkhoff import Linear, NormalForm, absolute, diagonalised, matrix_of
-from mbsym.problems.normal_forms.checks import defects
-from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why
+from mbsym.problems.normal_forms.result import Judged, Outcome, Theorem, Why, defects
 from mbsym.problems.normal_forms.twist import NotVerified, signed
 
 # Normal forms of Hamiltonians whose linear part is not diagonal: H_2 = sum lambda_k xi_k eta_k + N, N nilpotent.

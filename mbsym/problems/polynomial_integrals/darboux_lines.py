@@ -32,7 +32,7 @@ from mbsym.problems.polynomial_integrals.darboux import (
     powers_of_cofactor,
     rest_factors,
 )
-from mbsym.problems.polynomial_integrals.drops import Build, Line, dropped, others, rational, roots
+from mbsym.problems.polynomial_integrals.excess import Build, Line, dropped, others, rational, roots
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     ModularField,

@@ -11,13 +11,109 @@ derivative, homogeneous and a multiple of R - c, is zero.  So nothing is lost, n
 
 from __future__ import annotations
 
+import random
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.frames import are_frames
+from mbsym.problems.polynomial_integrals.modular import Exponents, ModularField, Terms, matrix_of, monomials, times
+
+# Two unit vectors of one body, b and c, perpendicular to each other: relations that share their leading variables.
+#
+# Where the field is quasi-homogeneous, b and c of one weight, and keeps |b|^2, |c|^2, (b, c) of vectors of any length,
+# an integral for these is one of unit vectors. The converse is looked at by itself. With f and its classes made
+# homogeneous by |b|^2 (``gradings``) an integral of unit vectors is an F whose derivative lies in the ideal J = (|c|^2
+# - |b|^2, (b, c)): J is homogeneous and prime to |b|^2, so that it holds every homogeneous element of the unit vectors'
+# ideal. In each weight the F are counted modulo J by ranks modulo a prime, and compared with the products of what is
+# known: where there are no more, that there are none is proved of unit vectors, too. (A rank modulo a prime is at most
+# that over the rationals, and that of J is the same: two polynomials without a common factor, modulo every odd prime.)
+
+
+#: Columns of a matrix; where there are more, the number of monomials is the bound.
+MOST_COLUMNS = 1600
+
+
+def are_frames(field: PolynomialField, weights: Sequence[int]) -> bool:
+    """Whether the relations are those of two such vectors of one weight, and constant by themselves."""
+    if len(field.relations) != 3 or any(field.derivative(r) != 0 for r in field.relations):
+        return False
+    found = _vectors(field)
+    return found is not None and len({weights[k] for vector in found for k in vector}) == 1
+
+
+def _vectors(field: PolynomialField) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """The places of b's and c's components among the variables, in one order; None where the relations are others."""
+    count = len(field.parameters)
+    norms, pairs = [], []
+    for relation in field.relations:
+        terms = {tuple(map(int, m[count:])): c for m, c in relation.to_dict().items()}
+        if any(any(m[:count]) for m in relation.monoms()):
+            return None
+        constant = terms.pop((0,) * len(field.variables), 0)
+        shapes = [tuple(k for k, power in enumerate(m) for _ in range(power)) for m in terms]
+        if len(shapes) != 3 or any(len(shape) != 2 for shape in shapes) or len(set(terms.values())) != 1:
+            return None
+        if all(a == b for a, b in shapes) and constant == -next(iter(terms.values())):
+            norms.append({a for a, _ in shapes})
+        elif constant == 0:
+            pairs.append(shapes)
+    if len(norms) != 2 or len(pairs) != 1:
+        return None
+    first = tuple(a if a in norms[0] else b for a, b in pairs[0])
+    second = tuple(b if a in norms[0] else a for a, b in pairs[0])
+    return (first, second) if set(first) == norms[0] and set(second) == norms[1] else None
+
+
+def generators(field: PolynomialField, there: ModularField) -> list[Terms]:
+    """|c|^2 - |b|^2 and (b, c) modulo the prime."""
+    first, second = _vectors(field) or ((), ())
+
+    def square(a: int, b: int) -> Exponents:
+        return tuple((k == a) + (k == b) for k in range(len(field.variables)))
+
+    difference = {square(k, k): 1 for k in second} | {square(k, k): there.prime - 1 for k in first}
+    return [difference, {square(a, b): 1 for a, b in zip(first, second, strict=True)}]
+
+
+def beyond(there: ModularField, weights: tuple[int, ...], rise: int, weight: int, products: Sequence[Terms]) -> int:
+    """How many integrals of unit vectors there are at most that are no combinations of ``products``, of one weight."""
+    columns = monomials(weights, weight)
+    parts = generators(there.field, there)
+    own = 2 * next(w for w, power in zip(weights, max(parts[1]), strict=True) if power)
+
+    def ideal(total: int) -> list[Terms]:
+        left = monomials(weights, total - own) if total >= own else ()
+        return [times({m: 1}, part, there.prime) for part in parts for m in left]
+
+    here, above = ideal(weight), ideal(weight + rise)
+    if len(columns) + len(above) > MOST_COLUMNS:
+        return len(columns)
+    images = [there.derivative(m) for m in columns]
+
+    def rank(terms: Sequence[Terms]) -> int:
+        return int(matrix_of(terms, there.prime).rank()) if terms else 0
+
+    kept = len(columns) - (rank([*images, *above]) - rank(above))  # F with D F in J
+    return max(0, kept - rank([*products, *here]))
+
+
+def state(there: ModularField) -> list[int] | None:
+    """A random state with |b| = |c| and (b, c) = 0: columns of a quaternion's matrix; None of other relations."""
+    found = _vectors(there.field)
+    if found is None:
+        return None
+    prime, source = there.prime, random.Random(f"frames {there.prime}")
+    numbers: list[Any] = [source.randrange(1, prime) for _ in there.field.variables]
+    s, x, y, z = (source.randrange(1, prime) for _ in range(4))
+    first = (s * s + x * x - y * y - z * z, 2 * (x * y + s * z), 2 * (x * z - s * y))
+    second = (2 * (x * y - s * z), s * s - x * x + y * y - z * z, 2 * (y * z + s * x))
+    for places, values in zip(found, (first, second), strict=True):
+        for k, value in zip(places, values, strict=True):
+            numbers[k] = value % prime
+    return numbers
+
 
 #: Weights that are tried for each kind of variables, and how many kinds are told apart.
 MOST_WEIGHT, MOST_KINDS = 3, 6

@@ -29,7 +29,7 @@ from flint import fmpq_mpoly_ctx, nmod_mat, nmod_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.drops import Line, dropped, interpolated, others, rational, roots
+from mbsym.problems.polynomial_integrals.excess import Line, dropped, interpolated, others, rational, roots
 from mbsym.problems.polynomial_integrals.levels import (
     Level,
     cofactors,

@@ -13,7 +13,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.problems.polynomial_integrals.gradings import Grading
 
 if TYPE_CHECKING:
-    from mbsym.problems.symmetries.result import Symmetries
+    from mbsym.problems.symmetries.search import Symmetries
 
 
 #: The name of an integral that depends on those of problem 7 as a function, at a random state.

@@ -15,9 +15,8 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.expressions.message import Message
-from mbsym.problems.polynomial_integrals import frames
-from mbsym.problems.polynomial_integrals.frames import beyond
-from mbsym.problems.polynomial_integrals.gradings import Grading, homogeneous_parts
+from mbsym.problems.polynomial_integrals import gradings as frames
+from mbsym.problems.polynomial_integrals.gradings import Grading, beyond, homogeneous_parts
 from mbsym.problems.polynomial_integrals.lifting import lifted, primitive
 from mbsym.problems.polynomial_integrals.modular import (
     MOST_MONOMIALS,

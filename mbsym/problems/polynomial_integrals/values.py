@@ -30,8 +30,7 @@ from flint import fmpq_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.drops import Line, dropped, others, rational, roots
-from mbsym.problems.polynomial_integrals.excess import Block, Excess, larger
+from mbsym.problems.polynomial_integrals.excess import Block, Excess, Line, dropped, larger, others, rational, roots
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, at_random
 from mbsym.problems.polynomial_integrals.result import FUNCTION, Along, OnLevel, PolynomialIntegrals, Special

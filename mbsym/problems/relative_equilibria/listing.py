@@ -21,8 +21,8 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
 from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.charts import features as direction_features
-from mbsym.mechanics.reflections import Reflection, reflections
 from mbsym.mechanics.states import SEED
+from mbsym.mechanics.symmetry import Reflection, reflections
 from mbsym.problems.relative_equilibria.conditions import Case, Conditions
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest, linear_at_rest

@@ -33,7 +33,7 @@ from mbsym.expressions.tree import ZERO, number
 from mbsym.mechanics.charts import Joint, charts, moment_components
 from mbsym.mechanics.rest import Value, at_numbers, rest
 from mbsym.model.system import MotionEntry, System
-from mbsym.problems.relative_equilibria.cosines import Choice, Cosines
+from mbsym.problems.relative_equilibria.oriented import Choice, Cosines
 
 #: The rates at which moments are taken, and those at which the result is checked.
 RATES, CHECKED = (0, 1, -1), (2, -3)

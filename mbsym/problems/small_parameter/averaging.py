@@ -59,8 +59,8 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.notebook import Shown
-from mbsym.mechanics.generalized import generalized_forces
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.problems.energy import Energy
 
 

@@ -27,8 +27,7 @@ from mbsym.expressions.message import Message
 from mbsym.problems.stabilisation.result import Feedback
 from mbsym.problems.stability.bundle import definite_combination_of
 from mbsym.problems.stability.exact import is_positive, verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm
-from mbsym.problems.stability.state_matrix import state_matrix
+from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, state_matrix
 from mbsym.problems.stability.verdict import Verdict
 
 #: Significant digits to which gains and Lyapunov functions are rounded, until the proof succeeds.

@@ -19,9 +19,8 @@ from typing import Any
 from flint import acb_poly, arb, arb_mat, ctx
 
 from mbsym.algebra.roots import counted
-from mbsym.problems.stability.linear_form import NonholonomicForm
+from mbsym.problems.stability.linear_form import NonholonomicForm, state_matrix
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.state_matrix import state_matrix
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, bounded, concluded, drifting, undecided
 from mbsym.problems.stability.word import Word

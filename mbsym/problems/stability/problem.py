@@ -38,12 +38,11 @@ from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.linearisation import Linearisation, Subsystem, first_symbols
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.algebraic_values import algebraic_point
-from mbsym.problems.stability.covering import Cell, Lift, cells_of, everywhere, joined
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
 from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.requirements import Requirement
+from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells_of, everywhere, joined
 from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided

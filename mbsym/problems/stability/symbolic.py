@@ -51,7 +51,6 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import MOST_TERMS, Condition, ContradictionError, Signs, conditions
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.stability import nonholonomic
-from mbsym.problems.stability.covering import alone, cells_of, uncovered
 from mbsym.problems.stability.exact import PointVerdict, on_the_motion, verdict_at
 from mbsym.problems.stability.linear_form import (
     CONSERVATIVE,
@@ -78,9 +77,12 @@ from mbsym.problems.stability.requirements import (
     Place,
     Requirement,
     against,
+    alone,
+    cells_of,
     definiteness,
     differs,
     holds_always,
+    uncovered,
     unwritten,
 )
 from mbsym.problems.stability.routh import (

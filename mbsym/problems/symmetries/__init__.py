@@ -31,7 +31,6 @@ Example:
     [('psi', 'momentum of psi'), ('time', 'generalised energy')]
 """
 
-from mbsym.problems.symmetries.result import Symmetries, Symmetry
-from mbsym.problems.symmetries.search import Blocks, in_coordinates, in_speeds, symmetries
+from mbsym.problems.symmetries.search import Blocks, Symmetries, Symmetry, in_coordinates, in_speeds, symmetries
 
 __all__ = ["Blocks", "Symmetries", "Symmetry", "in_coordinates", "in_speeds", "symmetries"]

@@ -21,8 +21,8 @@ from mbsym.algebra.derivative import gradient
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import Vector, axis_vector
+from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.bias_forces import bias_forces, forcing
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals

@@ -22,12 +22,12 @@ from mbsym.formulas.mathml import (
     mn,
     mo,
     mtext,
+    notation,
     power,
     table,
 )
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
-from mbsym.formulas.notation import notation
 from mbsym.formulas.straight_line import Dialect, listing
 from mbsym.formulas.told import Told
 from mbsym.report import content

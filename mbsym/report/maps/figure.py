@@ -25,7 +25,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from mbsym.algebra.arrangements import Arrangement, polyline
-from mbsym.algebra.arrangements.drawing import Branches as Drawn
+from mbsym.algebra.arrangements.arrangement import Branches as Drawn
 from mbsym.algebra.plane.line import Line
 from mbsym.formulas.latex import LatexNames
 from mbsym.maps.boxes import BoxMap

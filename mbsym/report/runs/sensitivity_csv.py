@@ -12,7 +12,7 @@ import numpy as np
 from mbsym.expressions.message import Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.report.runs.trajectory_csv import written
-from mbsym.simulation.sensitivities import Sensitivities
+from mbsym.simulation.motions import Sensitivities
 
 
 def shown(found: Sensitivities, name: str) -> str:

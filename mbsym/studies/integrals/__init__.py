@@ -15,8 +15,7 @@ from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
 from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
 
 if TYPE_CHECKING:
-    from mbsym.analysis.invariant_relations import InvariantRelations
-    from mbsym.analysis.polynomial import Setting
+    from mbsym.analysis.polynomial import InvariantRelations, Setting
     from mbsym.model.system import System
     from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
     from mbsym.report.content import Block
@@ -101,8 +100,7 @@ class Found:
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotFit where the field has other variables or parameters than the request names."""
     from mbsym.analysis import Analysis
-    from mbsym.analysis.invariant_relations import invariant_relations, special_relations
-    from mbsym.analysis.polynomial import allowed, integrals_of, setting
+    from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting, special_relations
     from mbsym.problems.polynomial_integrals import along_of, cases_of
 
     watch("polynomial integrals")

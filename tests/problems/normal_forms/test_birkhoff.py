@@ -14,8 +14,8 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.problems.normal_forms.birkhoff import NormalForm, diagonalised, normal_form
-from mbsym.problems.normal_forms.checks import defects
 from mbsym.problems.normal_forms.expansion import Numbers, expansion
+from mbsym.problems.normal_forms.result import defects
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 

@@ -9,7 +9,7 @@ from flint import acb, arb
 
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.problems.normal_forms.centre import on_pair, on_zero
+from mbsym.problems.normal_forms.exact import on_pair, on_zero
 
 
 def _size(x: acb) -> float:

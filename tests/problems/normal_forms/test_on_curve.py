@@ -7,7 +7,7 @@ from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.tower import Element, Tower
-from mbsym.problems.normal_forms.centre import _linear, subresultant
+from mbsym.problems.normal_forms.exact import _linear, subresultant
 
 
 def over(tower: Tower, roots: list[int], lead: int = 3) -> list[Element]:

@@ -17,7 +17,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.analysis.invariant_relations import special_relations
+from mbsym.analysis.polynomial import special_relations
 from mbsym.problems.polynomial_integrals import (
     darboux_along,
     darboux_along_of,

@@ -12,7 +12,7 @@ from flint import Ordering, fmpq_mpoly_ctx
 import mbsym
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis import polynomial
-from mbsym.analysis.invariant_relations import invariant_relations
+from mbsym.analysis.polynomial import invariant_relations
 from mbsym.problems.polynomial_integrals import (
     Obstacle,
     cofactor_of,

@@ -11,8 +11,7 @@ from flint import Ordering, fmpq_mpoly_ctx, fmpq_poly
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals import along, cases, grading, levels, on_level, polynomial_integrals
-from mbsym.problems.polynomial_integrals.drops import interpolated, rational
-from mbsym.problems.polynomial_integrals.excess import Block, Excess
+from mbsym.problems.polynomial_integrals.excess import Block, Excess, interpolated, rational
 from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField
 
 SPEEDS, VECTOR = ("p", "q", "r"), ("g1", "g2", "g3")

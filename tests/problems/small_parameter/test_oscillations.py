@@ -349,7 +349,7 @@ def test_a_planted_error_is_seen_twice(gyrostat, fast):
     rows[place][2] = rows[place][2].scaled(tower.number(1) + tower.number(1) / tower.number(1000))
     wrong = replace(found, series=tuple(map(tuple, rows)))
     small = dict(found.powers)
-    from mbsym.problems.small_parameter.graded_rows import graded_rows
+    from mbsym.problems.small_parameter.generating import graded_rows
 
     graded = graded_rows(tower, fast.field, "eps", small, 3)
     assert min(x for x in oscillation_orders(graded, fast.field.variables, wrong) if x is not None) == 2

@@ -17,7 +17,7 @@ from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.problems.symmetries import in_speeds
-from mbsym.problems.symmetries.result import DEPENDENT
+from mbsym.problems.symmetries.search import DEPENDENT
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 
