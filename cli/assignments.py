@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitute, walk
@@ -47,7 +48,7 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
         text = " ".join(text.splitlines())
         complaints = Complaints()
         _read(text, system, complaints, found, given)
-        options.complaints += [render_option(complaint, text, "--set") for complaint in complaints.sorted()]
+        options.complaints += [render_option(one, text, "--set", options.say) for one in complaints.sorted()]
     return Assigned(found, given)
 
 
@@ -58,12 +59,13 @@ def _read(
     name, blanks = left.strip(), len(left) - len(left.lstrip())
     span = Span(1, blanks + 1, max(1, len(name)))
     if not equals or not name or len(text) > MAX_LENGTH:
-        reason = f"{ascii_safe(text)} gives no value" if len(text) <= MAX_LENGTH else "this assignment is too long"
+        shown = Message("[[text]] gives no value", text=ascii_safe(text))
+        reason = shown if len(text) <= MAX_LENGTH else "this assignment is too long"
         complaints.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
         return
     known = _check_target(name, span, system, complaints)
     if name in given:
-        complaints.error("repeated-name", f"'{name}' is set twice", span)
+        complaints.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
     given[name] = text
     place = _Places(len(left) + 1)
     value = parse_expression(right, complaints, place)
@@ -71,7 +73,9 @@ def _read(
     for node in parts:
         if isinstance(node, Name) and node.name not in (*system.parameter_names, *CONSTANTS) and node.span is not None:
             hint = did_you_mean(node.name, system.parameter_names) or "a value is made of numbers, pi and parameters"
-            complaints.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+            complaints.error(
+                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
+            )
     if known and value is not None and not complaints.errors:
         found[name] = value
 
@@ -100,7 +104,7 @@ def given_numbers(
         unread = _unread(system, assigned)
         lacking = [shown for shown in error.lack.names if shown.split(" ")[0] not in unread]
         if lacking:
-            options.complaints.append(missing(file, lacking))
+            options.complaints.append(missing(file, lacking, say=options.say))
         return None, assigned.values
 
 
@@ -126,13 +130,17 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
     known = {one.name: one.value for one in system.parameters if one.value is not None} | dict(assigned.values)
     for name, value in assigned.values.items():
         if name not in system.parameter_names:
-            assigned.complain(name, "misplaced-name", f"'{name}' is no parameter: it has no value here", options)
+            assigned.complain(
+                name, "misplaced-name", Message("'[[name]]' is no parameter: it has no value here", name=name), options
+            )
             continue
         values[name] = value
         for _ in system.parameters:  # those in terms of others, which may be in terms of others
             values[name] = substitute(values[name], {k: v for k, v in known.items() if k != name})
         if lacking := sorted(names(values[name])):
-            assigned.complain(name, "missing-value", f"no value for {', '.join(lacking)}", options)
+            assigned.complain(
+                name, "missing-value", Message("no value for [[names]]", names=", ".join(lacking)), options
+            )
     if not options.complaints:
         contradictions(file, Lack((), contradictions_of(system, values)), assigned, options)
     return with_values(system, values)
@@ -211,25 +219,36 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
         if name in (item.name, velocity_name(item.name)):
             from mbsym.expressions.tree import text
 
-            rate = f"its rate is {text(item.rate)}: set what that is made of"
-            complaints.error("misplaced-name", f"'{name}' is a prescribed motion and has no value to set", span, rate)
+            rate = Message("its rate is [[rate]]: set what that is made of", rate=text(item.rate))
+            complaints.error(
+                "misplaced-name",
+                Message("'[[name]]' is a prescribed motion and has no value to set", name=name),
+                span,
+                rate,
+            )
             return False
     if name in (item.name for item in system.notation):
-        complaints.error("misplaced-name", f"'{name}' is notation: it follows from the parameters", span)
+        complaints.error(
+            "misplaced-name", Message("'[[name]]' is notation: it follows from the parameters", name=name), span
+        )
         return False
     if name in system.input_names:
-        given = f"'mbsym simulate --input {name}=...' says what it is along a motion"
-        complaints.error("misplaced-name", f"'{name}' is an input and has no value to set", span, given)
+        given = Message("'mbsym simulate --input [[name]]=...' says what it is along a motion", name=name)
+        complaints.error(
+            "misplaced-name", Message("'[[name]]' is an input and has no value to set", name=name), span, given
+        )
         return False
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
-    complaints.error("unknown-name", f"there is nothing called {ascii_safe(name)} to set", span, hint)
+    complaints.error(
+        "unknown-name", Message("there is nothing called [[name]] to set", name=ascii_safe(name)), span, hint
+    )
     return False
 
 
 # What has no value, said once, with how to give it.
 
 
-def missing(file: Path, shown: Sequence[str], what: str = "value") -> str:
+def missing(file: Path, shown: Sequence[str], what: str = "value", say: Callable[[str], str] = str) -> str:
     """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
     one = unfit(shown, what)
-    return render_option(Complaint(one.code, one.message, None, one.hint), "", str(file))
+    return render_option(Complaint(one.code, one.message, None, one.hint), "", str(file), say)

@@ -26,6 +26,7 @@ from mbsym_cli.options import Options
 @click.option("--symbols", is_flag=True, help="Of a robot: masses, lengths, moments are parameters with values.")
 @click.option("--no-damping", is_flag=True, help="Of a robot: without dampers and springs of joints.")
 @click.option("--no-inputs", is_flag=True, help="Of a robot: without inputs, torques or forces, in joints.")
+@click.option("--joint-names", is_flag=True, help="Of a robot: coordinates are called as the joints, not q1, q2.")
 @click.option(
     "--angles",
     type=click.Choice(["snap", "exact"]),
@@ -40,6 +41,7 @@ def command(
     symbols: bool,
     no_damping: bool,
     no_inputs: bool,
+    joint_names: bool,
     angles: str | None,
     scale: str | None,
     out: Path | None,
@@ -77,11 +79,13 @@ def command(
         sys.exit(BAD_INPUT)
     robot = robot_text(file)
     if robot is not None:
-        written = described(file, robot, Choices(floating, symbols, not no_damping, angles == "exact", not no_inputs))
+        written = described(
+            file, robot, Choices(floating, symbols, not no_damping, angles == "exact", not no_inputs, joint_names)
+        )
         system = None if written is None else read(written, f"{file.stem}.yaml")[0]
     else:
-        if floating or symbols or no_damping or no_inputs or angles:
-            options = "--floating, --symbols, --no-damping, --no-inputs and --angles"
+        if floating or symbols or no_damping or no_inputs or joint_names or angles:
+            options = "--floating, --symbols, --no-damping, --no-inputs, --joint-names and --angles"
             complain(file, f"is no URDF or MJCF: {options} mean nothing here")
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
@@ -129,6 +133,7 @@ class Choices:
     damping: bool
     exact_angles: bool
     inputs: bool
+    joint_names: bool
 
 
 def robot_text(file: Path) -> str | None:
@@ -174,6 +179,7 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         choices.exact_angles,
         choices.inputs,
         lambda name: _beside(file, name),
+        choices.joint_names,
     )
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")

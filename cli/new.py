@@ -62,8 +62,10 @@ def command(name: str, like: str | None) -> None:
     shown = printable(path)
     quoted = shlex.quote(shown)
     begun = f", begun with the example {example}" if example is not None else ""
-    derive, watch = f"mbsym run {quoted}", f"mbsym watch {quoted}"
-    click.echo(f"{shown}{begun}\n  {derive}      derives it;  {watch}  derives it again whenever you save")
+    told = (("run", "derives it"), ("watch", "derives it whenever you save"), ("edit", "draws it in the browser"))
+    click.echo(f"{shown}{begun}")
+    for name, what in told:
+        click.echo(f"  mbsym {name} {quoted}{' ' * (5 - len(name))}  {what}")
 
 
 def _answers() -> bool:

@@ -8,11 +8,9 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Sequence
-from functools import wraps
 from pathlib import Path
-from typing import Any, TypeVar
 
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message, counted
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
@@ -34,14 +32,15 @@ class Options:
 
     def __init__(self) -> None:
         self.complaints: list[str] = []
+        self.say: Callable[[str], str] = str  # the language of the description, once it is read
 
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
-        self.complaints.append(render_option(Complaint(code, message, None, hint), "", option))
+        self.complaints.append(render_option(Complaint(code, message, None, hint), "", option, self.say))
 
     def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
         """Of a text as a whole, which is shown."""
         span = Span(1, 1, max(1, len(text)))
-        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option))
+        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option, self.say))
 
     def sort(self, options: Sequence[str]) -> None:
         """Complaints in the order of these options, what is not about one of them behind."""
@@ -58,7 +57,10 @@ class Options:
             return False
         whose = "options" if file is None else printable(file)
         diagnose("\n".join(self.complaints))
-        print(f"{whose}: {counted(len(self.complaints), 'error', 'errors')}; nothing was written.", file=sys.stderr)
+        many = "[[count]] errors; nothing was written."
+        count = len(self.complaints)
+        told = Message(many if count > 1 else "[[count]] error; nothing was written.", count=count)
+        print(f"{whose}: {self.say(told)}", file=sys.stderr)
         return True
 
     def descriptions(self, files: Iterable[Path]) -> list[Path]:
@@ -100,7 +102,8 @@ class Options:
     def time(self, text: str | None) -> float | None:
         """``--time``, without which nothing can be simulated."""
         if text is None:
-            self.complain("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+            hint = Message("for example [[example]]", example="--time 60")
+            self.complain("--time", "missing-option", "how long to simulate is not said", hint)
         return self.number("--time", text)
 
     def problems(self, text: str) -> tuple[int, ...]:
@@ -158,7 +161,7 @@ class Options:
                     complaints.error("bad-number", "it must be positive", whole, within)
                 elif found < least or (most is not None and found > most):
                     complaints.error("bad-number", within or f"it is at most {most:g}", whole)
-        self.complaints += [render_option(complaint, text, option) for complaint in complaints.sorted()]
+        self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints.sorted()]
         return None if complaints.errors else found
 
     def whole(self, option: str, text: str | None, least: int, most: int, why: str = "") -> int | None:
@@ -227,33 +230,3 @@ def identity_of(path: Path) -> str:
 
 def place_in(start: int, end: int) -> Span:
     return Span(1, start + 1, max(1, end - start))
-
-
-# Options of a command in groups: each group comes to the command as one value.
-
-
-Command = TypeVar("Command", bound=Callable[..., Any])
-
-
-def group(argument: str, build: Callable[..., object], *options: Callable[[Any], Any]) -> Callable[[Command], Command]:
-    """A decorator that adds ``options`` and hands their values over as ``argument=build(**values)``."""
-
-    def probe() -> None:
-        """Tells what click calls the values."""
-
-    for option in options:
-        option(probe)
-    names = [parameter.name for parameter in probe.__click_params__]  # type: ignore[attr-defined]
-
-    def decorate(command: Command) -> Command:
-        @wraps(command)
-        def called(*positional: Any, **values: Any) -> Any:
-            own = {name: values.pop(name) for name in names}
-            return command(*positional, **{argument: build(**own)}, **values)
-
-        decorated: Any = called
-        for option in reversed(options):
-            decorated = option(decorated)
-        return decorated
-
-    return decorate

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,22 +58,6 @@ def option_of(field: Field) -> click.Option:
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
         show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=told,
     )  # fmt: skip
-
-
-def decorators(request: type, *names: str) -> list[Callable[[Any], Any]]:
-    """The options of some fields as decorators of a command that is written out."""
-    by_name = {field.name: field for field in fields_of(request)}
-
-    def decorator(option: click.Option) -> Callable[[Any], Any]:
-        def decorate(command: Any) -> Any:
-            if not hasattr(command, "__click_params__"):
-                command.__click_params__ = []
-            command.__click_params__.append(option)
-            return command
-
-        return decorate
-
-    return [decorator(option_of(by_name[name])) for name in names]
 
 
 def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], options: Options) -> dict[str, Any]:

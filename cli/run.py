@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -12,55 +11,13 @@ import click
 from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.letters import with_letters
-from mbsym_cli.options import Options, group
+from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
-from mbsym_cli.simulate.choice import COARSEST, FINEST
+from mbsym_cli.simulate.request import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
     from mbsym.numerics.ledger.work import AccuracyGoal
-
-
-# ``--ledger`` of ``mbsym run``, and the accuracy that it is held against.
-
-
-@dataclass(frozen=True)
-class LedgerOptions:
-    """As typed."""
-
-    ledger: bool
-    accuracy: str | None
-    until: str | None
-
-    def read(self, asked: Options) -> AccuracyGoal | bool:
-        """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
-        if self.accuracy is None and self.until is None:
-            return self.ledger
-        for name, value in (("--accuracy", self.accuracy), ("--until", self.until)):
-            if value is None:
-                asked.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
-        if not self.ledger:
-            asked.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
-        accuracy = asked.number("--accuracy", self.accuracy, FINEST, COARSEST)
-        until = asked.number("--until", self.until)
-        if accuracy is None or until is None:
-            return self.ledger
-        from mbsym.numerics.ledger.work import AccuracyGoal
-
-        return AccuracyGoal(accuracy, until)
-
-
-ledger_options = group(
-    "ledger",
-    LedgerOptions,
-    click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved."),
-    click.option(
-        "--accuracy",
-        metavar="X",
-        help="Hold what the ledger's equations leave out against this relative error of the motion (1e-6).",
-    ),
-    click.option("--until", metavar="T", help="The end of that motion, from 0 (20, 2*pi)."),
-)
 
 
 @click.command("run")
@@ -90,7 +47,13 @@ ledger_options = group(
 )
 @click.option("--strict-claims", is_flag=True, help="Exit code 1 unless every claim holds.")
 @click.option("--brief", "-b", is_flag=True, help="Print one line a file.")
-@ledger_options
+@click.option("--ledger", is_flag=True, help="What was left out, why that is safe, and what it saved.")
+@click.option(
+    "--accuracy",
+    metavar="X",
+    help="Hold what the ledger's equations leave out against this relative error of the motion (1e-6).",
+)
+@click.option("--until", metavar="T", help="The end of that motion, from 0 (20, 2*pi).")
 @click.option("--verbose", "-v", is_flag=True, help="Print what the reports say of problems, claims and checks.")
 @click.option("--quiet", "-q", is_flag=True, help="Print only what went wrong.")
 def command(
@@ -109,7 +72,9 @@ def command(
     language: str | None,
     strict_claims: bool,
     brief: bool,
-    ledger: LedgerOptions,
+    ledger: bool,
+    accuracy: str | None,
+    until: str | None,
     verbose: bool,
     quiet: bool,
 ) -> None:
@@ -187,7 +152,7 @@ def command(
     tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
     budget = asked.whole("--terms", terms, 1, 10**12)
     until = asked.number("--animate", animate)
-    told = ledger.read(asked)
+    told = _ledger(ledger, accuracy, until, asked)
     if animate is not None and "html" not in kinds:
         hint = "add html to --format, or use 'mbsym simulate --animate'"
         asked.complain("--animate", "conflicting-options", "the motion is shown in report.html", hint)
@@ -238,3 +203,20 @@ def _folders(paths: list[Path], out: Path | None, base: Path | None) -> list[Pat
         taken.add(name.casefold())
         folders.append(base / name)
     return folders
+
+
+def _ledger(ledger: bool, accuracy: str | None, until: str | None, asked: Options) -> AccuracyGoal | bool:
+    """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
+    if accuracy is None and until is None:
+        return ledger
+    for name, value in (("--accuracy", accuracy), ("--until", until)):
+        if value is None:
+            asked.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
+    if not ledger:
+        asked.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
+    error, time = asked.number("--accuracy", accuracy, FINEST, COARSEST), asked.number("--until", until)
+    if error is None or time is None:
+        return ledger
+    from mbsym.numerics.ledger.work import AccuracyGoal
+
+    return AccuracyGoal(error, time)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from mbsym.expressions.message import Message
+from mbsym.report.language import Language
 from mbsym_cli.assignments import reduction_of, scaling_of, with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
 from mbsym_cli.letters import read_letters, with_letters
@@ -74,6 +76,7 @@ def command(
     """
     system = read_description(file)
     asked = Options()
+    asked.say = Language("" if system is None else system.language).say
     budget = asked.whole("--terms", terms, 1, 10**12)
     if system is not None and settings:
         system = with_settings(file, system, settings, asked)
@@ -118,7 +121,8 @@ def command(
     wanted = names or (("equations",) if system.linear is None else ("M0", "D", "G", "K", "N"))
     unknown = [name for name in wanted if name not in known]
     for name in unknown:
-        asked.complain("NAME", "unknown-name", f"nothing is called '{name}' here", _nearest(name, known))
+        nothing = Message("nothing is called '[[name]]' here", name=name)
+        asked.complain("NAME", "unknown-name", nothing, _nearest(name, known))
     if asked.refused(file):
         sys.exit(BAD_INPUT)
     if chosen is None and language in ("python", "wolfram"):
@@ -153,8 +157,10 @@ def command(
     sys.exit(worst)
 
 
-def _nearest(name: str, known: list[str]) -> str:
+def _nearest(name: str, known: list[str]) -> Message:
     from difflib import get_close_matches
 
     near = get_close_matches(name, known, 1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {', '.join(known)}"
+    if near:
+        return Message("did you mean '[[other]]'?", other=near[0])
+    return Message("there are [[names]]", names=", ".join(known))

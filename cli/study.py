@@ -99,7 +99,7 @@ class _Run:
     def code(self) -> int:
         study, file = self.study, self.file
         system = self._described()
-        self.say = Language("" if system is None else system.language).say
+        self.say = self.options.say = Language("" if system is None else system.language).say
         values, given = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
@@ -146,11 +146,10 @@ class _Run:
         self.options.sort(order)
 
     def _unfit(self, one: Unfit) -> None:
-        message, hint = self.say(one.message), None if one.hint is None else self.say(one.hint)
         if one.name:
-            self.options.complain_whole(one.option, self._text(one), one.code, message, hint)
+            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
         else:
-            self.options.complain(one.option or str(self.file), one.code, message, hint)
+            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
 
     def _text(self, one: Unfit) -> str:
         """What was typed for that name."""

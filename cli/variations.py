@@ -8,7 +8,7 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from mbsym.expressions.guessing import guess
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import rational
@@ -117,7 +117,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
                 found = float(exact(value, known))
             except Failure as reason:
                 complaints.error("bad-number", f"it has no value: {reason}", whole)
-    options.complaints += [render_option(one, text, option) for one in complaints.sorted()]
+    options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
     return found
 
 
@@ -137,13 +137,13 @@ def read_settings(
     for text in texts:
         name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
         if not equals or not name or len(text) > MAX_LENGTH:
-            told = f"{ascii_safe(text[:80])} gives no value"
+            told = Message("[[text]] gives no value", text=ascii_safe(text[:80]))
             options.complain("--set", "bad-assignment", told, "write name=number, for example p1=2/5")
             continue
         value = read_rational(right, f"--set {name if name.isidentifier() else ascii_safe(name)}", options)
         known(name, "--set", names, options)
         if name in found:
-            options.complain("--set", "repeated-name", f"{ascii_safe(name)} is set twice")
+            options.complain("--set", "repeated-name", Message("[[name]] is set twice", name=ascii_safe(name)))
         if value is not None:
             found[name] = value
     return found
@@ -154,14 +154,16 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
     from mbsym.maps.section import Axis, usable
 
     if text is None:
-        hint = f"for example {option} {next(iter(system.parameter_names), 'p')}=0:1"
+        example = f"{option} {next(iter(system.parameter_names), 'p')}=0:1"
+        hint = Message("for example [[example]]", example=example)
         options.complain(option, "missing-option", "a parameter and its interval are wanted", hint)
         return None
     name, equals, interval = (part.strip() for part in " ".join(text.splitlines()).partition("="))
     low, colon, high = interval.partition(":")
     if not equals or not colon or not name or ":" in high or len(text) > MAX_LENGTH:
-        told = f"{ascii_safe(text[:80])} gives no interval"
-        options.complain(option, "bad-interval", told, f"write name=low:high, for example {option} alpha=-1:1")
+        told = Message("[[text]] gives no interval", text=ascii_safe(text[:80]))
+        hint = Message("write name=low:high, for example [[option]] alpha=-1:1", option=option)
+        options.complain(option, "bad-interval", told, hint)
         return None
     exists = known(name, option, usable(system), options)
     ends = [
@@ -172,8 +174,9 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
     if start is None or stop is None:
         return None
     if start >= stop:
-        told = f"the interval from {start} to {stop} is empty"
-        options.complain(option, "empty-interval", told, f"it goes upwards: low:high with low < high, {stop}:{start}")
+        told = Message("the interval from [[low]] to [[high]] is empty", low=str(start), high=str(stop))
+        hint = Message("it goes upwards: low:high with low < high, [[example]]", example=f"{stop}:{start}")
+        options.complain(option, "empty-interval", told, hint)
         return None
     return Axis(name, start, stop) if exists else None
 
@@ -182,7 +185,14 @@ def known(name: str, option: str, names: Sequence[str], options: Options) -> boo
     """Whether a name is one of ``names``; if it is not, that is one of the complaints."""
     if name in names:
         return True
-    told = f"there is no parameter called {ascii_safe(name)}{guess(name, names)}"
+    from difflib import get_close_matches
+
+    shown, near = ascii_safe(name), get_close_matches(name, names, 1)
+    told = Message("there is no parameter called [[name]]; there are [[names]]", name=shown, names=", ".join(names))
+    if near or not names:
+        told = Message("there is no parameter called [[name]]", name=shown)
+    if near:
+        told = Message("there is no parameter called [[name]]: did you mean '[[other]]'?", name=shown, other=near[0])
     options.complain(option, "unknown-name", told)
     return False
 
@@ -201,7 +211,7 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
             if value is None:
                 hint = "write it as a fraction or a decimal, 2/5 or 0.4: what is found is exact"
                 complaints.error("bad-number", "a rational number is wanted", Span(1, 1, max(1, len(text))), hint)
-    options.complaints += [render_option(one, text, option) for one in complaints.sorted()]
+    options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
     return value
 
 

@@ -34,7 +34,7 @@ def spread(
     """Many motions; the exit code.  ``read`` makes the scenario of one member, from its settings."""
     from mbsym.numerics.ensembles.ensemble import Ensemble
     from mbsym.numerics.ensembles.variation import Unvaried
-    from mbsym.report.figures.ensemble_figure import fan_charts
+    from mbsym.report.figures.figures import fan_charts
     from mbsym.report.runs.ensemble_tables import ensemble_csv, ensemble_json, members_csv, sentences
     from mbsym.simulation.ensembles import Spread, simulate_many
 

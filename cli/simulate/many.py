@@ -1,20 +1,18 @@
-"""The options of ``mbsym simulate`` that ask for many motions, or for how one answers to changes."""
+"""What ``mbsym simulate`` is asked of many motions, or of how one answers to changes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import product
 from math import prod
-from typing import TYPE_CHECKING
-
-import click
+from typing import TYPE_CHECKING, Any
 
 from mbsym.studies.request import Ranges
-from mbsym_cli.options import Options, group
+from mbsym_cli.options import Options
 from mbsym_cli.variations import read_variations
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Mapping
 
     from mbsym.numerics.ensembles.variation import Variation
     from mbsym.numerics.scenario import Scenario
@@ -25,37 +23,6 @@ MOST_BESIDE = 6
 
 #: More names than this are not varied at once.
 MOST_VARIED = 32
-
-
-@dataclass(frozen=True)
-class Many:
-    """What varies, and what is differentiated by, as it was typed."""
-
-    vary: tuple[str, ...]
-    members: str | None
-    seed: str
-    sampling: str
-    sensitivity: str | None
-
-
-many_options = group(
-    "many",
-    Many,
-    click.option(
-        "--vary",
-        multiple=True,
-        metavar="NAME=RANGE",
-        help="Many motions at once: theta=0:pi/2:1000 (a grid), theta=normal(0.3, 0.01), m=uniform(1, 2); repeatable.",
-    ),
-    click.option("--members", metavar="N", help="How many members to draw at random, for example --members 1000."),
-    click.option("--seed", metavar="N", default="1", show_default=True, help="Of what is drawn at random."),
-    click.option("--sampling", metavar="[random|sobol]", default="random", show_default=True),
-    click.option(
-        "--sensitivity",
-        metavar="NAMES",
-        help="Derivatives of the motion by initial values and parameters: --sensitivity theta,m1.",
-    ),
-)
 
 
 @dataclass(frozen=True)
@@ -79,20 +46,20 @@ class Varied:
 
 
 def read_many(
-    many: Many, given: Scenario | None, wanted: Asked, typed: Collection[str], options: Options
+    texts: Mapping[str, Any], given: Scenario | None, wanted: Asked, typed: Collection[str], options: Options
 ) -> tuple[Varied | None, tuple[str, ...]]:
     """(the ensemble, names to differentiate by); what is wrong joins the complaints."""
-    names = _sensitive(many.sensitivity, given, options)
-    if not many.vary:
+    names = _sensitive(texts["sensitivity"], given, options)
+    if not texts["vary"]:
         return None, names
     from mbsym.numerics.ensembles.variation import Grid
 
     _check_method(wanted, options)
-    members = options.whole("--members", many.members, 2, 10**12)
-    seed = options.whole("--seed", many.seed, 0, 2**63 - 1)
-    sampling = options.word("--sampling", many.sampling, ("random", "sobol"), "sampling")
+    members = options.whole("--members", texts["members"], 2, 10**12)
+    seed = options.whole("--seed", texts["seed"], 0, 2**63 - 1)
+    sampling = options.word("--sampling", texts["sampling"], ("random", "sobol"), "sampling")
     system = None if given is None else given.system
-    read = read_variations("--vary", many.vary, Ranges("NAME=RANGE", "", most=MOST_VARIED), system, given, options)
+    read = read_variations("--vary", texts["vary"], Ranges("NAME=RANGE", "", most=MOST_VARIED), system, given, options)
     found = [one.variation for one in read or ()]
     if found and all(isinstance(one, Grid) for one in found):
         for option in sorted({"--seed", "--sampling"} & set(typed)):
@@ -100,7 +67,7 @@ def read_many(
             options.complain(option, "conflicting-options", told, "draw it: name=uniform(low, high)")
     if given is None or read is None or seed is None or sampling is None:
         return None, names
-    if many.members is not None and members is None:
+    if texts["members"] is not None and members is None:
         return None, names
     from mbsym.numerics.ensembles.variation import complaints_of
 

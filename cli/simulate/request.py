@@ -2,27 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
+from mbsym.model.constraints import listed
 from mbsym.studies.simulate import Request as Fields
 from mbsym_cli.options import Options
 from mbsym_cli.requests import read_some
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
+    from mbsym.numerics.planning.plan import Accuracy
+    from mbsym.numerics.planning.planning import Pins
     from mbsym.simulation import Request
-    from mbsym_cli.simulate.choice import Goal
 
 FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
 
 #: Those that are figures.
 FIGURES = ("svg", "png", "pdf")
 
+#: Errors that can be asked for: nothing here is finer, and nothing coarser says anything about a motion.
+FINEST, COARSEST = 1e-17, 0.5
+
+#: What an option that goes with coordinates only is answered with.
+WAY_OUT = "--variables coordinates integrates coordinates and their velocities, angles among them"
+
+#: Formats that show bodies, whose places are known in coordinates.
+OF_BODIES = {"bodies-csv": "--bodies", "html": "--animate", "gif": "--animate"}
+
 #: A first try of a fixed step is the whole time divided by this.
 TRIAL_STEPS = 10_000
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is to be reached, and what is settled already; ``only_plan``: nothing is run.
+
+    ``settings`` are those of --set, ``carried`` further options, for the command that repeats the run.
+    """
+
+    accuracy: Accuracy
+    pins: Pins
+    only_plan: bool
+    settings: tuple[str, ...] = ()
+    carried: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -40,14 +65,15 @@ class Asked:
 READ = ("time", "every", "tolerance", "step", "max_step", "samples", "arithmetic", "step_limit")
 
 
-def read_request(system: System | None, texts: Mapping[str, Any], formats: str, quiet: bool, options: Options) -> Asked:
+def read_request(system: System | None, texts: Mapping[str, Any], options: Options) -> Asked:
     """What the options say, by the names of their fields; whatever is wrong with them joins the complaints."""
     from mbsym.numerics.methods.table import METHODS
     from mbsym.simulation import Request
 
     read = read_some(Fields, READ, texts, options)
     method = options.word("--method", texts["method"].lower(), ("auto", *METHODS), "method")
-    written = options.words("--format", formats, FORMATS, "format")
+    more = [*(["bodies-csv"] if texts["bodies"] else []), *(["html", "gif"] if texts["animate"] else [])]
+    written = options.words("--format", ",".join([texts["formats"], *more]), FORMATS, "format")
     end, step = read["time"], read["step"]
     if system is not None and (texts["samples"] is None or texts["every"] is None):
         _check_rows(system, end, read["every"], read["samples"], options)
@@ -64,7 +90,7 @@ def read_request(system: System | None, texts: Mapping[str, Any], formats: str, 
     )
     if method is not None:
         _check_method(system, request, texts, options)
-    return Asked(request, written, quiet)
+    return Asked(request, written, texts["quiet"], verbose=texts["verbose"])
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:
@@ -139,3 +165,107 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, A
     if loads:
         message = f"{name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
         asked.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
+
+
+# --- what does not know constraints, or declared variables ---
+
+
+def check_constrained(system: System | None, wanted: Asked, asked: Options) -> None:
+    """Complains about every option that does not know constraints yet."""
+    if system is None or not system.constraints:
+        return
+    from mbsym.numerics.methods.table import METHODS
+
+    request = wanted.request
+    told = listed(system.constraints)
+    if request.model.linear:
+        message = f"--linear does not take constraints into account yet ({told})"
+        asked.complain("--linear", "constraints", message, "without them this would be another system")
+    if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
+        hint = "these do: auto, dop853, rk45, rk4, taylor, radau, bdf"
+        message = f"{request.method} does not keep to constraints ({told})"
+        asked.complain("--method", "unsuitable-method", message, hint)
+
+
+def check_states(system: System | None, wanted: Asked, asked: Options) -> None:
+    """Complains about every option that goes with coordinates only, where a run has other variables."""
+    from mbsym.model.states import InStates
+
+    if not isinstance(system, InStates):
+        return
+    from mbsym.numerics.methods.table import METHODS
+
+    request = wanted.request
+    options = {
+        "--continue": request.earlier is not None,
+        "--linear": request.model.linear,
+        **{option: kind in wanted.formats for kind, option in OF_BODIES.items()},
+    }
+    for option, there in options.items():
+        if there:
+            message = f"{option} knows coordinates and their velocities only, and this system has speeds"
+            asked.complain(option, "variables", message, WAY_OUT)
+    if request.method == "lsoda" and any(body.orientation for body in system.bodies):
+        message = "lsoda does not keep quaternions and unit vectors at their lengths"
+        asked.complain("--method", "unsuitable-method", message, "take dop853, rk4, taylor, radau or bdf")
+    if request.method in METHODS and METHODS[request.method].traits.conservative:
+        message = f"{request.method} integrates coordinates and their velocities only, and this system has speeds"
+        asked.complain("--method", "unsuitable-method", message, f"take dop853, rk4, taylor or radau; {WAY_OUT}")
+
+
+# --- ``--accuracy`` and ``--plan`` ---
+
+
+def with_goal(
+    texts: Mapping[str, Any],
+    system: System | None,
+    wanted: Asked,
+    typed: Collection[str],
+    carried: Sequence[str],
+    asked: Options,
+) -> Asked:
+    """What is asked for, with the accuracy that is to be reached, if one is; ``typed`` are the options' names."""
+    accuracy = _accuracy(system, texts["accuracy"], asked)
+    if accuracy is None:
+        return wanted
+    pins = _pins(wanted.request, texts, "--arithmetic" in typed)
+    return replace(wanted, goal=Goal(accuracy, pins, texts["plan"], texts["values"], tuple(carried)))
+
+
+def _pins(request: Request, texts: Mapping[str, Any], arithmetic: bool) -> Pins:
+    """What other options have settled; float64 settles the ``arithmetic`` only where it was typed."""
+    from mbsym.numerics.planning.planning import Pins
+
+    return Pins(
+        model=request.model if texts["gravity"] or texts["linear"] or texts["without"] else None,
+        method=None if request.method == "auto" else request.method,
+        tolerance=request.tolerance,
+        step=request.step,
+        scalar=request.arithmetic if arithmetic else None,
+        whole=request.whole,
+    )
+
+
+def _accuracy(system: System | None, text: str | None, asked: Options) -> Accuracy | None:
+    """``1e-6``, ``theta=1e-6,energy=1e-9``, or both: ``1e-4,energy=1e-9``."""
+    if text is None:
+        return None
+    from mbsym.numerics.planning.plan import ENERGY, Accuracy
+
+    known = (*system.coordinates, *system.velocities, ENERGY) if system is not None else ()
+    everything: float | None = None
+    named: dict[str, float] = {}
+    before = len(asked.complaints)
+    for part in text.split(","):
+        left, equals, right = (piece.strip() for piece in part.partition("="))
+        value = asked.number("--accuracy", right if equals else left, FINEST, COARSEST)
+        name = left if equals else "everything"
+        if name in named or (not equals and everything is not None):
+            asked.complain("--accuracy", "conflicting-options", f"two errors are given for {name}")
+        elif not equals:
+            everything = value
+        elif system is None or asked.word("--accuracy", name, known, "quantity") is not None:
+            named[name] = value or FINEST
+    if len(asked.complaints) > before:
+        return None
+    return Accuracy(everything, named)

@@ -13,8 +13,7 @@ from mbsym.report.content import facts, say
 from mbsym.report.language import Language
 from mbsym.report.unit_text import pretty
 from mbsym_cli.console import BROKEN_DOWN, OK, asked_width, complain, printable, show, status, tell
-from mbsym_cli.simulate.choice import Goal
-from mbsym_cli.simulate.request import Asked
+from mbsym_cli.simulate.request import Asked, Goal
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

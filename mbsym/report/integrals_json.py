@@ -20,7 +20,9 @@ from mbsym.problems.polynomial_integrals import (
     Special,
     ZeroLevels,
 )
+from mbsym.problems.symmetries import Symmetries, Symmetry
 from mbsym.report.documents import integrals as doc
+from mbsym.report.documents import symmetries
 from mbsym.report.documents.base import written
 
 
@@ -205,3 +207,33 @@ def _special(there: Setting, one: Special) -> dict[str, Any]:
         "on_levels": [_level(there, level) for level in one.levels],
         "complete": one.complete,
     }
+
+
+# Symmetries as JSON: everything that the table shows, as codes and formulas.
+
+
+def symmetries_json(system: System, values: Mapping[str, Fraction], found: Symmetries) -> str:
+    """One JSON object, keys in a fixed order, the same text for the same input."""
+    return written(symmetries.Symmetries.from_result(symmetries_data(found), system=system.name, values=values))
+
+
+def symmetries_data(found: Symmetries) -> symmetries.SymmetryBasis:
+    """What is found, without what it belongs to."""
+    return symmetries.SymmetryBasis(
+        directions="speeds" if found.in_speeds else "coordinates",
+        complete=found.complete,
+        symmetries=[_one(one) for one in found.symmetries],
+    )
+
+
+def _one(one: Symmetry) -> symmetries.Symmetry:
+    return symmetries.Symmetry(
+        field={name: str(xi) for name, xi in one.directions},
+        time=str(one.time),
+        gauge=str(one.gauge),
+        integral=str(one.integral),
+        name=one.name,
+        new=one.is_new,
+        told_apart=one.certainty.value,
+        substituted=one.substituted.value,
+    )

@@ -14,7 +14,7 @@ from mbsym.model.system import INERTIAL
 from mbsym.report.canonical import Denominators, forms_of, with_names
 from mbsym.report.compact import Compact, compact
 from mbsym.report.conditions import provided
-from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Said, paragraph, say
+from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Relation, Said, paragraph, say
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.sections import section_of
 
@@ -95,8 +95,12 @@ class Results:
         """What the verdicts of problem 6 presume, after a comma."""
         found = self.found.get(6)
         motion = self.analysis.optional("equilibrium")
-        text = "" if found is None else provided(found, motion, bool(self.system.inputs))
-        return (", ", worded(text)) if text else ()
+        if found is None:
+            return ()
+        text, linear = provided(found, motion, bool(self.system.inputs)), self.analysis.optional("linearisation")
+        assumed = () if linear is None or linear.constrained is None else linear.constrained.assumed
+        where = say("where [[conditions]]", conditions=[Relation(x, "!=", 0) for x in assumed])
+        return (*((", ", worded(text)) if text else ()), *((", ", where) if assumed else ()))
 
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told."""

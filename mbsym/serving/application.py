@@ -25,7 +25,7 @@ from mbsym.serving import looking
 from mbsym.serving.events import Events, encoded
 from mbsym.serving.guard import Guard, TooLarge, TooSlow
 from mbsym.serving.jobs import Jobs
-from mbsym.serving.requests import Wrong, flag, listed, mapping, text_of, whole
+from mbsym.serving.looking import Wrong, flag, listed, mapping, text_of, whole
 from mbsym.serving.storage import Conflict, Storage, Unreadable, Unwritable
 from mbsym.source.examples import example_text, example_titles
 from mbsym.source.starter import JOINTS, ONE_AXIS

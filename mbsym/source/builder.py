@@ -20,7 +20,7 @@ from mbsym.model.substitution import with_held
 from mbsym.model.system import INERTIAL, Body, MotionEntry, System
 from mbsym.source.bodies import draft_bodies, read_body, read_body_name
 from mbsym.source.checks import check_body, check_system, in_formulas
-from mbsym.source.claims import read_abbreviations, read_claims
+from mbsym.source.claims import enter_symbols, leave_symbols, read_abbreviations, read_claims
 from mbsym.source.constants import (
     declare_prescribed,
     declared_by_use,
@@ -31,8 +31,7 @@ from mbsym.source.constants import (
 )
 from mbsym.source.keys import INPUT, SYSTEM, VERSION
 from mbsym.source.linear import declare_linear, read_linear
-from mbsym.source.loads import read_loads
-from mbsym.source.oscillation_symbols import enter_symbols, leave_symbols
+from mbsym.source.loads import read_constraints, read_loads
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
@@ -154,8 +153,6 @@ def _constraints(
     node, dependent = fields.get("constraints"), fields.get("dependent")
     if node is None and dependent is None:
         return (), ()
-    from mbsym.source.constraints import read_constraints
-
     found = tuple(
         constraint_in_angles(one, bodies) for one in read_constraints(node, [x.name for x in bodies], reading)
     )

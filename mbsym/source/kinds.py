@@ -1,6 +1,6 @@
 """Loads and constraints, read by the table of their kinds: each key by its type, and what is made of them.
 
-What a kind demands beyond its keys is its check, in ``mbsym.source.loads`` and ``mbsym.source.constraints``.
+What a kind demands beyond its keys is its check, in ``mbsym.source.loads``.
 """
 
 from __future__ import annotations

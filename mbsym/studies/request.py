@@ -14,6 +14,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
 
+from mbsym.expressions.message import Message
 from mbsym.report.language import LANGUAGES
 
 if TYPE_CHECKING:
@@ -230,7 +231,7 @@ PLAIN = {"Values": "Mapping[str, Fraction | float | str]", "Numbers": "Mapping[s
 
 def duration(help: str, usual: str = "") -> Number:
     """``--time``, without which nothing can be simulated."""
-    absent = ("how long to simulate is not said", "for example --time 60")
+    absent = ("how long to simulate is not said", Message("for example [[example]]", example="--time 60"))
     return Number("T", help, "-t", usual=usual, absent=absent)
 
 

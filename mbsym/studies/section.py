@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message, worded
 from mbsym.studies.study import Unfit
 
 if TYPE_CHECKING:
@@ -14,14 +15,19 @@ if TYPE_CHECKING:
     from mbsym.model.system import System
 
 
+FOLLOWS = "[[name]] follows from other parameters: [[how]]"
+
+
 def distinct(axes: Sequence[Axis], settings: Mapping[str, Fraction]) -> Iterator[Unfit]:
     """No name is taken twice, as two axes or as an axis that has a number."""
     names = [axis.name for axis in axes]
     for name in dict.fromkeys(name for name in names if names.count(name) > 1):
-        yield Unfit("--y", "repeated-name", f"'{name}' is taken for two axes", "choose another one")
+        yield Unfit(
+            "--y", "repeated-name", Message("'[[name]]' is taken for two axes", name=name), "choose another one"
+        )
     for name in names:
         if name in settings:
-            told = f"'{name}' has an interval and a number"
+            told = Message("'[[name]]' has an interval and a number", name=name)
             yield Unfit("--set", "repeated-name", told, "leave one of them out")
 
 
@@ -31,10 +37,10 @@ def unless_parameter(option: str, name: str, system: System) -> Iterator[Unfit]:
 
     related = next((item for item in system.relations if item.name == name), None)
     if related is not None:
-        told = f"{name} follows from other parameters: {name} = {text(related.value)}"
+        told = Message(FOLLOWS, name=name, how=f"{name} = {text(related.value)}")
         yield Unfit(option, "given-by-relation", told, "take one of those of which its relation is made")
     elif name not in system.parameter_names and name in [item.name for item in system.notation]:
-        told = f"'{name}' is no parameter but a symbol of the notation"
+        told = Message("'[[name]]' is no parameter but a symbol of the notation", name=name)
         yield Unfit(option, "misplaced-name", told, "take the parameters of which it is made")
 
 
@@ -44,7 +50,10 @@ def against_sign(option: str, axis: Axis, system: System) -> Iterator[Unfit]:
     if (sign in ("positive", "nonnegative") and axis.low < 0) or (
         sign in ("negative", "nonpositive") and axis.high > 0
     ):
-        told = f"{axis.name} is declared {sign}, and the interval from {axis.low} to {axis.high} is not"
+        told = Message(
+            "[[name]] is declared [[sign]], and the interval from [[low]] to [[high]] is not",
+            name=axis.name, sign=worded(sign), low=str(axis.low), high=str(axis.high),
+        )  # fmt: skip
         yield Unfit(option, "against-sign", told, "choose an interval of that sign")
 
 
@@ -55,29 +64,36 @@ def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfi
     lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
     if lacking:
         example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
-        yield Unfit("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
+        lacks = Message("no number for [[names]]", names=", ".join(lacking))
+        yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
     for one in dict.fromkeys(wrong):
         match one.fault:
             case Fault.RELATED:
-                told = f"{one.name} follows from other parameters: {one.about}"
+                told = Message(FOLLOWS, name=one.name, how=one.about)
                 yield Unfit(axis_option, "given-by-relation", told, "take those of which its relation is made")
             case Fault.SOLVED:
-                told = f"{one.name} has one value on the motion only: {one.about}"
+                told = Message("[[name]] has one value on the motion only: [[how]]", name=one.name, how=one.about)
                 yield Unfit(axis_option, "given-by-motion", told, "take those of which its value is made")
             case Fault.DEPENDENT:
-                told = f"{one.name} is not independent of {one.about or 'the parameters'}"
+                told = Message("[[name]] is not independent of the parameters", name=one.name)
+                if one.about:
+                    told = Message("[[name]] is not independent of [[others]]", name=one.name, others=one.about)
                 yield Unfit(axis_option, "not-independent", told, "leave one of them out")
             case Fault.SIGN:
-                told = f"{one.name} is declared {one.about}, or is by its definition"
+                told = Message(
+                    "[[name]] is declared [[sign]], or is by its definition", name=one.name, sign=worded(one.about)
+                )
                 yield Unfit("--set", "against-sign", told, "choose a number of that sign")
             case Fault.NOWHERE:
-                told = f"the motion of the description exists nowhere there: {one.name or one.about}"
+                text = "the motion of the description exists nowhere there: [[why]]"
+                told = Message(text, why=worded(one.name or one.about))
                 yield Unfit("--set", "no-motion", told, "see problem 4 for the conditions")
             case Fault.OUTSIDE:
-                told = f"no point of the map keeps what has to be kept: {one.about}"
+                told = Message("no point of the map keeps what has to be kept: [[what]]", what=worded(one.about))
                 yield Unfit("--set", "outside", told, "choose other values, or another interval")
             case Fault.IRRATIONAL:
-                told = f"the matrices hold what is no rational number there: {one.name}"
+                told = Message("the matrices hold what is no rational number there: [[what]]", what=worded(one.name))
                 yield Unfit("--set", "irrational", told, "choose values at which roots and angles are rational")
             case Fault.SINGULAR:
-                yield Unfit("--set", "division-by-zero", f"a division by zero in {one.name}", "choose other values")
+                told = Message("a division by zero in [[what]]", what=worded(one.name))
+                yield Unfit("--set", "division-by-zero", told, "choose other values")

@@ -219,6 +219,13 @@ def no_program(error: Exception, asked: Asked, request: object) -> Refusal | Non
     return failed(error, "error[no-program]: there is no program for these equations")
 
 
+_LACKING = {
+    "value": "no value for [[names]]",
+    "number": "no number for [[names]]",
+    "rational number": "no rational number for [[names]]",
+}
+
+
 def missing(shown: Sequence[str], what: str = "value") -> Unfit:
     """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
     names = [name.split(" ")[0] for name in shown]
@@ -230,5 +237,13 @@ def missing(shown: Sequence[str], what: str = "value") -> Unfit:
         places.append(f"values: {{{first}: 1, ...}}")
     if positions:
         places.append(f"initial: {{{positions[0]}: 1, ...}}")
-    hint = f"{example}, or in the file  {'  and  '.join(places)}"
-    return Unfit(DESCRIPTION, "missing-value", f"no {what} for {', '.join(shown)}", hint)
+    hint = Message("[[example]], or in the file  [[places]]", example=example, places=",  ".join(places))
+    position = " (its initial position)"
+    listed = joined(
+        (
+            Message("[[name]] (its initial position)", name=x.split(" ")[0]) if x.endswith(position) else x
+            for x in shown
+        ),
+        ", ",
+    )
+    return Unfit(DESCRIPTION, "missing-value", Message(_LACKING[what], names=listed), hint)

@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import (
     ExactSettings,
     Formula,
@@ -124,7 +125,12 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
 
     moving = request.measure.text.startswith(MOTION)
     if moving and "time" not in typed:
-        yield Unfit("--time", "missing-option", "how long to simulate is not said", "for example --time 60")
+        yield Unfit(
+            "--time",
+            "missing-option",
+            "how long to simulate is not said",
+            Message("for example [[example]]", example="--time 60"),
+        )
     if not moving and "time" in typed:
         told = f"--time goes with --measure {MOTION}FORMULA only"
         yield Unfit("--time", "conflicting-options", told, "leave it out")
@@ -224,8 +230,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
         return Answer((line(f"  {told}"),))
     from mbsym.report.content import facts
-    from mbsym.report.runs.sweep_files import sweep_csv, sweep_json, sweep_parquet
-    from mbsym.report.runs.sweep_words import sentences
+    from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total
 
     points, columns = found.points, found.measure.columns

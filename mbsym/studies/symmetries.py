@@ -52,7 +52,7 @@ def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
 
 
 def as_json(asked: Asked, request: Request, found: Symmetries) -> str:
-    from mbsym.report.symmetries_json import symmetries_json
+    from mbsym.report.integrals_json import symmetries_json
 
     return symmetries_json(asked.system, request.values, found)
 

@@ -357,3 +357,18 @@ def test_long_conditions_are_told_by_the_letters_of_the_paper(tmp_path: Path) ->
     assert f"{stabilised} (characteristic polynomial)" in lines
     first = "otherwise unstable (Lyapunov's first method) if v4 < 0 or v2 < 0 or discriminant < 0"
     assert f"{first} (characteristic polynomial)" in lines
+
+
+def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> None:
+    """x = 0 and x + e z = 0 hold z where e != 0: then U = -y^2/2 alone is felt; else z'' = z grows."""
+    path = tmp_path / "a.yaml"
+    path.write_text(
+        "mbsym: 1\nname: rows\nparameters: {e: {value: 0, sign: real}}\n"
+        "bodies: [{name: p, mass: 1, connection point: [x, y, z], coordinates: [x, y, z]}]\n"
+        "loads: [{potential: y**2/2 - z**2/2}]\n"
+        "constraints:\n  - relation: x = 0\n  - relation: x + e*z = 0\nmotion: {}\n"
+    )
+    asked = ["run", str(path), "-p", "5,6", "-v", "--format", "json", "--out", str(tmp_path / "out")]
+    told = " ".join(CliRunner().invoke(main, asked).output.split())
+    assert "Stability where e != 0: stable (Lagrange-Dirichlet)" in told
+    assert "Verdict, where e != 0: stable (Lagrange-Dirichlet)" in told

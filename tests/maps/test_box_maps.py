@@ -25,9 +25,9 @@ from mbsym.maps.section import Axis
 from mbsym.maps.subdivision import ByBoundaries, End
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import Language
-from mbsym.report.latex.reading import read_latex
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
+from tests.report.readers import read_latex
 
 LINEAR = """mbsym: 1
 name: plane

@@ -8,10 +8,15 @@ from fractions import Fraction
 from fractions import Fraction as F
 from typing import Any
 
+import hypothesis
+import numpy as np
 import pytest
 from conftest import SHIPPED
 from flint import fmpq, fmpq_mat
+from hypothesis import given
+from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
+from properties import settings
 from terminal import told
 
 import mbsym
@@ -545,3 +550,45 @@ def test_parts_of_odd_degree_are_told_what_gyroscopic_forces_between_them_can_do
     assert sum("no gyroscopic forces among" in x for x in told) == (2 if words == "even" else 3)
     (together,) = [x for x in told if "together" in x]
     assert words in together
+
+
+@given(st.data())
+@settings(40)
+def test_the_degree_of_instability_does_not_know_the_coordinates(data: st.DataObject) -> None:
+    """K told in q = P y, P of integers and regular: the same regions' degrees hold, by eigenvalues at numbers (NumPy).
+
+    Of singular K, indefinite ones, and such whose leading minors vanish.
+    """
+    n = data.draw(st.integers(1, 3))
+    entries = st.sampled_from(["0", "1", "-1", "2", "a", "-a", "a - 1", "a**2"])
+    rows = [["0"] * n for _ in range(n)]
+    for i in range(n):
+        for j in range(i + 1):
+            rows[i][j] = rows[j][i] = data.draw(entries)
+    change = np.array(data.draw(st.lists(st.lists(st.integers(-1, 2), min_size=n, max_size=n), min_size=n, max_size=n)))
+    hypothesis.assume(abs(np.linalg.det(change)) > 0.5)
+    turned = [
+        [
+            " + ".join(f"({change[k][i] * change[m][j]})*({rows[k][m]})" for k in range(n) for m in range(n))
+            for j in range(n)
+        ]
+        for i in range(n)
+    ]
+    names = ["x", "y", "z"][:n]
+    for stiffness in (rows, turned):
+        quoted = json.dumps(stiffness)
+        mass = json.dumps((change.T @ change).tolist() if stiffness is turned else np.eye(n).tolist())
+        for part in found(f"{{coordinates: {names}, M: {mass}, K: {quoted}}}", "{a: real}").gyroscopic:
+            at = [names.index(name) for name in part.coordinates]
+            for a in (-2.5, -0.5, 0.0, 0.5, 1.0, 1.5, 3.0):
+                whole = np.array([[eval(x, {"a": a}) for x in row] for row in stiffness], dtype=float)
+                roots = np.linalg.eigvalsh(whole[np.ix_(at, at)])
+                for region in part.regions:
+                    held = [(at_value(x, a), how) for x, how in region.signs]
+                    if all({">": x > 0, "<": x < 0, "!=": x != 0}[how] for x, how in held):
+                        assert sum(roots < -1e-9) == region.degree
+                        assert sum(abs(roots) < 1e-9) == part.free
+
+
+def at_value(formula: Any, a: float) -> float:
+    return float(formula.to_sympy().subs({"a": a}))

@@ -13,7 +13,7 @@ import mbsym
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import System
 from mbsym.report.code.interconnection import MOST_COLUMNS, MOST_ROWS, Interconnection, Kind, interconnection
-from mbsym.report.latex.values import diagram
+from mbsym.report.latex.report import diagram
 from mbsym.report.targets import TARGETS
 from tests.conftest import SHIPPED, compiled_latex, needs_pdflatex
 

@@ -10,8 +10,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.report.latex.abbreviated import abbreviated
-from mbsym.report.latex.report import render
+from mbsym.report.latex.report import abbreviated, render
 from tests.report.readers import read_latex
 
 SHIPPED = Path(__file__).parents[2] / "systems"

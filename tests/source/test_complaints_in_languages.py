@@ -88,3 +88,34 @@ def test_complaints_of_all_wrong_descriptions_are_translated() -> None:
             if said == one.message:
                 english.add(template)
     assert not english
+
+
+#: By hand: a wrong command line, and what is said of it.
+OPTIONS = {
+    "map --x Omga=0:1": ("нет параметра по имени 'Omga'", "ningún parámetro llamado 'Omga'"),
+    "map --x k=2:1": ("интервал от 2 до 1 пуст", "el intervalo de 2 a 1 está vacío"),
+    "map --x k": ("'k' не задаёт интервала", "'k' no da ningún intervalo"),
+    "map --x k=1:2 --y k=1:2 -s m=1": ("взято для двух осей", "está tomado para dos ejes"),
+    "map --x k=1:2 -s k=1": ("и интервал, и число", "tiene un intervalo y un número"),
+    "equilibria": ("нет числа для m, k", "no hay número para m, k"),
+    "run -s W=1": ("нечего задавать по имени 'W'", "no hay nada llamado 'W' a lo que dar un valor"),
+    "run -s k=1 -s k=2": ("'k' задано дважды", "'k' está dado dos veces"),
+    "show W": ("здесь ничто не называется 'W'", "aquí nada se llama 'W'"),
+}
+
+
+@pytest.mark.parametrize("words", OPTIONS)
+def test_complaints_about_options_are_said_in_it_too(words: str, tmp_path: Path) -> None:
+    """All of their lines, but for the names of options and what a command shows of itself."""
+    body = "{name: a, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}"
+    text = f"mbsym: 1\nname: Spring\nparameters: {{m: positive, k: positive}}\nbodies: [{body}]\n"
+    text += "loads: [{spring: {coordinate: x, stiffness: k}}]\nmotion: {x: 0}\n"
+    command, *options = words.split(" ")
+    for language, said in zip(("ru", "es"), OPTIONS[words], strict=True):
+        file = tmp_path / f"{language}.yaml"
+        file.write_text(f"{text}language: {language}\n", encoding="utf-8")
+        done = CliRunner().invoke(main, [command, str(file), *options], env={"COLUMNS": "200"})
+        assert done.exit_code == 2
+        assert said in done.stderr
+        assert {"ru": "ничего не записано.", "es": "no se escribió nada."}[language] in done.stderr
+        assert not [x for x in (" is ", "nothing was", "no value", "hint", "there") if x in done.stderr], done.stderr

@@ -691,3 +691,25 @@ def test_files_beside_are_included_and_no_others(tmp_path: Path) -> None:
         done = CliRunner().invoke(main, ["convert", str(file)])
         assert done.exit_code == 2
         assert "<include> is not read" in done.stderr
+
+
+def test_coordinates_may_be_called_as_the_joints() -> None:
+    """Letters, digits and single underscores; a name that means something else, or stands twice, stays a number."""
+    inertia = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    links = "".join(f'<link name="{x}">{inertia}</link>' for x in "abcde")
+    named = [("0", "a", "lambda"), ("a", "b", "hip-1"), ("b", "c", "hip 1"), ("c", "d", "q1"), ("d", "e", "knee_dot")]
+    joints = "".join(
+        f'<joint name="{name}" type="revolute"><parent link="{"base" if at == "0" else at}"/><child link="{link}"/>'
+        '<axis xyz="0 0 1"/><dynamics damping="0.1"/></joint>'
+        for at, link, name in named
+    )
+    robot = f'<robot name="r"><link name="base"/>{links}{joints}</robot>'
+    made = converted(robot, joint_names=True, symbols=True)
+    system, complaints = read(made.yaml, "r.yaml")
+    assert not complaints.items
+    assert system is not None
+    assert system.coordinates == ("q1", "hip_1", "q3", "q4", "q5")
+    assert {"b1", "b2", "b5"} <= {*system.parameter_names}  # dampers are numbered as before
+    plain, _ = read(converted(robot, symbols=True).yaml, "r.yaml")
+    assert plain is not None
+    assert plain.coordinates == ("q1", "q2", "q3", "q4", "q5")

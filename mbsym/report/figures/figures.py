@@ -7,7 +7,8 @@ Many coordinates are spread over pages: ``histories.svg``, ``histories-2.svg``, 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -23,8 +24,9 @@ from mbsym.model.quantities import energy_unit, time_unit, unit_of
 from mbsym.model.states import InStates
 from mbsym.model.system import System
 from mbsym.numerics.between import between
+from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.simulate import Trajectory
-from mbsym.report.figures.drawing import BLUE, GREY, RED, saved, styled, thinned
+from mbsym.report.figures.drawing import BLUE, GREY, RED, pictures, saved, styled, thinned
 from mbsym.report.unit_text import labelled
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
@@ -315,3 +317,94 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     axis.set_title(f"relative drift of the {energy}")
     _span(axis, found.times)
     return figure
+
+
+# Fan charts: how the members of an ensemble are spread over time, a panel a coordinate or velocity.
+
+
+def fan_charts(found: Ensemble, formats: Sequence[str]) -> dict[str, bytes]:
+    """``fan.svg`` and ``.png``; further pages, ``fan-2.svg``, where there are many coordinates."""
+    system = found.members.dynamics.system
+    names = system.coordinates
+    count = -(-len(names) // HISTORY_ROWS)
+    images: dict[str, bytes] = {}
+    for page in range(count):
+        part = range(page * len(names) // count, (page + 1) * len(names) // count)
+        stem = "fan" + (f"-{page + 1}" if page else "")
+        images |= pictures({stem: lambda part=part: _ensemble_figure_page(found, part)}, formats)  # type: ignore[misc]
+    return images
+
+
+def _ensemble_figure_page(found: Ensemble, part: range) -> Figure:
+    system = found.members.dynamics.system
+    positions, velocities = coordinate_labels(system, "\n")
+    figure = Figure(figsize=(10, 1.4 + 1.9 * len(part)), layout="constrained")
+    axes = figure.subplots(len(part), 2, squeeze=False, sharex=True)
+    lost = f", {len(found.fates)} ended early" if found.fates else ""
+    varied = ", ".join(found.members.names)
+    title = f"{system.name}: {found.count} members{lost}, {varied} varied"
+    figure.suptitle(title if len(title) <= 100 else title[:97] + "...", fontsize=12, parse_math=False)
+    drawn: dict[str, Any] = {}
+    left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
+    for row, place in zip(axes, part, strict=True):
+        name = system.coordinates[place]
+        for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
+            drawn |= _fan(axis, found, place + side * len(system.coordinates))
+            axis.set_ylabel(label, rotation=0, ha="right", va="center", labelpad=8, fontsize=13)
+            axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
+    for axis in axes[-1]:
+        axis.set_xlabel(labelled("$t$", time_unit(system)))
+        if found.times[-1] > 0:
+            axis.set_xlim(0, found.times[-1])
+    figure.legend(list(drawn.values()), list(drawn), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    return figure
+
+
+def _fan(axis: Any, found: Ensemble, place: int) -> dict[str, Any]:
+    """A panel, and its curves by name."""
+    spread, times = found.statistics, found.times
+    rows = {chance: row[:, place] for chance, row in zip(QUANTILES, spread.quantiles, strict=True)}
+    wide = axis.fill_between(times, rows[0.05], rows[0.95], color=BLUE, alpha=0.18, linewidth=0)
+    narrow = axis.fill_between(times, rows[0.25], rows[0.75], color=BLUE, alpha=0.30, linewidth=0)
+    (median,) = axis.plot(times, rows[0.5], color=BLUE)
+    (mean,) = axis.plot(times, spread.mean[:, place], color=RED, linewidth=0.9, linestyle="--")
+    (ends,) = axis.plot(times, spread.least[:, place], color=GREY, linewidth=0.6)
+    axis.plot(times, spread.greatest[:, place], color=GREY, linewidth=0.6)
+    return {"median": median, "mean": mean, "middle 50 %": narrow, "middle 90 %": wide, "least and greatest": ends}
+
+
+# Figures of a simulation that stands beside a report, where it is one of the same description.
+
+
+#: What pdflatex takes, the better first.
+_KINDS = ("pdf", "png")
+
+
+@dataclass(frozen=True)
+class MadeFigure:
+    """``filename`` beside the report; ``until`` and ``method`` say what was simulated, ``whole`` whether to its end."""
+
+    filename: str
+    until: str
+    method: str
+    whole: bool
+
+
+def made_figures(simulation: str, description: str, present: Collection[str]) -> tuple[MadeFigure, ...]:
+    """The figures that a ``simulation.json`` names and that are ``present``, each in one kind.
+
+    Nothing where the text is none of a simulation, or not of the description with this hash: a figure of another
+    system, or of this one before it was changed, would be a false statement.
+    """
+    try:
+        found: dict[str, Any] = json.loads(simulation)
+        if found["description_sha256"] != description:
+            return ()
+        until, method = f"{float(found['reached']['time']):.6g}", str(found["method"]["title"])
+        whole, names = found["status"] == "whole", [str(name) for name in found["files"]]
+    except (ValueError, KeyError, TypeError):
+        return ()
+    stems = dict.fromkeys(name.rpartition(".")[0] for name in names if name.rpartition(".")[2] in _KINDS)
+    chosen = [next((f"{stem}.{kind}" for kind in _KINDS if f"{stem}.{kind}" in present), "") for stem in stems]
+    plain = (name for name in chosen if name in names and name.replace("-", "").replace(".", "").isalnum())
+    return tuple(MadeFigure(name, until, method, whole) for name in plain)

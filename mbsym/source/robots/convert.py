@@ -52,6 +52,7 @@ def convert(
     exact_angles: bool = False,
     inputs: bool = True,
     beside: Callable[[str], str | None] | None = None,
+    joint_names: bool = False,
 ) -> Converted | None:
     """The description of a robot, or None with complaints.  The options are those of :func:`describe`.
 
@@ -67,5 +68,5 @@ def convert(
     robot = (read_mjcf if root.tag == "mujoco" else read_urdf)(root, complaints, exact_angles)
     if robot is None or complaints.errors:
         return None
-    made = describe(robot, floating, symbols, damping, inputs)
+    made = describe(robot, floating, symbols, damping, inputs, joint_names)
     return Converted(made.yaml, made.joints, robot.left_out, made.still, robot.snapped)

@@ -30,11 +30,13 @@ from mbsym.source.robots.robot import (
     Step,
     steps,
 )
-from mbsym.source.scope import MAX_NAME
+from mbsym.source.scope import MAX_NAME, why_no_name
 from mbsym.source.yaml_writer import scalar_text
 
 _NUMBER = re.compile(r"[0-9.eE+-]+\Z")
 _FREE = Moving(Joint("", "free"), ("x", "y", "z", "yaw", "pitch", "roll"))
+#: Names that are made here: of coordinates, inputs, parameters.
+_OWN = re.compile(r"[qpcmJbk]\d+[a-z]*|g|x|y|z|yaw|pitch|roll|tau_.*")
 #: The link that is the ground itself, as ROS has it.
 _WORLD = "world"
 
@@ -53,15 +55,21 @@ class Described:
 
 
 def describe(
-    robot: Robot, floating: bool = False, symbols: bool = False, damping: bool = True, inputs: bool = True
+    robot: Robot,
+    floating: bool = False,
+    symbols: bool = False,
+    damping: bool = True,
+    inputs: bool = True,
+    joint_names: bool = False,
 ) -> Described:
     """The description of a robot.
 
     ``floating`` frees its first link, which otherwise stands on the ground; with ``symbols`` masses, lengths and
     moments are named parameters with the printed values; ``damping``: dampers and springs of joints are loads;
-    ``inputs``: driven joints have one, their torque or force.
+    ``inputs``: driven joints have one, their torque or force; with ``joint_names`` coordinates are called as the joints
+    where descriptions may have such a name.
     """
-    return _Writer(robot, floating, symbols, damping, inputs).described()
+    return _Writer(robot, floating, symbols, damping, inputs, joint_names).described()
 
 
 @dataclass
@@ -71,6 +79,7 @@ class _Writer:
     symbols: bool
     damping: bool
     driven: bool
+    named: bool
     bodies: list[str] = field(default_factory=list)
     parameters: list[str] = field(default_factory=list)
     loads: list[str] = field(default_factory=list)
@@ -81,6 +90,7 @@ class _Writer:
     still: list[str] = field(default_factory=list)
     names: dict[str, str] = field(default_factory=dict)  # of the file's links
     taken: set[str] = field(default_factory=set)
+    stems: set[str] = field(default_factory=set)  # coordinates that are called as their joints
     leading: dict[str, str] = field(default_factory=dict)  # the coordinates of joints that others may follow
     refs: dict[str, str] = field(default_factory=dict)
     frames: int = 0
@@ -136,11 +146,20 @@ class _Writer:
             stems = []
             for joint in kept:
                 count += joint.led is None
-                stems.append(f"q{count}" if joint.led is None else "")
+                stems.append(self._stem(joint, count) if joint.led is None else "")
             self.refs |= {joint.name: joint.ref for joint in kept}
             self.leading |= dict(zip((joint.name for joint in kept), stems, strict=True))
             links.append((replace(link, joints=kept), stems))
         return links
+
+    def _stem(self, joint: Joint, count: int) -> str:
+        """What a joint's coordinate is called: by its number, or as the joint where nothing else can be called so."""
+        name = "_".join(re.findall("[A-Za-z0-9]+", joint.name))
+        several = joint.kind in ("free", "ball")
+        if not self.named or several or why_no_name(name) or _OWN.fullmatch(name) or name in self.stems:
+            return f"q{count}"
+        self.stems.add(name)
+        return name
 
     def _is_ground(self, link: Link) -> bool:
         """Whether a link is but a name of the ground: that of a URDF which is called ``world``."""
@@ -272,7 +291,7 @@ class _Writer:
 
     def _coordinates(self, joint: Joint, stem: str) -> tuple[str, ...]:
         self.joints.append(joint.name)
-        number = stem[1:]
+        number = len(self.joints)
         if joint.kind == "free":
             return tuple(f"{stem}{part}" for part in ("x", "y", "z", "yaw", "pitch", "roll"))
         if joint.kind == "ball":

@@ -115,7 +115,7 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
 
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
-    from mbsym.studies.map.equilibria import fitting
+    from mbsym.studies.map.answer import fitting
 
     of_one = request.of != "equilibria"
     if "z" in typed and "y" not in typed:
@@ -145,7 +145,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     from mbsym.maps.slices import stack
 
     if request.of == "equilibria":
-        from mbsym.studies.map.equilibria import mapped
+        from mbsym.studies.map.answer import mapped
 
         return mapped(asked.system, request, watch)
     of, axes, values, analysis = Of(request.of), request.axes, request.values, Analysis(asked.system)
