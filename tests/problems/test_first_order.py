@@ -111,3 +111,41 @@ def test_a_planted_mistake_is_found_where_a_motion_exists_under_a_condition(monk
 
 def test_a_failure_always_says_something():
     assert Check("some check", "one", "other", FAILED).detail == "the two routes differ"
+
+
+BALL = """
+mbsym: 1
+name: Ball on a spring
+parameters: {m: positive, r: positive, J: positive, c: positive}
+bodies:
+  - {name: centre, attached to: 0, connection point: [x, y, r], coordinates: [x, y], mass: m}
+  - name: ball
+    attached to: centre
+    rotation: {axes: [3, 1, 2], angles: [psi, theta, phi]}
+    mass: 0
+    inertia about: joint
+    inertia: [J, J, J]
+    speeds: {p: omega1, q: omega2, s: omega3}
+    orientation: {e: quaternion}
+loads:
+  - spring: {coordinate: x, stiffness: c}
+constraints:
+  - rolling: {body: ball, point: [0, 0, -r], axes: centre, on: ground}
+dependent: [x, y]
+motion: {x: 0, y: 0, psi: 0, theta: 0, phi: 0}
+"""
+
+
+def test_a_quaternion_beside_constraints() -> None:
+    """A ball rolls on a plane, a spring on its centre: x' = r q, (m r^2 + J) q' = -r c x, 2 e' = omega at e = 1."""
+    analysis = mbsym.loads(BALL, (3, 5))
+    found = analysis.first_order
+    assert found.names == ("x", "e0", "e1", "e2", "e3", "p", "q", "s")
+    entries = {(a, b): str(found.A[i, j]) for i, a in enumerate(found.names) for j, b in enumerate(found.names)}
+    turned = {("e1", "p"): "1/2", ("e2", "q"): "1/2", ("e3", "s"): "1/2"}
+    rolling = {("x", "q"): "r", ("q", "x"): "-r*c/(m*r**2 + J)"}
+    assert {place: entry for place, entry in entries.items() if entry != "0"} == turned | rolling
+    assert (found.relations, found.norms) == (1, 1)
+    check = analysis.check("first approximation in speeds")
+    assert check is not None
+    assert check.outcome == "exact"
