@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from mbsym.numerics.ledger.work import AccuracyGoal
     from mbsym.report.brief import Brief
     from mbsym.report.content import Facts
-    from mbsym.report.figures.figures import MadeFigure
+    from mbsym.report.figures.made_figures import MadeFigure
     from mbsym.report.plain_writer import Line, Writer
     from mbsym.report.rendering import Rendered
     from mbsym.report.results import Results
@@ -146,7 +146,7 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     """Figures that 'mbsym simulate' made of this description in the same folder, if nobody has changed them."""
     if not (folder / "simulation.json").is_file():
         return ()
-    from mbsym.report.figures.figures import made_figures
+    from mbsym.report.figures.made_figures import made_figures
     from mbsym.source.yaml_writer import meaning
 
     sums = delivered(folder, "simulate")

@@ -12,7 +12,6 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import wolfram_report
 from mbsym.report.latex import report as latex_report
-from mbsym.report.latex import values as latex_values
 from mbsym.report.latex import writer as latex_writer
 from mbsym.report.lengths import FILE, PAPER, Limit, formulas, withheld
 from mbsym.report.targets import TARGETS
@@ -84,7 +83,7 @@ def test_reports_of_a_long_chain_are_short_and_whole(long: Analysis) -> None:
 @needs_pdflatex
 def test_a_report_with_counted_formulas_compiles(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     analysis = chain(2)
-    monkeypatch.setattr(latex_values, "PAPER", Limit(3, 20))
+    monkeypatch.setattr(latex_report, "PAPER", Limit(3, 20))
     text = latex_report.render(analysis, (1, 2, 3))
     assert "terms, not printed" in text
     compiled_latex(text, tmp_path)
