@@ -12,7 +12,7 @@ import pytest
 
 import mbsym
 from mbsym.algebra.parts import PARTS, installed, missing
-from mbsym.serving.tasks import perform
+from mbsym.serving.worker import perform
 
 ROOT = Path(mbsym.__file__).parents[1]
 

@@ -19,10 +19,9 @@ from mbsym_cli.options import Options
 from mbsym_cli.simulate.ensemble import answers, spread
 from mbsym_cli.simulate.further import begun_at, declared, going_on, integrated, with_further
 from mbsym_cli.simulate.many import read_many
-from mbsym_cli.simulate.options import OPTIONS
+from mbsym_cli.simulate.options import OPTIONS, carried, complain_of_names, complain_of_pairs, typed_options
 from mbsym_cli.simulate.request import check_constrained, check_held, check_states, read_request, with_goal
 from mbsym_cli.simulate.run import run
-from mbsym_cli.simulate.together import carried, complain_of_names, complain_of_pairs, typed_options
 from mbsym_cli.study import prevented
 
 if TYPE_CHECKING:

@@ -45,9 +45,14 @@ class Reduced:
     asked: Reducing
 
     def formula(self, c: Quotient) -> Formula:
+        """With sin^2 in place of factors 1 - cos^2 of the denominator."""
         ring, back = self.transfer.ring, self.transfer.back
-        top = back(c.top)
-        return Formula(ring, top if c.bottom.is_constant() else ring.times(top, ring.reciprocal(back(c.bottom))))
+        found, below = back(c.top), back(c.bottom)
+        for name in ring.angles:
+            sine = ring.generator("sine", name)
+            while (left := ring.quotient(below, ring.one - ring.generator("cosine", name) ** 2)) is not None:
+                found, below = ring.times(found, ring.reciprocal(sine) ** 2), left
+        return Formula(ring, ring.reduce(ring.times(found, ring.reciprocal(below))))
 
     def terms(self, x: Series) -> tuple[tuple[Formula, Formula], ...]:
         """The coefficients with powers of the small parameter, from the lowest on; they hold what it divides."""

@@ -22,6 +22,15 @@ from mbsym.problems.stability.word import Word
 _TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
 
 
+#: A formula of so many characters that was shown before is written again, rather than its name.
+AS_A_NAME = 40
+
+
+def written_again(formula: Formula) -> bool:
+    """Whether it is as short as its name."""
+    return formula.terms < AS_A_NAME and len(formula.readable()) <= AS_A_NAME
+
+
 #: The label of a coefficient whose letter is a name in the formulas, too.
 TAKEN = "condition [[label]]"
 
@@ -55,11 +64,10 @@ class Statement:
 
     @property
     def named(self) -> bool:
-        """Whether its formula needs a label beside it: none where it is the letter, or has no letter."""
-        bare = self.bare
-        return not (self.formula is not None and is_letter(self.formula, bare)) and not (
-            isinstance(bare, Message) and bare.text == TAKEN
-        )
+        """Whether its formula needs a label: none where it is the letter, or short and without a letter of its own."""
+        if self.formula is None or is_letter(self.formula, self.bare):
+            return self.formula is None
+        return not (isinstance(self.bare, Message) and self.bare.text == TAKEN and written_again(self.formula))
 
     @property
     def remark(self) -> str:

@@ -327,19 +327,22 @@ def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
 
 
 def reduced_lines(found: Reduced) -> Iterator[Line]:
-    """Step by step what is put in, with its check; then the equations and integrals that are left, by powers of eps."""
-    flow = found.reduction.flow
-    for k, step in enumerate(found.reduction.steps, start=1):
-        left = "nothing is left" if step.left is None else f"O({found.asked.small}^{step.left}) is left"
-        yield Line("", f"{k}. {step.how.value}; put into the original equations at random rational states: {left}")
+    """Step by step what is put in; then the equations and integrals that are left, by powers of eps, and the check."""
+    flow, first = found.reduction.flow, found.reduction.steps[0]
+    remainder = "" if found.asked.known is None else f"O({found.asked.small}^{found.asked.known})"
+    for k, step in enumerate(found.reduction.steps[1:], start=1):
+        yield Line("", f"{k}. {step.how.value}")
         yield from (Line(found.variable(place), InSmall(found.terms(x))) for place, x in step.images.items())
-    yield Line("", "equations of motion" + ("" if found.asked.known is None else f", without O({found.remainder})"))
+    yield Line("", "equations of motion" + (f", without {remainder}" if remainder else ""))
     for place, x in flow.rates.items():
         rate = found.rate(place)
         if rate is not None and flow.velocities.get(place) not in flow.rates:
             yield Line(rate, InSmall(found.terms(x)))
     for x in flow.integrals:
         yield Line("", InSmall(found.terms(x)), "=" if flow.fixed else "= const", "integral")
+    said = "they satisfy" if found.reduction.steps == (first,) else "each step satisfies"
+    but = f" but for {remainder}" if remainder else ""
+    yield Line("", f"{said} the original equations{but}: checked at random exact states")
 
 
 #: What can be told in variables that no description has.

@@ -8,10 +8,26 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 import traceback
+from base64 import b64encode
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from fractions import Fraction
+from math import isfinite
 from multiprocessing.connection import Connection
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from markupsafe import escape
+
+from mbsym.algebra.failures import Failure
+from mbsym.algebra.parts import missing
+from mbsym.source import read
+
+if TYPE_CHECKING:
+    from mbsym.analysis import Analysis
+    from mbsym.model.system import System
 
 #: Exit codes: the memory that a job may have was not enough.
 OUT_OF_MEMORY = 75
@@ -34,7 +50,6 @@ motion: {x: 0}
 
 def warm() -> None:
     """Loads what every job needs, and has used it once."""
-    from mbsym.serving.tasks import perform
 
     with suppress(Exception):
         for _ in perform({"kind": "derive", "text": _WARMING, "name": "pendulum.yaml", "problems": [1, 3, 6]}):
@@ -54,7 +69,6 @@ def attend(connection: Connection, memory: int, cold: bool = False) -> None:
         _step_back(task)
         _hang_on(connection.fileno())
         _bound(memory)
-        from mbsym.serving.tasks import perform
 
         for message in perform(task):
             connection.send(message)
@@ -113,3 +127,254 @@ def _hang_on(handle: int) -> None:
         return
     if gone:
         os._exit(1)
+
+
+# What a job does, in a process of its own: a generator of what there is to tell, section by section.
+
+
+Message = dict[str, Any]
+Task = Mapping[str, Any]
+
+
+class Refused(Exception):
+    """With words that say why a job cannot be done."""
+
+
+def perform(task: Task) -> Iterator[Message]:
+    """What a task leads to.  A failure that was foreseen is told as the last message; a defect is raised."""
+    from mbsym.analysis.stages import Unavailable
+    from mbsym.numerics.scenario import Incomplete
+
+    try:
+        yield from _KINDS[task["kind"]](task, _system(task))
+    except (Refused, Failure, Unavailable, Incomplete, ValueError, ArithmeticError) as error:
+        yield {"kind": "failed", "words": str(error) or type(error).__name__}
+    except ModuleNotFoundError as error:
+        if not missing(error):
+            raise
+        yield {"kind": "failed", "words": f"{missing(error)} is not installed"}
+
+
+def _system(task: Task) -> System:
+    from mbsym.analysis.soundness import complain
+
+    folder = Path(task["folder"]) if task.get("folder") else None
+    system, complaints = read(task["text"], task["name"], folder)
+    if system is not None and not complaints.errors:
+        complain(system, complaints)
+    if system is None or complaints.errors:
+        first = next(iter(complaints.errors), None)
+        raise Refused("the description has mistakes" + (f": {first.message}" if first else ""))
+    return system
+
+
+# --- results ----------------------------------------------------------------------------------------------------------
+
+
+def _derive(task: Task, system: System) -> Iterator[Message]:
+    from mbsym.analysis import USUAL_PROBLEMS, Analysis
+    from mbsym.analysis.given import chosen
+    from mbsym.report.html.report import title
+
+    asked = task.get("problems")
+    problems = tuple(sorted(asked)) if asked else chosen(system, USUAL_PROBLEMS)
+    analysis = Analysis(system, problems)
+    analysis.language = task.get("language") or ""
+    yield {"kind": "plan", "sections": [[str(x), title(analysis, x)] for x in _plan(analysis)]}
+    yield _section(analysis, "system", ())
+    done: list[int] = []
+    sent: dict[int, Any] = {}
+    for number in problems:
+        yield {"kind": "progress", "words": title(analysis, number), "done": len(done), "of": len(problems)}
+        sent[number] = analysis.stage(number).failure
+        done.append(number)
+        yield _section(analysis, number, tuple(done))
+    if system.claims:
+        yield {"kind": "progress", "words": "claims", "done": len(done), "of": len(problems)}
+        yield _section(analysis, "claims", problems)
+    yield {"kind": "progress", "words": "self-check", "done": len(done), "of": len(problems)}
+    if analysis.checks:
+        yield _section(analysis, "checks", problems)
+    for number in problems:  # what a failed check supported is withdrawn
+        if analysis.stage(number).failure is not sent[number]:
+            yield _section(analysis, number, problems)
+    yield _section(analysis, "summary", problems)
+
+
+def _plan(analysis: Analysis) -> list[str | int]:
+    return ["summary", "system", *analysis.problems, *(["claims"] if analysis.system.claims else []), "checks"]
+
+
+def _section(analysis: Analysis, part: str | int, problems: tuple[int, ...]) -> Message:
+    from mbsym.report.html.report import part_html, title
+
+    started, state = time.perf_counter(), "derived"
+    if isinstance(part, int):
+        failure = analysis.stage(part).failure
+        state = "derived" if failure is None else "failed" if failure.error is not None else "refused"
+    try:
+        html = part_html(analysis, part, problems)
+    except MemoryError:
+        raise
+    except Exception as error:  # a template that fails costs its section
+        html, state = str(escape(f"It cannot be shown: {type(error).__name__}: {error}")), "failed"
+    seconds = time.perf_counter() - started
+    if isinstance(part, int):
+        seconds += analysis.stage(part).seconds
+    return {
+        "kind": "section",
+        "problem": str(part),
+        "title": title(analysis, part),
+        "state": state,
+        "seconds": round(seconds, 3),
+        "html": html,
+    }
+
+
+def _export(task: Task, system: System) -> Iterator[Message]:
+    """All files of the formats asked for, as ``mbsym run`` makes them."""
+    from mbsym.analysis import Analysis
+    from mbsym.analysis.given import chosen
+    from mbsym.report.targets import FORMATS, shown_by
+    from mbsym.report.whole_run import derive_all, lost, rendered_all
+
+    formats = [name for name in task["formats"] if name in FORMATS]
+    asked = task.get("problems")
+    problems = tuple(sorted(asked)) if asked else chosen(system, shown_by(formats))
+    analysis = Analysis(system, problems)
+    analysis.language = task.get("language") or ""
+    said: list[str] = []
+    early = derive_all(analysis, formats, said.append)
+    files = rendered_all(analysis, formats, said.append, files=early)
+    words = [f"{where}: {failure.reason}" for where, failure in lost(analysis, files)]
+    words += [f"self-check failed: {check.name}: {check.detail}" for check in analysis.checks if check.failed]
+    yield {
+        "kind": "files",
+        "files": {file.filename: file.text for file in files if file.text is not None},
+        "gone": [file.filename for file in files if file.text is None],
+        "words": words,
+    }
+
+
+# --- the picture ------------------------------------------------------------------------------------------------------
+
+
+def _picture(task: Task, system: System) -> Iterator[Message]:
+    from mbsym.picture import as_json, picture
+    from mbsym.simulation.request import read_values
+
+    yield {"kind": "picture", "value": as_json(picture(system, read_values(system, task.get("set") or {})))}
+
+
+def _hover(task: Task, system: System) -> Iterator[Message]:
+    """What a word means, derived quantities included."""
+    from mbsym.analysis import Analysis
+    from mbsym.editing import explanation
+    from mbsym.serving.looking import word_at
+
+    line, column, start, end = word_at(task["text"], task["offset"])
+    told = explanation(task["text"], line, column, Analysis(system))
+    value = None if told is None else {"from": start, "to": end, "markdown": told}
+    yield {"kind": "hover", "value": value}
+
+
+def _simulate(task: Task, system: System) -> Iterator[Message]:
+    from mbsym.picture import picture
+    from mbsym.report.viewer.page import motion, motion_json
+    from mbsym.simulation import Request
+    from mbsym.simulation.request import read_values
+
+    overrides = read_values(system, task.get("set") or {})
+    try:
+        until = float(Fraction(str(task["time"])))
+    except (ValueError, ZeroDivisionError, OverflowError) as error:
+        raise Refused("the time is a number above 0") from error
+    if not (isfinite(until) and until > 0):
+        raise Refused("the time is a number above 0")
+    yield {"kind": "progress", "words": "the equations are integrated"}
+    request = Request(time=until, method=str(task.get("method") or "auto"))
+    found = motion(system, request, overrides)
+    wanted = [name for name in picture(system, overrides).program.inputs if name.endswith("_dot")]
+    yield {"kind": "motion", "value": motion_json(found, wanted)}
+
+
+def _equilibria(task: Task, system: System) -> Iterator[Message]:
+    from mbsym.report.viewer.page import at_rest, at_rest_json
+
+    yield {"kind": "progress", "words": "relative equilibria are looked for"}
+    yield {"kind": "equilibria", "value": at_rest_json(at_rest(system, _numbers(task)))}
+
+
+def _modes(task: Task, system: System) -> Iterator[Message]:
+    from mbsym.analysis import Analysis
+    from mbsym.expressions.tree import number
+    from mbsym.model.system import with_values
+    from mbsym.numerics.scenario import contradictions_of
+    from mbsym.report.viewer.modes import modes, modes_json
+
+    values = {name: number(value) for name, value in _numbers(task).items()}
+    wrong = [f"there is no parameter called {name}" for name in values if name not in system.parameter_names]
+    wrong = wrong or [one.text for one in contradictions_of(system, values)]
+    if wrong:
+        raise Refused("; ".join(wrong))
+    yield {"kind": "modes", "value": modes_json(modes(Analysis(with_values(system, values), (4, 5, 6))))}
+
+
+def _numbers(task: Task) -> dict[str, Fraction]:
+    found = {}
+    for name, value in (task.get("set") or {}).items():
+        try:
+            found[str(name)] = Fraction(str(value))
+        except (ValueError, ZeroDivisionError) as error:
+            raise Refused(f"{name}: a rational number is wanted, as 2/5 or 0.4") from error
+    return found
+
+
+# --- maps -------------------------------------------------------------------------------------------------------------
+
+
+def _map(task: Task, system: System) -> Iterator[Message]:
+    """``x`` and ``y`` are {name, low, high}; without y a line of verdicts."""
+    from mbsym.analysis import Analysis
+    from mbsym.maps.mapping import exact_map
+    from mbsym.maps.section import Axis, usable
+    from mbsym.report.language import Language
+    from mbsym.report.maps.figure import map_figure
+
+    axes = []
+    for key in ("x", "y"):
+        if not task.get(key):
+            continue
+        name, ends = str(task[key]["name"]), []
+        if name not in usable(system):
+            raise Refused(f"there is no parameter called {name}")
+        for end in ("low", "high"):
+            try:
+                ends.append(Fraction(str(task[key][end])))
+            except (ValueError, ZeroDivisionError) as error:
+                raise Refused(f"{name}: the ends of its range are rational numbers, as 2/5 or 0.4") from error
+        if ends[0] >= ends[1]:
+            raise Refused(f"{name}: the range from {ends[0]} to {ends[1]} is empty")
+        axes.append(Axis(name, *ends))
+    if not axes:
+        raise Refused("a map has an axis or two")
+    yield {"kind": "progress", "words": "the plane is divided" if len(axes) == 2 else "the line is divided"}
+    analysis, settings, language = Analysis(system), _numbers(task), Language(task.get("language") or "")
+    found = exact_map(analysis, axes, settings)
+    image = next(iter(map_figure(system, found, language, ("png",)).values()))
+    words = []
+    if found.check is not None and not found.check.holds:
+        words = [f"withdrawn, as the map's own check fails: {one.mistake}" for one in found.check.findings[:20]]
+    yield {"kind": "map", "image": f"data:image/png;base64,{b64encode(image).decode()}", "words": words}
+
+
+_KINDS = {
+    "derive": _derive,
+    "export": _export,
+    "hover": _hover,
+    "picture": _picture,
+    "simulate": _simulate,
+    "equilibria": _equilibria,
+    "modes": _modes,
+    "map": _map,
+}

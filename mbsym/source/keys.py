@@ -69,7 +69,7 @@ ANGLES, COSINES = "angles", "direction cosines"
 JOINT, MASS_CENTRE = "joint", "mass centre"
 
 #: A linear system has at most so many coordinates, a table so many points (one from a file
-#: ``table_file.MOST_POINTS``), a symbol so many characters.
+#: ``tables.MOST_POINTS``), a symbol so many characters.
 MOST_COORDINATES, MAX_POINTS, LONGEST = 30, 500, 80
 
 #: A small parameter stands in at most this power.

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.rates import ENDINGS
+from mbsym.expressions.rates import ENDINGS, velocity_name
 from mbsym.expressions.tree import (
     CONSTANTS,
     ONE,
@@ -140,8 +140,10 @@ def assignments(text: str, complaints: Complaints, start: int = 0) -> Iterator[I
         left, equals, right = piece.partition("=")
         name, blanks = left.strip(), len(left) - len(left.lstrip())
         span = Span(1, offset + blanks + 1, max(1, len(name)))
+        if name.endswith("'"):  # as results print it
+            name = velocity_name(name[:-1])
         if not equals or not name or not right.strip():
-            yield Item(piece.strip(), span, ONE, bare=True)
+            yield Item(piece.strip() if equals else name, span, ONE, bare=True)
             continue
         value = parse_expression(right, complaints, _Places(offset + len(left) + 1))
         if value is not None:

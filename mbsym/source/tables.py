@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path, PurePosixPath
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
@@ -61,7 +65,6 @@ def _from_file(fields: Fields, reading: Reading) -> tuple[Points, Source | None]
     columns = _columns(fields.get("columns"), reading)
     if scalar is None or columns is None:
         return (), None
-    from mbsym.source.table_file import read_points  # few descriptions have such a file
 
     found = read_points(reading.folder, scalar.text.strip(), columns)
     for message, hint in found.complaints:
@@ -134,3 +137,170 @@ def _point(node: Node, what: str, reading: Reading) -> Place | None:
         numbers.append(number if reading.errors == errors else None)
     first, second = numbers
     return None if first is None or second is None else (first, second)
+
+
+# Points of a table from a file of rows: comma-separated, with semicolons or tabs, with or without a line of names.
+
+
+#: A file has at most so many bytes, a table so many points.
+MOST_BYTES, MOST_POINTS = 4_000_000, 20_000
+
+#: So many complaints about a file are shown one by one.
+MOST_COMPLAINTS = 8
+
+_NUMBER = re.compile(r"[-+]?(?:\d{1,40}\.?\d{0,40}|\.\d{1,40})(?:[eE][-+]?\d{1,2})?\Z")
+
+
+@dataclass(frozen=True)
+class Rows:
+    """``points`` as they stand, or ``complaints`` as (message, hint); ``digest`` is the SHA-256 of the file."""
+
+    points: Points = ()
+    complaints: tuple[tuple[str, str | None], ...] = ()
+    digest: str = ""
+
+
+def read_points(folder: Path | None, file: str, columns: tuple[str, str]) -> Rows:
+    """The points in two columns, by their names or numbers from 1 on, of a file in a folder."""
+    if folder is None:
+        hint = "give mbsym this description as a file of its own, or write the points into it"
+        return _refused("files beside a description are read with it only: not in a batch, nor beside a text", hint)
+    wanted = PurePosixPath(file)
+    if wanted.is_absolute() or ".." in wanted.parts or "\\" in file or ":" in file:
+        return _refused("a file of points stands beside the description, or in a folder below", "as in data/wind.csv")
+    try:
+        path = (folder / wanted).resolve()
+        if not path.is_relative_to(folder.resolve()):
+            return _refused("a file of points stands beside the description, or in a folder below", None)
+        if not path.is_file():
+            return _refused(Message("there is no file [[file]] beside the description", file=ascii_safe(file)), None)
+        with path.open("rb") as opened:
+            data = opened.read(MOST_BYTES + 1)
+    except (OSError, ValueError) as error:
+        return _refused(
+            Message("[[file]] cannot be read: [[why]]", file=file, why=getattr(error, "strerror", None) or error), None
+        )
+    if len(data) > MOST_BYTES:
+        return _refused(
+            Message("[[file]] has more than [[most]] bytes", file=file, most=MOST_BYTES),
+            "leave out what the motion does not feel",
+        )
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        return _refused(
+            Message(
+                "[[file]] is no UTF-8 text (line [[count]])",
+                file=file,
+                count=data.count(bytes([10]), 0, error.start) + 1,
+            ),
+            None,
+        )
+    import hashlib  # few descriptions have such a file
+
+    return _read(text, file, columns, hashlib.sha256(data).hexdigest())
+
+
+def _refused(message: str, hint: str | None) -> Rows:
+    return Rows(complaints=((message, hint),))
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """(line, cells), comments and empty lines left out."""
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1)]
+    lines = [(number, line) for number, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    separator = next((mark for mark in (";", "\t") if lines and mark in lines[0][1]), ",")
+    for number, line in lines:
+        yield number, [cell.strip().strip('"').strip() for cell in line.split(separator)]
+
+
+def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
+    rows = list(_rows(text))
+    if not rows:
+        return _refused(Message("[[file]] has no rows", file=file), None)
+    head = rows[0][1] if any(not _NUMBER.match(cell) for cell in rows[0][1] if cell) else []
+    places = []
+    for column in columns:
+        place = _place(column, head, len(rows[0][1]))
+        if place is None:
+            known = (
+                Message("its columns are: [[columns]]", columns=", ".join(map(ascii_safe, head[:20])))
+                if head
+                else "columns count from 1"
+            )
+            return _refused(
+                Message(
+                    "[[file]]:[[row]]: there is no column [[column]]",
+                    file=file,
+                    row=rows[0][0],
+                    column=ascii_safe(column),
+                ),
+                known,
+            )
+        places.append(place)
+    body = rows[1:] if head else rows
+    if not 2 <= len(body) <= MOST_POINTS:
+        return _refused(
+            Message(
+                "[[file]] has 2 to [[most]] rows of numbers, not [[count]]",
+                file=file,
+                most=MOST_POINTS,
+                count=len(body),
+            ),
+            None,
+        )
+    found, wrong = [], []
+    width = len(rows[0][1])
+    for number, cells in body:
+        if len(cells) != width:
+            hint = "numbers have a decimal point" if len(cells) > width else None
+            wrong.append(
+                (
+                    Message(
+                        "[[file]]:[[number]]: [[cells]] cells, and [[width]] in the first row",
+                        file=file,
+                        number=number,
+                        cells=len(cells),
+                        width=width,
+                    ),
+                    hint,
+                )
+            )
+            continue
+        point = [_value(cells[place]) for place in places]
+        first, second = point
+        if first is None or second is None:
+            where = places[0] if first is None else places[1]
+            shown = ascii_safe(cells[where][:40]) if cells[where] else "an empty cell"
+            hint = "numbers have a decimal point" if "," in cells[where] else None
+            wrong.append(
+                (Message("[[file]]:[[number]]: [[shown]] is no number", file=file, number=number, shown=shown), hint)
+            )
+        else:
+            found.append((number, (first, second)))
+    for (_, one), (number, later) in pairwise(found):
+        if later[0] <= one[0]:
+            message = Message(
+                "[[file]]:[[number]]: the arguments of a table increase from row to row", file=file, number=number
+            )
+            wrong.append(
+                (message, "take the mean of rows with one argument" if later[0] == one[0] else "sort the rows")
+            )
+    if len(wrong) > MOST_COMPLAINTS:
+        wrong[MOST_COMPLAINTS:] = [
+            (
+                Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS),
+                None,
+            )
+        ]
+    return Rows(() if wrong else tuple(point for _, point in found), tuple(wrong), digest)
+
+
+def _place(column: str, head: list[str], width: int) -> int | None:
+    if column in head:
+        return head.index(column)
+    return int(column) - 1 if re.fullmatch("[1-9][0-9]?", column) and int(column) <= width else None
+
+
+def _value(cell: str) -> Fraction | None:
+    return Fraction(cell) if _NUMBER.match(cell) else None

@@ -26,7 +26,7 @@ from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.table import METHODS
 from mbsym_cli.main import main
 from mbsym_cli.simulate.command import command
-from mbsym_cli.simulate.together import APART, NEEDED, Apart, Needed
+from mbsym_cli.simulate.options import APART, NEEDED, Apart, Needed
 
 #: A dumbbell on a circular orbit, in its plane (beta rests), with a wheel (a first integral) and a soft spring.
 DUMBBELL = """

@@ -26,8 +26,7 @@ from mbsym.analysis import Analysis
 from mbsym.formulas.latex import LatexNames
 from mbsym.problems import checks
 from mbsym.report.language import Language
-from mbsym.report.latex.form import Form
-from mbsym.report.latex.labels import Labels
+from mbsym.report.latex.labels import Form, Labels
 from mbsym.report.latex.writer import Writer
 from mbsym.report.words.description import load
 from mbsym.source import read, to_text, to_yaml

@@ -20,8 +20,7 @@ from mbsym.picture.outlined import hull, outlined
 from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
 from mbsym.report.html.writer import Writer as HtmlWriter
 from mbsym.report.language import Language
-from mbsym.report.latex.form import Form
-from mbsym.report.latex.labels import Labels
+from mbsym.report.latex.labels import Form, Labels
 from mbsym.report.latex.writer import Writer as LatexWriter
 from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.sections.summary import drawing

@@ -16,7 +16,6 @@ from mbsym.formulas.tree import angles_as
 from mbsym.report import compact as choice
 from mbsym.report.compact import compact, told_formulas
 from mbsym.report.latex import report as latex_report
-from mbsym.report.latex import words as latex_words
 from mbsym.report.latex import writer as latex_writer
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.passages import passages
@@ -98,7 +97,7 @@ def test_passages_stand_in_anyones_document() -> None:
     """They use no macro of report.tex."""
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     listed = compact(analysis, {3: analysis.equations})[3]
-    text = latex_writer.paragraphs(listed.system.told, listed.passages, latex_words.escaped)
+    text = latex_writer.paragraphs(listed.system.told, listed.passages, latex_writer.escaped)
     assert "longformula" not in text
     assert text.count(r"\par") == len(listed.passages)
 

@@ -22,8 +22,7 @@ from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol,
 from mbsym.report.html import writer as html
 from mbsym.report.language import Language
 from mbsym.report.latex import writer as latex
-from mbsym.report.latex.form import Form
-from mbsym.report.latex.labels import Labels
+from mbsym.report.latex.labels import Form, Labels
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,7 @@ from mbsym.problems.stability.requirements import BUT_TURNED, BUT_ZERO, Method, 
 from mbsym.problems.stability.sentences import _SENTENCES as because
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import LANGUAGES, Language
-from mbsym.report.latex.words import escaped
+from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.words.normal_form_words import REASONS

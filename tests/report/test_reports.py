@@ -34,11 +34,10 @@ from mbsym.report.conditions import Labels, Shown, Statement, cases, statements
 from mbsym.report.content import Math, Readable
 from mbsym.report.language import Language
 from mbsym.report.latex.description import expression
-from mbsym.report.latex.form import Form
 from mbsym.report.latex.formulas import LONGEST_CONDITION
+from mbsym.report.latex.labels import Form
 from mbsym.report.latex.labels import Labels as TexLabels
-from mbsym.report.latex.words import LINE, broken
-from mbsym.report.latex.writer import Writer
+from mbsym.report.latex.writer import LINE, Writer, broken
 from mbsym.report.sections.stability import label_of
 from mbsym.report.targets import TARGETS
 

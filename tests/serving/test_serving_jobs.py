@@ -18,7 +18,7 @@ from test_withdrawn import ACCELERATION, LIFT
 from mbsym.report.targets import FORMATS
 from mbsym.serving import worker
 from mbsym.serving.jobs import Jobs
-from mbsym.serving.tasks import perform
+from mbsym.serving.worker import perform
 
 ENDS = ("done", "failed", "cancelled")
 

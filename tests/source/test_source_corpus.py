@@ -22,7 +22,8 @@ from mbsym.source import read, render
 CORPUS = sorted((Path(__file__).parents[1] / "invalid").iterdir())
 
 #: Complaints about files as such, which a text file in the corpus cannot show; test_source_files.py has them.
-ELSEWHERE = {"unreadable", "not-utf8", "too-large", "too-many", *("bad-scale", "bad-assignment", "circular")}  # --scale
+ELSEWHERE = {"unreadable", "not-utf8", "too-large", "too-many"}
+ELSEWHERE |= {"bad-scale", "bad-assignment", "circular", "bad-step"}  # --scale, --reduce
 
 
 def expectations(text: str) -> tuple[str, list[tuple[int, str]]]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mbsym.source import load, read, to_text, to_yaml
-from mbsym.source.table_file import MOST_BYTES
+from mbsym.source.tables import MOST_BYTES
 from mbsym.source.yaml_writer import meaning
 
 DESCRIPTION = """

@@ -25,12 +25,11 @@ from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
 from mbsym.report.code.functions import Function, Functions, c_definition, identifier, prescribed_value
-from mbsym.report.code.identifiers import prefix_of
+from mbsym.report.code.identifiers import number, prefix_of
 from mbsym.report.code.model_code import programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
 from mbsym.report.code.named_dynamics import named_dynamics
 from mbsym.report.environment import rendered
-from mbsym.report.numbers import number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -18,7 +18,7 @@ from mbsym.model.inputs import force_names
 from mbsym.model.quantities import marked
 from mbsym.model.system import Prescribed, System, acceleration_name
 from mbsym.numerics.scenario import exact
-from mbsym.report.numbers import number
+from mbsym.report.code.identifiers import number
 
 
 @dataclass(frozen=True)

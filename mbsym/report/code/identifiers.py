@@ -1,10 +1,15 @@
-"""A system's name as an identifier: the prefix of its C functions, the name of its FMU, of its Modelica model."""
+"""Names and numbers in generated code: a system's name as an identifier (the prefix of its C functions, the name of its
+FMU, of its Modelica model), constants that read back exactly.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import re
 import unicodedata
+from fractions import Fraction
+
+from mbsym.algebra.failures import Limit, NoClosedForm
 
 #: Prefixes longer than this lose their small words, and those longer than LONGEST their end.
 LONG, LONGEST = 24, 40
@@ -33,3 +38,20 @@ def prefix_of(name: str) -> str:
 def camel(prefix: str) -> str:
     """``DoublePendulum``, as types and modules are called."""
     return "".join(word.capitalize() for word in prefix.split("_"))
+
+
+# Constants of generated code.
+
+
+def number(value: Fraction) -> str:
+    """A correctly rounded constant: decimals where they are exact, else a quotient of exact numbers if it is short.
+
+    Raises NoClosedForm beyond the range of double.
+    """
+    try:
+        shown = repr(float(value))
+    except OverflowError:
+        raise NoClosedForm("a number in it is beyond 1.8e308, where double ends", limit=Limit.DIGITS) from None
+    if Fraction(shown) == value or max(abs(value.numerator), value.denominator) > 10**6:
+        return shown
+    return f"{value.numerator}.0/{value.denominator}.0"

@@ -13,9 +13,9 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.model.system import System, velocity_name
 from mbsym.model.units import ENERGY, LENGTH, TIME, Units
+from mbsym.report.code.identifiers import number
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
-from mbsym.report.numbers import number
 from mbsym.report.unit_text import base_unit, modelica
 
 if TYPE_CHECKING:

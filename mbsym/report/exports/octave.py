@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from mbsym.formulas.straight_line import Dialect, angle_name
+from mbsym.report.code.identifiers import number
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
-from mbsym.report.numbers import number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

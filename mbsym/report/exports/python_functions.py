@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.table import Tabulated
 from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.report.code.functions import identifier, python_definition
+from mbsym.report.code.identifiers import number
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Language, export
-from mbsym.report.numbers import number
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 
 from mbsym.model.system import System
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
-from mbsym.report.maps.verdict_colours import colour_of
+from mbsym.report.maps.frame import colour_of
 from mbsym.sweeps.judged import WORDS
 from mbsym.sweeps.points import Column, Points
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from mbsym.report.latex.form import Form
-from mbsym.report.latex.labels import free_prefix, labels, with_prefix
+from mbsym.report.latex.labels import Form, free_prefix, labels, with_prefix
 from mbsym.report.latex.report import filled
 
 if TYPE_CHECKING:

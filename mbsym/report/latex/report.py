@@ -19,11 +19,9 @@ from mbsym.report.environment import rendered
 from mbsym.report.language import Language
 from mbsym.report.latex.description import expression
 from mbsym.report.latex.displays import closing_brace, long_formulas, loosened, written_out
-from mbsym.report.latex.form import Form, heading, set_apart
 from mbsym.report.latex.formulas import measured_matrix, width
-from mbsym.report.latex.labels import Labels, prefix_of
-from mbsym.report.latex.words import broken, escaped, is_cyrillic, spared
-from mbsym.report.latex.writer import Writer
+from mbsym.report.latex.labels import Form, Labels, heading, prefix_of, set_apart
+from mbsym.report.latex.writer import Writer, broken, escaped, is_cyrillic, spared
 from mbsym.report.lengths import COUNTED, PAPER, PAPER_FORMS, withheld
 from mbsym.report.references import references
 from mbsym.report.results import contents, results

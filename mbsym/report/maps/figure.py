@@ -42,18 +42,23 @@ from mbsym.report.maps.frame import (
     DARK,
     EDGE,
     FINE,
+    NONE,
     SMALL,
     TEXT,
+    WHITE,
     WIDEST,
+    Look,
     axis_label,
     equal,
     framed,
     legend,
+    look_of_count,
+    look_of_degree,
+    look_of_roots,
     named,
     number,
     started,
 )
-from mbsym.report.maps.verdict_colours import NONE, WHITE, Look, look_of_count, look_of_degree, look_of_roots
 from mbsym.report.maps.words import INTERRUPTED, border_words, cell_words, marked, percent, stem
 from mbsym.report.unit_text import pretty
 

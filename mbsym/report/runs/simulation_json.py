@@ -20,12 +20,11 @@ from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.documents import simulation as doc
 from mbsym.report.documents.base import plain, written
-from mbsym.report.runs.between_steps import between_steps_json
 from mbsym.report.runs.certificate import certificate_json
 from mbsym.report.runs.constrained_run_words import constraints_json
 from mbsym.report.runs.events import events_json
 from mbsym.report.runs.plan_words import model_json, plan_json
-from mbsym.report.runs.simulation_words import conservation_json, error_json, laws_json
+from mbsym.report.runs.simulation_words import between_steps_json, conservation_json, error_json, laws_json
 from mbsym.report.runs.state_run_words import states_json
 from mbsym.simulation import Simulation
 from mbsym.simulation.sampling import may_change

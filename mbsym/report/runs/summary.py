@@ -11,7 +11,6 @@ import numpy as np
 from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.numerics.breakdowns import least_pivot
-from mbsym.report.runs.between_steps import passed_over, switch_line
 from mbsym.report.runs.certificate import certificate_lines
 from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.runs.events import events_lines
@@ -21,8 +20,10 @@ from mbsym.report.runs.simulation_words import (
     energy_lines,
     inputs_line,
     invariant_line,
+    passed_over,
     quality,
     setting_words,
+    switch_line,
 )
 from mbsym.report.runs.state_run_words import state_lines
 from mbsym.report.unit_text import pretty

@@ -36,6 +36,7 @@ from mbsym.report.conditions import (
     factors,
     label_meanings,
     statements,
+    written_again,
 )
 from mbsym.report.content import (
     CONDITION,
@@ -72,8 +73,6 @@ if TYPE_CHECKING:
 
 #: A polynomial that never has the sign it should have is written out up to this length.
 SHORT = 60
-#: A formula of so many characters that was shown before is written again, rather than its name.
-AS_A_NAME = 40
 
 
 def data(found: Stability, system: System, write: Write) -> doc.Stability:
@@ -338,7 +337,7 @@ def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
     named: tuple[Math | str, ...] = (label, ":") if item.named else ()
     if reference is not None:
         left: Math = label_of(reference.under)
-        if isinstance(left, Text) and len(reference.formula.readable()) <= AS_A_NAME:
+        if isinstance(left, Text) and written_again(reference.formula):
             left = Readable(reference.formula, True)
         elif reference.under == reference.label:
             named = ()
