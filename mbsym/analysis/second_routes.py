@@ -79,13 +79,11 @@ def _kinematics(analysis: Analysis) -> Check | None:
 
 
 def _energy(analysis: Analysis) -> Check | None:
-    found = analysis.optional("energy")
-    if found is not None and analysis.speed_form is not None:
-        from mbsym.problems.in_speeds import speed_checks
-
-        names = tuple(u.name for u in analysis.speed_form.speeds)
-        return speed_checks.check_energy(analysis.oracles, found, names)
-    return None if found is None else comparison.check_energy(analysis.oracles, found)
+    found, form = analysis.optional("energy"), analysis.speed_form
+    if found is None:
+        return None
+    names = analysis.system.velocities if form is None else [u.name for u in form.speeds]
+    return comparison.check_energy(analysis.oracles, found, names)
 
 
 def _closed(analysis: Analysis) -> Equations | None:

@@ -21,7 +21,6 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import D_ALEMBERT, STATES, Check, Pair, compare
-from mbsym.problems.energy import Energy
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 
@@ -90,25 +89,3 @@ def _against(
     for position, rate in zip(positions, rates, strict=True):
         compared.append((f"{position}'", rate, state.values[velocity_name(position)]))
     return compared
-
-
-def check_energy(truth: Oracles, energy: Energy, speeds: tuple[str, ...]) -> Check:
-    """T, its parts by powers of the speeds, and U against sums over bodies in inertial axes."""
-
-    def pairs(oracle: Oracle) -> list[Pair]:
-        state = oracle.state
-        carry = Carrier(truth.ring, state.numbers, state.values)
-        u = [state.values[name] for name in speeds]
-        half = state.numbers.reciprocal(state.numbers.number(2))
-        parts = carry(energy.A0.polynomial)
-        for r, first in enumerate(u):
-            parts = parts + carry(energy.A1[r].polynomial) * first
-            for s, second in enumerate(u):
-                parts = parts + half * carry(energy.A2[r, s].polynomial) * first * second
-        return [
-            ("kinetic energy", carry(energy.kinetic_energy.polynomial), oracle.kinetic_energy),
-            ("A2, A1, A0", parts, oracle.kinetic_energy),
-            ("force function", carry(energy.force_function.polynomial), oracle.force_function),
-        ]
-
-    return compare(truth, "energy", ("recursion in body axes", "sums in inertial axes"), pairs)
