@@ -183,6 +183,7 @@ class Rewriter:
 
     def __init__(self, ring: Ring, letters: Letters) -> None:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
+        self._equal: dict[tuple[int, ...], list[Polynomial]] = {}
         self.letters = letters
         self.most_terms, self.work = (MOST_TERMS, WORK) if letters.asked else (MOST_UNASKED, WORK_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
@@ -279,7 +280,7 @@ class Rewriter:
 
     def __call__(self, polynomial: Polynomial) -> Written | None:
         """The polynomial in letters; None where it stays as it is."""
-        angles = angles_or("shorter")
+        angles, polynomial = angles_or("shorter"), self._first(polynomial)
         known = self._known.get((id(polynomial), angles))
         if known is None:  # the polynomial is kept, so that its id stays its own
             known = self._known[id(polynomial), angles] = (polynomial, self._written(polynomial))
@@ -325,7 +326,16 @@ class Rewriter:
 
     def _read(self, found: _Fraction) -> int:
         """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
-        return size(self.ring, found[0]) + sum(1 + (n != 1) + size(self.ring, x) for x, n in found[1])
+        read = size(self.ring, self._first(found[0]))
+        return read + sum(1 + (n != 1) + size(self.ring, self._first(x)) for x, n in found[1])
+
+    def _first(self, polynomial: Polynomial) -> Polynomial:
+        """The first that was met of equal polynomials, of which shapes are kept: steps lead to the same ones often."""
+        alike = self._equal.setdefault((len(polynomial), *polynomial.degrees()), [])  # they have no hash
+        known = next((x for x in alike if x == polynomial), None)
+        if known is None:
+            alike.append(known := polynomial)
+        return known
 
     def _chain(self, found: _Fraction) -> _Fraction | None:
         """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
