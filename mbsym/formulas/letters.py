@@ -485,12 +485,14 @@ def _constant(value: Expression, ring: Ring) -> bool:
 
 def _powers(ring: Ring, polynomial: Polynomial, index: int) -> Mapping[int, Polynomial]:
     """By exponent of a generator, what stands before that power of it."""
-    parts: dict[int, dict[tuple[int, ...], Any]] = {}
-    for monomial, coefficient in polynomial.terms():
-        exponents = list(monomial)
-        power, exponents[index] = int(exponents[index]), 0
-        parts.setdefault(power, {})[tuple(exponents)] = coefficient
-    return {power: ring.context.from_dict(part) for power, part in parts.items()}
+    powers: dict[int, Polynomial] = {}
+    while polynomial != 0 and (power := int(polynomial.degrees()[index])):
+        coefficient = polynomial
+        for k in range(power):  # by derivatives: flint hands out the exponents of all generators, which are many
+            coefficient = coefficient.derivative(index) / (k + 1)
+        powers[power] = coefficient
+        polynomial = polynomial - coefficient * ring.context.gen(index) ** power
+    return powers if polynomial == 0 else {**powers, 0: polynomial}
 
 
 def _named(ring: Ring) -> dict[str, Polynomial]:
