@@ -18,8 +18,7 @@ from mbsym.studies.section import unfit_section
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
-    from mbsym.maps.given import Complaint
-    from mbsym.maps.section import Axis
+    from mbsym.maps.section import Axis, Complaint
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
 

@@ -15,8 +15,7 @@ from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
 from mbsym.analysis.stages import Unavailable
 from mbsym.expressions.message import Message
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
 from mbsym.expressions.message import Message, joined
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Shown
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.averaging import Averaged

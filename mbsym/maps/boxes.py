@@ -26,10 +26,9 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.check import check_boxes
-from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.mapping import Judge, Watch, bounded, box_of, kept_in, unwatched, without_constant
 from mbsym.maps.result import Cell, Lack, Map, Of, Shape
-from mbsym.maps.section import Axis, Section, section, unmade
+from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section, unmade
 from mbsym.maps.subdivision import ByBoundaries, ByEnclosures, End, Subdivision, about_centre, centre, subdivide
 from mbsym.maps.verdicts import Judged
 from mbsym.mechanics.kinematics import Scene

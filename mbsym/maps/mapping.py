@@ -24,9 +24,8 @@ from mbsym.analysis.judge import Judge as OneJudge
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.check import Check, ExactVerdicts, beside, check
-from mbsym.maps.given import Complaint, Fault, Unfit
 from mbsym.maps.result import Cell, Ground, Lack, Map, Of, Shape
-from mbsym.maps.section import Axis, Section, section
+from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
 from mbsym.maps.soft_borders import Onset, SoftBorders, SoftOrHard, lost
 from mbsym.maps.verdicts import Judged, matrix_at, verdict_at
 from mbsym.problems.stability.exact import inertia

@@ -33,7 +33,7 @@ from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
 from mbsym.numerics.simulate import Trajectory
 from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
-from mbsym.numerics.trade.reference import BITS, solved_at
+from mbsym.numerics.trade.reference_search import BITS, solved_at
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
 TIGHTER, LEAST_RATIO = 1e-2, 0.1

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import compiled_kernel
 
 #: A sample is joined smoothly to the next one if Hermite's rule for the integral of q' misses q1 - q0 by no more than
 #: this part of the range of q.

@@ -31,8 +31,7 @@ from mbsym.model.system import INERTIAL, acceleration_name
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code, Kernel
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import Scenario, bound, substituted
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,7 @@ from mbsym.model.constraints import listed
 from mbsym.model.system import velocity_name
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Specialised, bound, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, bound, substituted
 
 if TYPE_CHECKING:
     from mbsym.numerics.dynamics import Dynamics

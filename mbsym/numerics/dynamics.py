@@ -29,8 +29,7 @@ from mbsym.model.system import System
 from mbsym.numerics.events.features import SLIDING, Features, Polynomial, Standing, features, held, sign_that_holds
 from mbsym.numerics.kernels.cells import Cells
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Specialised, bound, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, bound, substituted
 
 if TYPE_CHECKING:
     from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics

@@ -34,8 +34,7 @@ from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.numerics.kernels.arrays import kernel
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario, scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import Scenario, bound, scenario, substituted
 
 Array = npt.NDArray[np.float64]
 

@@ -28,8 +28,7 @@ from mbsym.model.system import Point as PointOfBody
 from mbsym.numerics.carriers import COMPACT, STILL, frames
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import Scenario, bound, substituted
 
 #: A picture shows so much motion that the longest path is so many times as long as the picture's diagonal; more would
 #: fill it.  Of the axes of one body the slowest counts.

@@ -42,8 +42,7 @@ from mbsym.model.system import Body, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
-from mbsym.numerics.scenario import PRECISION, Scenario, rounded
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import PRECISION, Scenario, bound, rounded, substituted
 
 
 def state_names(system: System) -> tuple[tuple[str, ...], tuple[str, ...]]:

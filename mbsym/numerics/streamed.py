@@ -13,12 +13,11 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from mbsym.numerics.breakdowns import fallen
 from mbsym.numerics.conservation import EVENLY, LARGEST_CHANGES
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting, up_to
-from mbsym.numerics.simulate import Trajectory, allowed_apart, followed, raw_energies
+from mbsym.numerics.simulate import Trajectory, allowed_apart, fallen, followed, raw_energies
 
 #: (t, q, q') in columns -> further quantities by name, each of shape (m,).
 Further = Callable[[Any], Mapping[str, Any]]

@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.events import BATCH, Occurrences, Watcher
 from mbsym.numerics.events.surfaces import Event
 from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Passed, Piece, Run, Setting, met_by
 from mbsym.numerics.methods.nested import states_on
 from mbsym.numerics.planning.prices import cost
-from mbsym.numerics.simulate import Trajectory, simulate
+from mbsym.numerics.simulate import Trajectory, least_pivot, simulate
 
 #: (dynamics, events, tolerance, flow) -> the watcher of a run.
 Watch = Callable[..., Watcher]

@@ -38,8 +38,7 @@ from mbsym.model.loads import (
 from mbsym.model.quantities import length_unit, time_unit, unit_of
 from mbsym.model.system import INERTIAL, Body, Point, System
 from mbsym.numerics.carriers import COMPACT, frames
-from mbsym.numerics.scenario import Incomplete, Scenario, exact, initial_values, own_values, scenario
-from mbsym.numerics.specialise import bound
+from mbsym.numerics.scenario import Incomplete, Scenario, bound, exact, initial_values, own_values, scenario
 from mbsym.picture.looking import Room, State, ellipsoid, first_look, samples, shapes
 from mbsym.picture.program import PoseProgram, flattened
 from mbsym.picture.values import (

@@ -22,8 +22,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.formulas.formula import Column, Formula, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function

@@ -23,8 +23,7 @@ from dataclasses import dataclass
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
-from mbsym.formulas.formula import Column, Formula, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Formula, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined, motion_values, relations, steadied, unperturbed_with, unsteady
 from mbsym.model.system import System

@@ -32,8 +32,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import divide, number, substitute
 from mbsym.expressions.tree import names as names_in
-from mbsym.formulas.formula import Column, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.frames import of_turns, rates
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import motion_values, turning, unperturbed_with, unsteady

@@ -48,8 +48,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import names
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import Programs, accelerated

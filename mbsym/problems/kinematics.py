@@ -22,8 +22,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mbsym.formulas.formula import Column, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import BodyMotion, Scene
 

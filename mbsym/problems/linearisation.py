@@ -40,8 +40,7 @@ from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
-from mbsym.formulas.formula import Formula, Matrix
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Matrix, Shown
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function

@@ -29,8 +29,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.vectors import Vector
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, Name, add
-from mbsym.formulas.formula import Column, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Shown, column
 from mbsym.mechanics import reactions as recursion
 from mbsym.mechanics.constraints.ranks import eliminated, is_certain
 from mbsym.mechanics.constraints.rows import RowName

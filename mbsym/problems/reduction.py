@@ -31,8 +31,7 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names as names_of
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.constraints.expansion import Expansion, Projected, Row, echelon, felt
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import expressions

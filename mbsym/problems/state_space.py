@@ -36,8 +36,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.formulas.formula import Matrix
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Matrix, Shown
 from mbsym.mechanics.constraints.expansion import combined, on_base
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import steadied, unsteady

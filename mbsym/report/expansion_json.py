@@ -19,7 +19,6 @@ from mbsym.report.documents.base import written
 from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
-    from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
 
 
@@ -60,7 +59,7 @@ def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
     )
 
 
-def measured_data(told: Measured | MeasuredAverage | str) -> doc.Measured:
+def measured_data(told: Measured | str) -> doc.Measured:
     """A measurement in two digits, so that it is the same wherever it is made; ``reason``: why there is none."""
     if isinstance(told, str):
         return doc.Measured(reason=told)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
-from math import log, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -16,33 +15,16 @@ from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.problems.small_parameter.averaging import Averaged
+from mbsym.simulation.expanded import PARTS, Measured
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 
-#: Rows in which the two motions are compared, and eps in parts of that of the given numbers.
-ROWS, PARTS = 400, (Fraction(1), Fraction(1, 2), Fraction(1, 4))
+#: Rows in which the two motions are compared.
+ROWS = 400
 #: Periods of the fast phase, at the given numbers, that are simulated unless a time is asked for.
 PERIODS = 60
 #: Distances that the errors of the integrations may make up.
 NOISE = 1e-6
-
-
-@dataclass(frozen=True)
-class Measured:
-    """``distances`` at ``parts`` of the given eps: the largest |q - Q| over ``time``, in units of the largest |Q|.
-
-    ``orders`` are log2 of their ratios: about ``expected`` where the expansion is right and eps small.
-    """
-
-    time: float
-    parts: tuple[Fraction, ...]
-    distances: tuple[float, ...]
-    expected: int = 1
-
-    @property
-    def orders(self) -> tuple[float, ...]:
-        pairs = zip(self.distances, self.distances[1:], strict=False)
-        return tuple(log(a / b, 2) for a, b in pairs if a > 0 and b > 0)
 
 
 def measured(
@@ -52,7 +34,7 @@ def measured(
     time: float | None = None,
     watch: Callable[[str], None] = lambda what: None,
 ) -> Measured:
-    """Both motions from the initial state of the description, over ``time``.
+    """Both motions from the initial state of the description, over ``time``: the largest |q - Q| beside that of |Q|.
 
     Raises Incomplete where numbers are missing, NoClosedForm where a motion does not last, or both are the same.
     """

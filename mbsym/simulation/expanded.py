@@ -46,7 +46,8 @@ class NotMeasured(Exception):
 
 @dataclass(frozen=True)
 class Measured:
-    """``distances`` at ``parts`` of the given eps: the largest |s - S| over ``time``, in units of the largest |S|.
+    """``distances`` at ``parts`` of the given eps: the largest |s - S| over ``time``, in units of the largest |S|; S is
+    the motion by the expansion, or the averaged one.
 
     ``orders`` are log2 of their ratios, about ``expected`` where the expansion is right and eps small.
     """
@@ -54,7 +55,7 @@ class Measured:
     time: float
     parts: tuple[Fraction, ...]
     distances: tuple[float, ...]
-    expected: int
+    expected: int = 1
 
     @property
     def exact(self) -> bool:

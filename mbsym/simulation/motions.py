@@ -15,10 +15,9 @@ from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.orbits.adjoint import Gradient, gradient_at_end
 from mbsym.numerics.orbits.lyapunov import Exponents, exponents
 from mbsym.numerics.orbits.periodic import Guess, NotFound, Orbit, autonomous, conserves_energy, periodic_orbit
-from mbsym.numerics.orbits.variational import Variational, sensitive, split
+from mbsym.numerics.orbits.variational import Gradient, Variational, gradient_at_end, sensitive, split
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.scenario import scenario as scenario_of
@@ -102,7 +101,7 @@ def lyapunov_exponents(
 def gradient_of(
     system: System, values: Mapping[str, Expression], functional: str, wanted: Sequence[str], time: float
 ) -> Gradient:
-    """See ``mbsym.numerics.orbits.adjoint``; raises ValueError for what cannot be read or differentiated by."""
+    """See ``mbsym.numerics.orbits.variational``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
     found = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}

@@ -23,7 +23,7 @@ from mbsym.studies.study import (
 if TYPE_CHECKING:
     from mbsym.model.system import System
     from mbsym.problems.small_parameter.averaging import Averaged
-    from mbsym.simulation.averaged import Measured
+    from mbsym.simulation.expanded import Measured
 
 ORDER = (
     "Of which power of eps an amplitude of the phase is, as -1 for a force that is as large as the rate; where it "

@@ -11,7 +11,7 @@ from mbsym.studies.study import Unfit
 
 if TYPE_CHECKING:
     from mbsym.maps.axis import Axis
-    from mbsym.maps.given import Complaint
+    from mbsym.maps.section import Complaint
     from mbsym.model.system import System
 
 
@@ -59,7 +59,7 @@ def against_sign(option: str, axis: Axis, system: System) -> Iterator[Unfit]:
 
 def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfit]:
     """Why a section cannot be made: everything at once, each with what to do."""
-    from mbsym.maps.given import Fault
+    from mbsym.maps.section import Fault
 
     lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
     if lacking:

@@ -15,7 +15,7 @@ from mbsym.studies.study import Asked, Watch
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.numerics.ensembles.ensemble import Ensemble
-    from mbsym.numerics.orbits.adjoint import Gradient
+    from mbsym.numerics.orbits.variational import Gradient
     from mbsym.numerics.planning.plan import Plan
     from mbsym.simulation import Simulation
     from mbsym.simulation.motions import Sensitivities

@@ -177,7 +177,7 @@ class Swept:
 def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     """Raises NotFit where there is no section or a number is missing, Failure where nothing can be derived."""
     from mbsym.batch.digests import derivation
-    from mbsym.maps.given import Unfit as Wrong
+    from mbsym.maps.section import Unfit as Wrong
     from mbsym.numerics.scenario import Incomplete
     from mbsym.source.yaml_writer import meaning
     from mbsym.studies.section import unfit_section

@@ -20,8 +20,7 @@ from mbsym.numerics.ensembles.variation import members
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Names
+from mbsym.numerics.scenario import Names, Scenario
 from mbsym.sweeps.points import Column
 
 METHOD, TOLERANCE = "dop853", 1e-9

@@ -309,7 +309,7 @@ def equal_error(title: str, text: str, end: float, peer: Callable[[], Any] | Non
 
     from mbsym.numerics.methods.interface import Setting, Unusable
     from mbsym.numerics.methods.table import METHODS
-    from mbsym.numerics.trade.reference import reference
+    from mbsym.numerics.trade.reference_search import reference
 
     print(f"  simulation, {title}", file=sys.stderr)
     dynamics = dynamics_of(text)

@@ -29,7 +29,7 @@ from test_constrained_trade import CHANGE_POINT  # noqa: E402
 
 from mbsym.numerics.closing import closed  # noqa: E402
 from mbsym.numerics.dynamics import Dynamics  # noqa: E402
-from mbsym.numerics.methods.kept import compiled_kernel  # noqa: E402
+from mbsym.numerics.methods.interface import compiled_kernel  # noqa: E402
 from mbsym.numerics.scenario import scenario  # noqa: E402
 from mbsym.simulation import Request, simulate  # noqa: E402
 from mbsym.source import load, read  # noqa: E402

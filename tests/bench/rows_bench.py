@@ -19,8 +19,7 @@ import numpy as np
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Setting, Unusable
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Setting, Unusable, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 

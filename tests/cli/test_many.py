@@ -16,7 +16,7 @@ import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.kept import machine_code
+from mbsym.numerics.methods.interface import machine_code
 from mbsym.numerics.scenario import scenario
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

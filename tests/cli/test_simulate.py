@@ -27,7 +27,6 @@ from PIL import Image
 
 import mbsym as library
 from mbsym.numerics.between import accelerations, between
-from mbsym.numerics.breakdowns import least_pivot
 from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.dynamics import Dynamics
@@ -36,7 +35,7 @@ from mbsym.numerics.methods.interface import SINGULAR, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.scenario import Incomplete, scenario
-from mbsym.numerics.simulate import simulate
+from mbsym.numerics.simulate import least_pivot, simulate
 from mbsym.report.figures.drawing import thinned
 from mbsym.report.figures.figures import CORNER, Curve, _curve, figures
 from mbsym.report.runs.trajectory_csv import trajectory_parts

@@ -160,9 +160,7 @@ STALE = "how old a file is that a killed process left behind"
 
 #: Every module that reads a clock or waits for a time, and why its results do not depend on that.
 READS = {
-    **dict.fromkeys(
-        ["trade.reference", "trade.reference_search", "ensembles.ensemble", "extremes.extremes", "trade.fidelity"], TOLD
-    ),
+    **dict.fromkeys(["trade.reference_search", "ensembles.ensemble", "extremes.extremes", "trade.fidelity"], TOLD),
     **dict.fromkeys(
         ["simulate", "planning.pilot", "planning.planning", "trade.tradeoff", "ledger.table", "methods.landing"], TOLD
     ),

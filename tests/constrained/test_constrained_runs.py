@@ -23,8 +23,7 @@ from mbsym.numerics.constrained import drift_of
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Setting
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Setting, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, Simulation, simulate

@@ -16,8 +16,7 @@ from mbsym.numerics.methods.interface import Method, Run, Setting, Traits
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.trade import reference_search
-from mbsym.numerics.trade.reference import EXPLICIT, IMPLICIT, Reference
-from mbsym.numerics.trade.reference_search import WAYS, _Search, whole_reference
+from mbsym.numerics.trade.reference_search import EXPLICIT, IMPLICIT, WAYS, Reference, _Search, whole_reference
 from mbsym.numerics.trade.tradeoff import Tradeoff, tradeoff
 from mbsym.report.figures.tradeoff_figure import work_precision
 from mbsym.report.runs.constrained_run_words import constraint_lines

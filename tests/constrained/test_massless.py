@@ -13,7 +13,7 @@ import mbsym
 from mbsym.mechanics.constraints import dynamics as equations
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import compiled_kernel
 from mbsym.numerics.scenario import scenario
 from mbsym.report.targets import FORMATS
 from mbsym.simulation import Request, Simulation, simulate

@@ -14,8 +14,7 @@ from scipy.integrate import solve_ivp
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods import led as bridge
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, compiled_kernel
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, simulate

@@ -28,7 +28,7 @@ import mbsym
 from mbsym.algebra.failures import SingularPoint
 from mbsym.mechanics.constraints import dependence
 from mbsym.model.system import System
-from mbsym.numerics import breakdowns
+from mbsym.numerics import simulate as breakdowns
 from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays

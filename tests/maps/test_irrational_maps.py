@@ -12,9 +12,8 @@ from click.testing import CliRunner, Result
 
 import mbsym
 from mbsym.maps.boxes import BoxMap, Method, box_map
-from mbsym.maps.given import Fault, Unfit
 from mbsym.maps.result import Lack, Of
-from mbsym.maps.section import Axis
+from mbsym.maps.section import Axis, Fault, Unfit
 from mbsym.problems.stability.word import Word
 from mbsym_cli.main import main
 

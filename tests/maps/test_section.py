@@ -14,8 +14,7 @@ import mbsym
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.maps.admissible import admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
-from mbsym.maps.given import Complaint, Fault, Unfit
-from mbsym.maps.section import Axis, Section, section
+from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
 from mbsym.maps.verdicts import verdict_at as verdict_at_point
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.word import Word

@@ -28,8 +28,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import enclosures
-from mbsym.numerics.scenario import scenario
-from mbsym.numerics.specialise import Specialised, substituted
+from mbsym.numerics.scenario import Specialised, scenario, substituted
 from mbsym.source import load
 
 SYSTEMS = Path(__file__).parents[2] / "systems"

@@ -12,9 +12,8 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.orbits import adjoint
-from mbsym.numerics.orbits.adjoint import gradient_at_end
-from mbsym.numerics.orbits.variational import sensitive, split
+from mbsym.numerics.orbits import variational as adjoint
+from mbsym.numerics.orbits.variational import gradient_at_end, sensitive, split
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import integrated
 

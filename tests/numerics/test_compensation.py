@@ -18,8 +18,7 @@ from mbsym.numerics import compensation as module
 from mbsym.numerics.compensation import compensated_code
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.methods.kept import machine_code
+from mbsym.numerics.methods.interface import Setting, machine_code
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.source import load

@@ -15,8 +15,7 @@ from mbsym.numerics.accuracy import NoEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.methods import runge_kutta, sides
-from mbsym.numerics.methods.interface import STUCK, Breakdown, Setting
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import STUCK, Breakdown, Setting, compiled_kernel
 from mbsym.numerics.methods.landing import LandingRun
 from mbsym.numerics.methods.sides import Leaving
 from mbsym.numerics.methods.table import METHODS

@@ -22,8 +22,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods import runge_kutta, symplectic
-from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable
-from mbsym.numerics.methods.kept import once
+from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable, once
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45
 from mbsym.numerics.scenario import scenario

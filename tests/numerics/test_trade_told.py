@@ -17,8 +17,7 @@ from mbsym.numerics.planning.prices import FOLLOWED, cost
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import compared
-from mbsym.numerics.trade.reference import reference
-from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
+from mbsym.numerics.trade.reference_search import BROKEN, reference, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
 from mbsym_cli.main import main
 

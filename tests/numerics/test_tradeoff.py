@@ -22,7 +22,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.reduced import resting
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade.fidelity import measured, model_advice
-from mbsym.numerics.trade.reference import Reference, reference
+from mbsym.numerics.trade.reference_search import Reference, reference
 from mbsym.numerics.trade.tradeoff import Tradeoff, advice, studied, tradeoff
 from mbsym_cli.main import main
 

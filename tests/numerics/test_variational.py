@@ -13,8 +13,7 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import Parametrised, dependent
-from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Setting, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits import variational
 from mbsym.numerics.orbits.variational import Variational, sensitive, split, units

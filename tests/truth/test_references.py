@@ -20,8 +20,16 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import uneven
-from mbsym.numerics.trade.reference import COLUMNS, EXPLICIT, EXTRAPOLATION, IMPLICIT, Extrapolation, Reference
-from mbsym.numerics.trade.reference_search import DISAGREE, whole_reference
+from mbsym.numerics.trade.reference_search import (
+    COLUMNS,
+    DISAGREE,
+    EXPLICIT,
+    EXTRAPOLATION,
+    IMPLICIT,
+    Extrapolation,
+    Reference,
+    whole_reference,
+)
 from mbsym.numerics.trade.tradeoff import tradeoff
 from mbsym.report.runs.simulation_words import error_lines
 

@@ -27,7 +27,7 @@ from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Narrow
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
-from mbsym.numerics.specialise import Specialised
+from mbsym.numerics.scenario import Specialised
 from mbsym.numerics.states import dynamics_of
 
 #: Quantiles of the statistics: the median, and the bands of 50 % and 90 % about it.

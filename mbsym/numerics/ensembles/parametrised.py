@@ -24,9 +24,8 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.closing import begun, closed, fitted, shown
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Incomplete, Scenario, initial_values
+from mbsym.numerics.scenario import Incomplete, Names, Scenario, Specialised, bound, initial_values
 from mbsym.numerics.scenario import scenario as scenario_of_run
-from mbsym.numerics.specialise import Names, Specialised, bound
 from mbsym.numerics.states import StateDynamics, dynamics_of
 
 if TYPE_CHECKING:

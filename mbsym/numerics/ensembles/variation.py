@@ -24,8 +24,7 @@ from mbsym.model.system import System
 from mbsym.numerics.ensembles.parametrised import Parametrised, dependent, released
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Incomplete
-from mbsym.numerics.specialise import Names
+from mbsym.numerics.scenario import Incomplete, Names
 
 #: More members than this are refused.
 MOST_MEMBERS = 1_000_000

@@ -27,8 +27,19 @@ from mbsym.algebra.lookup import numbers_of
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import COUNTS, STEP_LIMIT, Breakdown, Change, Method, Run, Setting, Traits, Work
-from mbsym.numerics.methods.kept import compiled_kernel, once
+from mbsym.numerics.methods.interface import (
+    COUNTS,
+    STEP_LIMIT,
+    Breakdown,
+    Change,
+    Method,
+    Run,
+    Setting,
+    Traits,
+    Work,
+    compiled_kernel,
+    once,
+)
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.stepping import Stepping
 

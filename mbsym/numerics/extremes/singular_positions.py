@@ -29,7 +29,7 @@ from mbsym.algebra.point import Rationals
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import compiled_kernel
 from mbsym.numerics.scenario import Scenario
 
 #: Starts of the search, steps from each, and distinct positions that are kept.

@@ -62,8 +62,7 @@ from mbsym.numerics.planning.models import Model, parted
 from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import outlined
-from mbsym.numerics.scenario import Scenario, changed
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import Scenario, bound, changed, substituted
 from mbsym.problems.linearisation import Linearisation, components
 
 # Savings in the straight-line program: what it does not compute, or computes once.

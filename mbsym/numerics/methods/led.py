@@ -19,8 +19,16 @@ import numpy as np
 
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Breakdown, Passed, Piece, Run, Unusable, met_by
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import (
+    SINGULAR_CONSTRAINTS,
+    Breakdown,
+    Passed,
+    Piece,
+    Run,
+    Unusable,
+    compiled_kernel,
+    met_by,
+)
 
 # Over a singular position of the constraints, where accelerations do not follow from them.
 #

@@ -24,8 +24,8 @@ from mbsym.numerics.methods.interface import (
     Traits,
     Unusable,
     Work,
+    compiled_kernel,
 )
-from mbsym.numerics.methods.kept import compiled_kernel
 from mbsym.numerics.methods.led import lead, nearly_singular, refuse
 from mbsym.numerics.methods.stepping import Stepping
 

@@ -33,8 +33,10 @@ from mbsym.numerics.methods.interface import (
     Traits,
     Unusable,
     Work,
+    code_of,
+    compiled_kernel,
+    once,
 )
-from mbsym.numerics.methods.kept import code_of, compiled_kernel, once
 from mbsym.numerics.methods.led import nearly_singular
 from mbsym.numerics.methods.marching import ARGUMENTS, adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested

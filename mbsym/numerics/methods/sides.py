@@ -21,8 +21,7 @@ from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.crossings import NODES, Sign, free_of_zeros, nodes, passages, resolved, series
 from mbsym.numerics.events.features import DIP, PEAK, SLIDING, TURN
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import MOST_KEPT, Breakdown, Passed, Piece
-from mbsym.numerics.methods.kept import compiled_kernel, once
+from mbsym.numerics.methods.interface import MOST_KEPT, Breakdown, Passed, Piece, compiled_kernel, once
 
 # Narrow smooth features of a step: where a function of u(t) peaks or turns, and within which time.
 #

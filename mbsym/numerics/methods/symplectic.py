@@ -50,15 +50,15 @@ from mbsym.numerics.methods.interface import (
     Traits,
     Unusable,
     Work,
+    compiled_kernel,
+    once,
 )
-from mbsym.numerics.methods.kept import compiled_kernel, once
 from mbsym.numerics.methods.led import refuse
 from mbsym.numerics.methods.nested import Nested, hermite
 from mbsym.numerics.methods.runge_kutta import MISSED, OPERATIONS_AT_A_TIME
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import add_compensated, address, clock_dtype, initial_state
-from mbsym.numerics.scenario import PRECISION, rounded
-from mbsym.numerics.specialise import Specialised, substituted
+from mbsym.numerics.scenario import PRECISION, Specialised, rounded, substituted
 
 # The midpoint rule's equation as straight-line code, and the machine code that steps with it (``symplectic``).
 

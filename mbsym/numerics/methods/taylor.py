@@ -32,8 +32,8 @@ from mbsym.numerics.methods.interface import (
     Traits,
     Unusable,
     Work,
+    once,
 )
-from mbsym.numerics.methods.kept import once
 from mbsym.numerics.methods.led import lead, nearly_singular
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import exact_number, initial_state

@@ -46,7 +46,7 @@ from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
 from mbsym.numerics.methods.symplectic import without_potential
 from mbsym.numerics.probes import motion_state
-from mbsym.numerics.specialise import bound, substituted
+from mbsym.numerics.scenario import bound, substituted
 
 if TYPE_CHECKING:
     from mbsym.numerics.constrained import Constraints

@@ -23,8 +23,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, compiled_kernel
 from mbsym.numerics.orbits.variational import Flow
 
 #: Blocks of the second half of the time; Student's factor for 95 % with BLOCKS - 1 degrees of freedom.

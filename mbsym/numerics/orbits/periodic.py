@@ -26,8 +26,7 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.variational import Flow

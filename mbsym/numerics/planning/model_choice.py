@@ -26,14 +26,12 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import parametrised
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import FLOAT64, Code
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting, compiled_kernel
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.models import Model, droppable, faithful, modelled, orders, scenario_of
 from mbsym.numerics.planning.pilot import Rows, rows
 from mbsym.numerics.planning.prices import cost
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Specialised, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, substituted
 
 # What a simpler model costs in accuracy, estimated after the fact: along the motion that it gives.
 #

@@ -26,8 +26,7 @@ from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.scenario import Scenario, changed, exact
-from mbsym.numerics.specialise import Specialised, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, changed, exact, substituted
 from mbsym.numerics.states import dynamics_of
 
 # The equations of motion linearised about the unperturbed motion.

@@ -21,8 +21,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import STABLE
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import Choice, choose
 from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED

@@ -29,11 +29,9 @@ from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.substitution import put
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, met_by
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, compiled_kernel, met_by
 from mbsym.numerics.methods.tableaux import exact_number
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Specialised, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, substituted
 
 # Coordinates that stay where they start: a spatial system that moves in a plane is integrated in that plane.
 #

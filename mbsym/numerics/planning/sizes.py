@@ -28,8 +28,7 @@ from mbsym.model.system import System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import Method, Setting
-from mbsym.numerics.methods.kept import compiled_kernel
+from mbsym.numerics.methods.interface import Method, Setting, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.simulate import Trajectory, integrated
 

@@ -40,8 +40,7 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.planning.sizes import kinds, scales
-from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.specialise import Specialised, bound, substituted
+from mbsym.numerics.scenario import Scenario, Specialised, bound, substituted
 
 #: Digits of a number in each arithmetic, -log10 of its unit roundoff.
 FULL = {FLOAT32: 7.22, FLOAT64: 15.95}

@@ -46,8 +46,7 @@ from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade import fidelity
 from mbsym.numerics.trade.fidelity import ModelError
-from mbsym.numerics.trade.reference import IMPLICIT, Reference
-from mbsym.numerics.trade.reference_search import whole_reference
+from mbsym.numerics.trade.reference_search import IMPLICIT, Reference, whole_reference
 
 #: A reference must be so much better than what it judges.
 MARGIN = 100.0

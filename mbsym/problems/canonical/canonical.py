@@ -39,8 +39,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.matrices import solved
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.formulas.formula import Column, Formula, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.variables import ring_environment, ring_of

@@ -16,8 +16,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
-from mbsym.formulas.formula import Column, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.constraints.embedding import projected
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Ring
-from mbsym.formulas.formula import Column, Formula, Matrix, column
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.constraints.dependence import Dependent
 from mbsym.mechanics.constraints.embedding import Embedding, Pivots, basis_vector
 from mbsym.mechanics.constraints.rows import RowName

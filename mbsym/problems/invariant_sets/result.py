@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 
 
 class Kind(Enum):

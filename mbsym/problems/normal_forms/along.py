@@ -25,7 +25,7 @@ from mbsym.algebra.rationals import fraction
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.expressions.message import Message
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import absolute

@@ -12,8 +12,7 @@ from flint import arb, ctx
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.point import Balls
 from mbsym.algebra.truncated import Truncated, bracket, flow
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 from mbsym.problems.normal_forms.birkhoff import NormalForm
 from mbsym.problems.stability.theorems import HigherOrder
 from mbsym.problems.stability.word import Word

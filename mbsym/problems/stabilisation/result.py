@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from mbsym.algebra.certainty import Certainty
-from mbsym.formulas.formula import Formula
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Formula, Shown
 from mbsym.problems.stability.verdict import Verdict
 
 

@@ -23,8 +23,7 @@ from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
-from mbsym.formulas.formula import Column, Formula, Matrix
-from mbsym.formulas.notebook import Shown
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import dependent, relations
 from mbsym.mechanics.symmetry import Spin, free_spin

@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsym.expressions.message import Message, joined
 from mbsym.model.quantities import time_unit, with_unit
-from mbsym.numerics.breakdowns import least_pivot
+from mbsym.numerics.simulate import least_pivot
 from mbsym.report.runs.certificate import certificate_lines
 from mbsym.report.runs.constrained_run_words import constraint_lines
 from mbsym.report.runs.events import events_lines

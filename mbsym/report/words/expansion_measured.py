@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from mbsym.analysis.small import Averaging, SmallParameters
     from mbsym.model.system import System
     from mbsym.problems.small_parameter.averaging import Averaged
-    from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
     from mbsym.simulation.oscillating import MeasuredOrders
 
@@ -39,7 +38,7 @@ class JudgedAverage:
     """An effective potential with what was measured of it; ``withdrawn``: the measurement contradicts it."""
 
     one: Averaging
-    measured: MeasuredAverage | str
+    measured: Measured | str
     withdrawn: bool
 
     @property
@@ -48,7 +47,7 @@ class JudgedAverage:
         return None if self.withdrawn else self.one.found
 
 
-def contradicts(told: MeasuredAverage | str) -> bool:
+def contradicts(told: Measured | str) -> bool:
     """Whether the distances do not shrink as they would by the averaging theorem: the result must not be told then."""
     from mbsym.simulation.averaged import NOISE
 
@@ -102,15 +101,13 @@ def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...
 
 def _judged(found: SmallParameters, system: System) -> Iterator[JudgedAverage]:
     for one in found.averaged:
-        told: MeasuredAverage | str = ""
+        told: Measured | str = ""
         if one.found is not None and one.analysis is not None:
             told = average_or_why(system, one.analysis.system, one.found)
         yield JudgedAverage(one, told, contradicts(told))
 
 
-def average_or_why(
-    system: System, averaged: System, found: Averaged, time: float | None = None
-) -> MeasuredAverage | str:
+def average_or_why(system: System, averaged: System, found: Averaged, time: float | None = None) -> Measured | str:
     """The distance of the motion from the averaged one; why it was not measured."""
     from mbsym.simulation.averaged import measured
 

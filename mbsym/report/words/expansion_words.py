@@ -21,7 +21,6 @@ from mbsym.report.content import Gaps, Inline, Name, Phrase, Raised, Relation, S
 from mbsym.report.words.expansion_measured import SLACK, JudgedAverage
 
 if TYPE_CHECKING:
-    from mbsym.simulation.averaged import Measured as MeasuredAverage
     from mbsym.simulation.expanded import Measured
 
 SERIES = (
@@ -291,7 +290,7 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
         yield say("At the given values: [[word]].", word=worded(found.numerical.word.value))
 
 
-def _of_measured_average(told: MeasuredAverage | str) -> Iterator[Said]:
+def _of_measured_average(told: Measured | str) -> Iterator[Said]:
     if isinstance(told, str):
         yield say("The distance to the averaged motion was not measured: [[why]].", why=worded(told))
         return
@@ -306,7 +305,7 @@ def _of_measured_average(told: MeasuredAverage | str) -> Iterator[Said]:
     )
 
 
-def _measures(told: MeasuredAverage) -> dict[str, str]:
+def _measures(told: Measured) -> dict[str, str]:
     return {
         "time": f"{told.time:.4g}",
         "distances": ", ".join(f"{x:.2g}" for x in told.distances),

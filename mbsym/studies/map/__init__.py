@@ -139,9 +139,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     from mbsym.algebra.failures import Failure, TooLargeError, message_of
     from mbsym.analysis import Analysis
     from mbsym.maps.boxes import box_map, irrational
-    from mbsym.maps.given import Unfit as Wrong
     from mbsym.maps.mapping import exact_map
     from mbsym.maps.result import Of
+    from mbsym.maps.section import Unfit as Wrong
     from mbsym.maps.slices import stack
 
     if request.of == "equilibria":
