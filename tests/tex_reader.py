@@ -87,7 +87,7 @@ class Reader:
             return over / under
         if token == r"\sqrt":
             self.take()
-            return self.group().sqrt()
+            return self.group().sqrt() ** self.exponent()
         if token.isdigit():
             value = self.number(int(self.take()))
         else:

@@ -372,15 +372,16 @@ class Rewriter:
     def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
         """(how much there is to read, what is left) by the step that leaves least."""
         candidates: list[tuple[int, int, _Fraction]] = []
+        most = _terms(found)
         for step in self._applicable(found, self.steps):
             try:
                 after = self._after(found, step)
             except (Failure, ZeroDivisionError):
                 continue
             if after is not None and len(after[1]) <= len(found[1]):
-                polynomials = [after[0], *(x for x, _ in after[1])]
-                terms = sum(map(len, polynomials)) + len(occurring(polynomials))
-                candidates.append((terms, len(candidates), after))
+                terms = _terms(after)
+                if terms <= most:
+                    candidates.append((terms, len(candidates), after))
         shown = [x for _, _, x in sorted(candidates, key=lambda x: x[:2])[:WRITTEN]]
         return min(((self._read(x), x) for x in shown), key=lambda x: x[0], default=None)
 
@@ -464,6 +465,12 @@ def size(ring: Ring, polynomial: Polynomial) -> int:
     held = (ring.generators[k] for k in _held(ring, [polynomial]))
     inside = [g.argument for g in held if g.argument is not None and g.kind != "reciprocal"]
     return sum(length(ring, present(ring, x, angles)) for x in (polynomial, *inside))
+
+
+def _terms(found: _Fraction) -> int:
+    """What is counted to see which of several fractions may be the shortest to read: terms and generators."""
+    polynomials = [found[0], *(x for x, _ in found[1])]
+    return sum(map(len, polynomials)) + len(occurring(polynomials))
 
 
 def _held(ring: Ring, polynomials: Iterable[Polynomial]) -> set[int]:

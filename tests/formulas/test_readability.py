@@ -267,3 +267,21 @@ def test_no_line_ends_inside_the_bracket_of_a_coefficient(name):
 def test_the_check_of_breaks_sees_a_torn_bracket():
     assert torn(r"x\penalty0  + (m\penalty60  + 3 m_{0}) \cos q") == [r"(m\penalty60  + 3 m_{0})"]
     assert not torn(r"x\penalty0  + (m + 3 m_{0}) \cos q")
+
+
+def test_roots_stand_in_denominators():
+    """The force of U = mu m/r with r^2 = x^2 + y^2 is -mu m x/r^3; an attraction through the root alone, too."""
+    found = mbsym.loads(
+        """
+mbsym: 1
+name: Kepler
+parameters: {m: positive, mu: positive}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
+loads:
+  - potential: -mu*m/sqrt(x**2 + y**2) - m*sqrt(mu)*x/mu
+"""
+    )
+    force = found.equations.forcing[0]
+    assert force.readable() == "m (1/sqrt(mu) - mu x/sqrt(x^2 + y^2)^3)"
+    assert agree(force.ring, force.latex(), force.polynomial, random.Random(3))
