@@ -151,7 +151,7 @@ def command(
     wanted = asked.word("--detail", detail, DETAILS, "detail")
     tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
     budget = asked.whole("--terms", terms, 1, 10**12)
-    until = asked.number("--animate", animate)
+    shown_until = asked.number("--animate", animate)
     told = _ledger(ledger, accuracy, until, asked)
     if animate is not None and "html" not in kinds:
         hint = "add html to --format, or use 'mbsym simulate --animate'"
@@ -172,7 +172,7 @@ def command(
         brief,
         width,
         form,
-        until,
+        shown_until,
         tongue,
         tuple(name for name in FORMS if name in shown),
         chosen is not None,

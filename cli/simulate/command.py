@@ -4,29 +4,14 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from mbsym_cli.assignments import given_numbers
-from mbsym_cli.console import BAD_INPUT, INTERRUPTED, complain, read_description
-from mbsym_cli.files import folder_for
-from mbsym_cli.formulas import LAWS, read_formula
-from mbsym_cli.options import Options
-from mbsym_cli.simulate.ensemble import answers, spread
-from mbsym_cli.simulate.further import begun_at, declared, going_on, integrated, with_further
-from mbsym_cli.simulate.many import read_many
-from mbsym_cli.simulate.options import OPTIONS, carried, complain_of_names, complain_of_pairs, typed_options
-from mbsym_cli.simulate.request import check_constrained, check_held, check_states, read_request, with_goal
-from mbsym_cli.simulate.run import run
-from mbsym_cli.study import prevented
-
-if TYPE_CHECKING:
-    from mbsym.expressions.tree import Expression
-    from mbsym.numerics.scenario import Scenario
+from mbsym_cli.console import INTERRUPTED, complain
+from mbsym_cli.simulate.options import OPTIONS
+from mbsym_cli.simulate.run import simulated
 
 
 def simulate(file: Path, **texts: Any) -> None:
@@ -95,7 +80,7 @@ def simulate(file: Path, **texts: Any) -> None:
       mbsym simulate systems/double-pendulum.yaml --time 120 --continue reports/double-pendulum/simulation.json
     """
     try:
-        sys.exit(_simulated(file, texts))
+        sys.exit(simulated(file, texts))
     except KeyboardInterrupt:
         complain(file, "interrupted; what has been written is whole")
         sys.exit(INTERRUPTED)
@@ -107,39 +92,3 @@ command = click.Command(
     callback=simulate,
     help=inspect.getdoc(simulate),
 )
-
-
-def _simulated(file: Path, texts: Mapping[str, Any]) -> int:
-    """The exit code: all options are read and complained about together, before anything is compiled."""
-    folder, settings = folder_for(file, texts["out"]), texts["values"]
-    system = read_description(file, moving="simulate")
-    asked, context = Options(), click.get_current_context()
-    typed = typed_options(context)
-    complain_of_pairs(typed, asked)
-    complain_of_names(settings, {"--vary": texts["vary"], "--without": texts["without"]}, asked)
-    laws: dict[str, Expression] = {}
-    for text in texts["laws"] if system is not None else ():
-        read_formula(text, system, LAWS, laws, asked)
-    own = declared(texts)
-    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws, own)
-    system = system if given is None else given.system
-    seen = integrated(system, texts)
-    wanted = read_request(system, texts, asked)
-    request = with_further(wanted.request, texts, seen, asked)
-    wanted = replace(wanted, request=going_on(request, begun_at(given, request), typed, asked))
-    check_held(wanted.request, system, bool(texts["vary"] or texts["sensitivity"]), asked)
-    varied, sensitive = read_many(texts, given, wanted, typed, asked)
-    wanted = with_goal(texts, seen, wanted, typed, carried(context), asked)
-    check_constrained(system, wanted, asked)
-    check_states(seen, wanted, asked)
-    code = prevented(file, folder, system is not None, asked)
-    if code or given is None:
-        return code or BAD_INPUT
-    if varied is not None:
-
-        def read(more: tuple[str, ...]) -> Scenario | None:
-            return given_numbers(file, given.system, (*settings, *more), asked, laws, own)[0]
-
-        return spread(file, folder, given, overrides, varied, wanted, asked, read)
-    code = run(file, folder, given, wanted, asked)
-    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)

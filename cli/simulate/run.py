@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import click
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.report.language import Language
 from mbsym.studies.study import Exit, Refusal
+from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import (
     BAD_INPUT,
     BROKEN_DOWN,
@@ -22,13 +25,19 @@ from mbsym_cli.console import (
     complain,
     printable,
     progress,
+    read_description,
     reason_of,
     status,
 )
-from mbsym_cli.files import room_beside
+from mbsym_cli.files import folder_for, room_beside
+from mbsym_cli.formulas import LAWS, read_formula
 from mbsym_cli.options import Options
+from mbsym_cli.simulate.ensemble import answers, spread
 from mbsym_cli.simulate.files import write_files
-from mbsym_cli.simulate.request import Asked
+from mbsym_cli.simulate.further import begun_at, declared, going_on, integrated, with_further
+from mbsym_cli.simulate.many import read_many
+from mbsym_cli.simulate.options import carried, complain_of_names, complain_of_pairs, typed_options
+from mbsym_cli.simulate.request import Asked, check_constrained, check_held, check_states, read_request, with_goal
 from mbsym_cli.simulate.summary import (
     InterruptedPlanning,
     broken,
@@ -38,9 +47,11 @@ from mbsym_cli.simulate.summary import (
     print_summary,
     simulated_to,
 )
+from mbsym_cli.study import prevented
 
 if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
+    from mbsym.expressions.tree import Expression
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Simulation
@@ -178,3 +189,39 @@ def _watching(file: Path, asked: Asked) -> Iterator[tuple[Watch, Stage]]:
             yield
 
     yield (lambda t: bars[-1](t)), stage
+
+
+def simulated(file: Path, texts: Mapping[str, Any]) -> int:
+    """The exit code: all options are read and complained about together, before anything is compiled."""
+    folder, settings = folder_for(file, texts["out"]), texts["values"]
+    system = read_description(file, moving="simulate")
+    asked, context = Options(), click.get_current_context()
+    typed = typed_options(context)
+    complain_of_pairs(typed, asked)
+    complain_of_names(settings, {"--vary": texts["vary"], "--without": texts["without"]}, asked)
+    laws: dict[str, Expression] = {}
+    for text in texts["laws"] if system is not None else ():
+        read_formula(text, system, LAWS, laws, asked)
+    own = declared(texts)
+    given, overrides = (None, {}) if system is None else given_numbers(file, system, settings, asked, laws, own)
+    system = system if given is None else given.system
+    seen = integrated(system, texts)
+    wanted = read_request(system, texts, asked)
+    request = with_further(wanted.request, texts, seen, asked)
+    wanted = replace(wanted, request=going_on(request, begun_at(given, request), typed, asked))
+    check_held(wanted.request, system, bool(texts["vary"] or texts["sensitivity"]), asked)
+    varied, sensitive = read_many(texts, given, wanted, typed, asked)
+    wanted = with_goal(texts, seen, wanted, typed, carried(context), asked)
+    check_constrained(system, wanted, asked)
+    check_states(seen, wanted, asked)
+    code = prevented(file, folder, system is not None, asked)
+    if code or given is None:
+        return code or BAD_INPUT
+    if varied is not None:
+
+        def read(more: tuple[str, ...]) -> Scenario | None:
+            return given_numbers(file, given.system, (*settings, *more), asked, laws, own)[0]
+
+        return spread(file, folder, given, overrides, varied, wanted, asked, read)
+    code = run(file, folder, given, wanted, asked)
+    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)
