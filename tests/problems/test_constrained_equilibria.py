@@ -317,3 +317,24 @@ def test_a_five_bar_is_not_solved_exactly_and_says_so() -> None:
 _FIFTH = """  - {name: e, attached to: c, connection point: [C, 0, 0], rotation: {axes: [3], angles: [w]},
      mass centre: [E/2, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, E**2/12, E**2/12]}
 """
+
+
+@pytest.mark.parametrize(
+    ("relation", "singular"),
+    [
+        ("y**2 = x**3", True),  # a cusp: pressed into it by the force (-1, 0), which no multiple of (0, 0) balances
+        ("y**2 = x**2*(x + 1)", True),  # a node in the origin
+        ("y**2 = x**3 + 1", False),  # (3 x^2, 2 y) = 0 only in the origin, which is not on it
+    ],
+)
+def test_a_rest_that_needs_unbounded_reactions_is_told_not_to_be_counted(relation: str, singular: bool) -> None:
+    """V = x + y^2 on a curve: in a singular point J = 0, and V' = (1, 0) there, so that f + J^T lambda = 0 has no
+    solution; near the cusp (t^2, t^3) the motion has L = (4 t^2 + 9 t^4) t'^2/2 - t^2 - t^6: the path turns there at
+    any speed, and what holds a rest in it has no bound."""
+    text = HEAD + (
+        "bodies: [{name: P, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: 1}]\n"
+        f"loads: [{{potential: x + y**2}}]\nconstraints: [{{relation: {relation}}}]\n"
+    )
+    found = listed(text)
+    assert found.complete
+    assert any("unbounded reactions" in remark for remark in found.remarks) is singular

@@ -121,6 +121,7 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     found: list[Solution] = []
     families: list[EquilibriumFamily] = []
     complete = True
+    uncounted = False
     covering = charts(first, described_by)
     rank = _rank(first) if first.rows else None
     limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
@@ -131,6 +132,7 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
             if families and chart.restrictions:
                 search.points = _off_families(search, within, limits)
         _counted_once(searches)
+        uncounted = uncounted or any(rank is not None and x.case.rank < rank and x.leaves_none for x in searches)
         for search in searches:
             found += search.points
             families += search.families
@@ -156,6 +158,14 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
             "is said of stability; a rest that only unbounded reactions would hold is none"
         )
         remarks.append(Message(text, count=Counted(len(lost), "relative equilibrium", "relative equilibria")))
+    elif uncounted:
+        remarks.append(
+            Message(
+                "there are positions, perhaps not real ones, in which the constraints are singular (a cusp, links in "
+                "line, branches of motion that meet): a rest there that only unbounded reactions would hold is not "
+                "counted"
+            )
+        )
     if families and covering[0].joints:
         remarks.append(
             Message("families are listed in coordinates: one set of configurations may be described more than once")
@@ -271,6 +281,11 @@ class _ChartSearch(SearchInBoxes):
             self._search_numerically(bisect=True)
             return
         self._solve_exactly()
+
+    @property
+    def leaves_none(self) -> bool:
+        """Whether positions of its case, which ``cases`` found, are none of them told to be at rest."""
+        return not self.points and not self.families
 
     def closures(self) -> list[tuple[int, list[Polynomial]]]:
         """Dimensions and equations of sets that other cases touch: of families, and where coordinates are any."""

@@ -41,6 +41,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.ODD_DEGREE: "$\\det K < 0$: an odd degree of instability.",
     Because.ODD_DEGREE_REMAINS: "$\\det K < 0$: an odd degree of instability, which gyroscopic forces cannot remove.",
     Because.COMPLETE: "$K > 0$ and complete dissipation.",
+    Because.COMPLETE_BUT_CYCLIC: "Without the cyclic coordinates $K > 0$, and dissipation is complete.",
     Because.LEFT: "All roots have negative real parts.",
     Because.LEFT_BUT_CYCLIC: "All roots but the zero ones of the cyclic coordinates have negative real parts.",
     Because.TURNED_DECAYS: (
@@ -61,6 +62,13 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.MINIMUM_AND_DISSIPATION: (
         "$K > 0$ and $D \\geq 0$: the energy does not grow, and the (changed) potential energy has a strict minimum."
     ),
+    Because.MINIMUM_BUT_CYCLIC: (
+        "Without the cyclic coordinates $K > 0$: the (changed) potential energy has a strict minimum in the others."
+    ),
+    Because.MINIMUM_AND_DISSIPATION_BUT_CYCLIC: (
+        "Without the cyclic coordinates $K > 0$, and $D \\geq 0$: the energy does not grow, and the (changed) "
+        "potential energy has a strict minimum in the others."
+    ),
     Because.UNDAMPED_MOTION: "Motions of [[1]] stay undamped.",
     Because.INTEGRALS: _integrals,
     Because.LINEAR_BOUNDED: (
@@ -77,7 +85,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     ),
     Because.LINEAR_DRIFTS: (
         "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but "
-        "for that drift the motion is stable; of cyclic coordinates of bodies just that is said."
+        "for that drift the motion is stable; of bodies just that is said where coordinates are cyclic at all values "
+        "of the parameters."
     ),
     Because.LINEAR_GYROSCOPIC: (
         "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "
@@ -106,6 +115,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "Frequencies coincide (semisimple): a border of the region of gyroscopic stabilisation may be here."
     ),
     Because.NO_ENERGY: "$K > 0$, but no energy integral of the nonlinear system is known.",
+    Because.NO_ENERGY_BUT_CYCLIC: (
+        "Without the cyclic coordinates $K > 0$, but no energy integral of the nonlinear system is known."
+    ),
     Because.IMAGINARY: "No root has a positive real part, but some are imaginary.",
     Because.IMAGINARY_SIMPLE: "All roots are imaginary and simple; the forces are not potential.",
     Because.IMAGINARY_BESIDES_TURNED: (

@@ -302,7 +302,9 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
         drift = Because.DRIFT_AT_GIVEN_MOMENTA if constant_momenta else Because.ELSEWHERE
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
-    reasons = dict.fromkeys([*(_BESIDE_ZERO_ROOTS.get(reason, reason) for reason in verdict.reasons), Reason(drift)])
+    without = _BESIDE_ZERO_ROOTS | _BUT_CYCLIC
+    told = (Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in verdict.reasons)
+    reasons = dict.fromkeys([*(without.get(reason, reason) for reason in told), Reason(drift)])
     said = _farthest(set(reasons))
     return Verdict(row.word, names, tuple(one for one in reasons if one in said), tuple(grounds.items()), flaws)
 
@@ -330,6 +332,14 @@ _BESIDE_ZERO_ROOTS = {
     Reason(Because.LEFT): Reason(Because.LEFT_BUT_CYCLIC),
     Reason(Because.LINEAR_BOUNDED): Reason(Because.LINEAR_SHIFTED),
 }
+#: What is said of K and D without the cyclic coordinates: with them K is singular.
+_BUT_CYCLIC = {
+    Reason(Because.COMPLETE): Reason(Because.COMPLETE_BUT_CYCLIC),
+    Reason(Because.MINIMUM): Reason(Because.MINIMUM_BUT_CYCLIC),
+    Reason(Because.MINIMUM_AND_DISSIPATION): Reason(Because.MINIMUM_AND_DISSIPATION_BUT_CYCLIC),
+    Reason(Because.NO_ENERGY): Reason(Because.NO_ENERGY_BUT_CYCLIC),
+}
+_OF_ALL = {told: reason for reason, told in _BUT_CYCLIC.items()}
 _BESIDE_CONSTANT_MOMENTA = _BESIDE_ZERO_ROOTS | {
     Reason(Because.DRIFT): Reason(Because.DRIFT_AT_GIVEN_MOMENTA),
     Reason(Because.ELSEWHERE): Reason(Because.DRIFT_AT_GIVEN_MOMENTA),
@@ -407,6 +417,7 @@ _MINIMUM, _WITH_DISSIPATION = Because.MINIMUM, Because.MINIMUM_AND_DISSIPATION
 
 def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     """Those of the parts that decide; what is counted in one part is not counted in the whole."""
+    parts = tuple(replace(part, reasons=tuple(_OF_ALL.get(x, x) for x in part.reasons)) for part in parts)
     alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
     idle = [part for part in parts if Ground.IDLE in part.laid]
     moving = [part for part in parts if part not in idle]
@@ -442,10 +453,12 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     found = {Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in found}
     if not all(part.because(Because.COMPLETE) for part in parts) and Reason(Because.COMPLETE) in found:
         found = found - {Reason(Because.COMPLETE)} | {Reason(Because.LEFT)}
+    if any(Flaw.CYCLIC in part.flawed for part in parts):
+        found = {_BUT_CYCLIC.get(reason, reason) for reason in found}
     return tuple(sorted(_farthest(found), key=lambda reason: reason.rank))
 
 
-#: What is said of K and D of a part, and need not be true of those of the whole.
+#: What is said of K and D of a part, and need not be true of those of the whole (with cyclic coordinates det K = 0).
 _OF_ONE_PART = (Because.ODD_DEGREE, Because.ODD_DEGREE_REMAINS, Because.DESTROYED)
 
 

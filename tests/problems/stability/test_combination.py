@@ -396,3 +396,37 @@ values: {m: 1, l: 1, g: 1}
     assert "Complete dissipation" in damped.subsystems[0].theory.at_point.verdict.explanation
     assert damped.numerical is not None
     assert "Complete dissipation" not in damped.numerical.explanation
+
+
+_TWO_ON_A_LINE = """
+mbsym: 1
+name: two on a line
+parameters: {k: positive, m: positive}
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+  - {name: b, attached to: 0, connection point: [y, 0, 0], mass: m, coordinates: [y]}
+loads:
+  - potential: LOAD
+motion: {}
+values: {k: 1, m: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("load", "unsaid"),
+    [
+        ("k*(x - y)**2/2 + k*(x - y)**4", "K > 0: "),  # K = k [[1, -1], [-1, 1]]
+        (
+            "k*(x - y)**2/2 + k*(x - y)**4\n  - rayleigh: (x_dot - y_dot)**2/2",
+            "K > 0 and complete",
+        ),  # D = [[1, -1], [-1, 1]]
+    ],
+)
+def test_k_is_not_called_positive_where_a_displacement_changes_nothing(load: str, unsaid: str) -> None:
+    """V and R are constant along (1, 1): det K = det D = 0, and V has a strict minimum but for that displacement."""
+    found = mbsym.loads(_TWO_ON_A_LINE.replace("LOAD", load)).stability
+    for verdict in (found.verdict, found.numerical):
+        assert verdict is not None
+        said = verdict.explanation.replace("$", "")
+        assert "Without the cyclic coordinates K > 0" in said
+        assert not any(sentence.startswith(unsaid) for sentence in said.split(". "))

@@ -457,3 +457,17 @@ values: {{m: 1, k: 2, mu: 1/2, v: {-3 if v == "negative" else 3}, g: 10, c: 1}}
     assert found.verdict.word is word
     if v == "real":  # where v is a number its sign is known
         assert found.numerical.word is Word.STABLE
+
+
+def test_a_body_on_which_nothing_acts_at_the_values_says_how_that_is_told_where_nothing_ever_does() -> None:
+    """x'' = -a x at a = 0 is x'' = 0 of a free body: with x counted unstable, and stable but for a drift.  Of bodies
+    only what is cyclic for all a is left out of account, and that is what is said: x is not cyclic here."""
+    body = """
+parameters: {a: {real: true, value: 0}}
+bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{potential: a*x**2/2}]
+motion: {x: 0}
+"""
+    said = mbsym.loads(LINE.format(body)).stability.numerical.explanation
+    assert "but for that drift the motion is stable" in said
+    assert "of bodies just that is said where coordinates are cyclic at all values of the parameters" in said
