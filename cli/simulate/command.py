@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from mbsym.report.language import Language
 from mbsym_cli.assignments import given_numbers
 from mbsym_cli.console import BAD_INPUT, INTERRUPTED, complain, read_description
 from mbsym_cli.files import folder_for
@@ -114,6 +115,7 @@ def _simulated(file: Path, texts: Mapping[str, Any]) -> int:
     folder, settings = folder_for(file, texts["out"]), texts["values"]
     system = read_description(file, moving="simulate")
     asked, context = Options(), click.get_current_context()
+    asked.say = Language("" if system is None else system.language).say
     typed = typed_options(context)
     complain_of_pairs(typed, asked)
     complain_of_names(settings, {"--vary": texts["vary"], "--without": texts["without"]}, asked)

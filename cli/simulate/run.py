@@ -40,7 +40,7 @@ from mbsym_cli.simulate.summary import (
 )
 
 if TYPE_CHECKING:
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
     from mbsym.numerics.methods.interface import Breakdown
     from mbsym.numerics.scenario import Scenario
     from mbsym.simulation import Simulation
@@ -70,16 +70,19 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         complain(file, say(Message("interrupted while the run was being planned; nothing was run or written")))
         return INTERRUPTED
     except NoEvent as error:
-        options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
+        told = Message("[[name]] has no value: [[why]]", name=ascii_safe(error.text), why=error.reason)
+        options.complain(f"--{error.option}", "no-value", told)
         options.refused(file)
         return BAD_INPUT
     except Unusable as error:
-        options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
+        options.complain("--method", "unsuitable-method", message_of(error), "--method auto chooses one that can")
         options.refused(file)
         return BAD_INPUT
     except NotAnalytic as error:
         hint = "leave --certify out: enclosures go through power series"
-        options.complain("--certify", "not-analytic", f"{error} in the equations has no power series", hint)
+        options.complain(
+            "--certify", "not-analytic", Message("[[what]] in the equations has no power series", what=str(error)), hint
+        )
         options.refused(file)
         return BAD_INPUT
     except (Breakdown, Failure) as error:
