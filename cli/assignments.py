@@ -152,7 +152,7 @@ def scaling_of(text: str, system: System, options: Options) -> Scaling | None:
 
     text, complaints = " ".join(text.splitlines()), Complaints()
     found = read_scaling(text, system, complaints)
-    options.complaints += [render_option(one, text, "--scale") for one in complaints.sorted()]
+    options.complaints += [render_option(one, text, "--scale", options.say) for one in complaints.sorted()]
     return found
 
 
@@ -162,7 +162,7 @@ def reduction_of(text: str, options: Options) -> Reducing | None:
 
     text, complaints = " ".join(text.splitlines()), Complaints()
     found = read_reduction(text, complaints)
-    options.complaints += [render_option(one, text, "--reduce") for one in complaints.sorted()]
+    options.complaints += [render_option(one, text, "--reduce", options.say) for one in complaints.sorted()]
     return found
 
 
@@ -175,7 +175,7 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
     try:
         return None if scaling is None else described(system, scaling)
     except Failure as error:
-        told = f"there is no description in these variables: {error.reason}"
+        told = Message("there is no description in these variables: [[why]]", why=error.reason)
         hint = error.remedy or "'mbsym show --scale' prints equations and integrals in them"
         options.complain("--scale", "no-description", told, hint)
     return None
@@ -187,7 +187,9 @@ def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options)
         if one.name in assigned.texts:
             assigned.complain(one.name, one.code, one.text, options, one.hint)
         else:
-            options.complaints.append(render_option(Complaint(one.code, one.text, None, one.hint), "", str(file)))
+            options.complaints.append(
+                render_option(Complaint(one.code, one.text, None, one.hint), "", str(file), options.say)
+            )
 
 
 def _unread(system: System, assigned: Assigned) -> set[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message, counted
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
 from mbsym_cli.assignments import in_scale
@@ -71,7 +71,10 @@ def command(
     asked = Options()
     if out is not None and _same(out, file):
         asked.complain(
-            "--out", "same-file", f"{printable(out)} would replace what it is made of", "comments would be lost"
+            "--out",
+            "same-file",
+            Message("[[file]] would replace what it is made of", file=printable(out)),
+            "comments would be lost",
         )
     else:
         asked.unwritten("--out", out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.source import render_option
@@ -38,7 +39,7 @@ def read_formula(text: str, system: System, what: Kind, found: dict[str, Express
     """Puts a sound formula into ``found``; whatever is wrong with it joins the complaints of ``asked``."""
     text, complaints = " ".join(text.splitlines()), Complaints()
     _read(text, system, what, complaints, found)
-    asked.complaints += [render_option(complaint, text, what.option) for complaint in complaints.sorted()]
+    asked.complaints += [render_option(one, text, what.option, asked.say) for one in complaints.sorted()]
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, found: dict[str, Expression]) -> None:
@@ -48,17 +49,20 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, found: 
     left, equals, right = text.partition("=")
     name, blanks, known = left.strip(), len(left) - len(left.lstrip()), what.names(system)
     if not equals or not name or len(text) > MAX_LENGTH:
-        reason = (
-            f"{ascii_safe(text)} gives no {what.word}" if len(text) <= MAX_LENGTH else f"this {what.word} is too long"
-        )
-        complaints.error("bad-assignment", reason, None, f"write name={what.word}, for example {what.example}")
+        reason = Message("this [[what]] is too long", what=worded(what.word))
+        if len(text) <= MAX_LENGTH:
+            reason = Message("[[text]] gives no [[what]]", text=ascii_safe(text), what=worded(what.word))
+        hint = Message("write name=[[what]], for example [[example]]", what=worded(what.word), example=what.example)
+        complaints.error("bad-assignment", reason, None, hint)
         return
     span = Span(1, blanks + 1, max(1, len(name)))
     if name not in known:
-        hint = did_you_mean(name, known) or listed(f"the {what.kind}s are", known) or what.none
-        complaints.error("unknown-name", f"there is no {what.kind} called {ascii_safe(name)}", span, hint)
+        there = "the inputs are" if what is LAWS else "the coordinates are"
+        near = did_you_mean(name, known) or listed(there, known) or what.none
+        words = "there is no [[kind]] called [[name]]"
+        complaints.error("unknown-name", Message(words, kind=worded(what.kind), name=ascii_safe(name)), span, near)
     elif name in found:
-        complaints.error("repeated-name", f"'{name}' is given twice", span)
+        complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
     offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
 
     def place(start: int, end: int) -> Span:
@@ -79,17 +83,19 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
         return Quantity(text)
     known = () if system is None else kind.names(system, text)
     formula, complaints = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
-    anything = f"{', '.join(kind.words)}, or a formula"
+    anything = Message("[[words]], or a formula", words=", ".join(kind.words))
     if not formula or len(formula) > MAX_LENGTH:
-        options.complain(option, "bad-formula", f"no {option.lstrip('-')} is said", anything)
+        options.complain(option, "bad-formula", Message("nothing is said after [[option]]", option=option), anything)
         return Quantity(text)
     value = parse_expression(formula, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     for node in walk(value) if value is not None and system is not None else ():
         if isinstance(node, Name) and node.name not in {*known, *CONSTANTS} and node.span is not None:
             hint = did_you_mean(node.name, [*known, *kind.words]) or anything
-            complaints.error("unknown-name", f"unknown name {ascii_safe(node.name)}", node.span, hint)
+            complaints.error(
+                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
+            )
     if value is not None and (why := out_of_range(value)):
         span = Span(1, 1, max(1, len(formula)))
-        complaints.error("no-number", f"nothing can be computed with this number: {why}", span)
-    options.complaints += [render_option(one, formula, option) for one in complaints.sorted()]
+        complaints.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
+    options.complaints += [render_option(one, formula, option, options.say) for one in complaints.sorted()]
     return Quantity(text, None if complaints.errors else value)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym_cli.options import Options
 
@@ -50,5 +51,7 @@ def read_letters(text: str | None, system: System, asked: Options) -> tuple[str,
         for name in named:
             if name not in known and name not in system.parameter_names:
                 near = did_you_mean(name, known) or listed("there are", known)
-                asked.complain("--in", "unknown-letter", f"there is no letter {ascii_safe(name)}", near)
+                asked.complain(
+                    "--in", "unknown-letter", Message("there is no letter [[name]]", name=ascii_safe(name)), near
+                )
     return tuple(named)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym_cli.completion import among, examples
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable
 from mbsym_cli.options import Options
@@ -42,7 +43,7 @@ def command(name: str, like: str | None) -> None:
     asked = Options()
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
     if not path.stem.strip() or path.is_dir():
-        asked.complain("NAME", "bad-name", f"no file can be called {printable(name)}")
+        asked.complain("NAME", "bad-name", Message("no file can be called [[name]]", name=printable(name)))
     else:
         asked.unwritten("NAME", path)
     if like is None and not _answers():

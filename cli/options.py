@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Sequence
 from pathlib import Path
 
-from mbsym.expressions.message import Message, counted
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym.problems import NUMBERS, ranges
@@ -78,7 +78,9 @@ class Options:
                 try:
                     named = [child for child in path.iterdir() if child.suffix in SUFFIXES]
                 except OSError as error:
-                    self.complain(str(path), "unreadable", f"the folder cannot be read: {error.strerror}")
+                    self.complain(
+                        str(path), "unreadable", Message("the folder cannot be read: [[why]]", why=error.strerror)
+                    )
                     continue
                 inside = [child for child in named if is_description(child)]
                 inside.sort(key=lambda child: (child.stem, SUFFIXES.index(child.suffix)))
@@ -86,10 +88,14 @@ class Options:
             for one in inside:
                 found.setdefault(identity_of(one), one)
         if not found and not self.complaints:
-            hint = f"a description has the key 'mbsym', and its name ends in {', '.join(SUFFIXES)}"
-            passed = f" ({counted(others, 'other file was', 'other files were')} passed over)" if others else ""
-            named_here = ", ".join(map(str, files))
-            self.complain(named_here, "no-descriptions", f"there are no descriptions here{passed}", hint)
+            words = "a description has the key 'mbsym', and its name ends in [[suffixes]]"
+            hint = Message(words, suffixes=", ".join(SUFFIXES))
+            told = Message("there are no descriptions here")
+            if others:
+                many = "there are no descriptions here ([[count]] other files were passed over)"
+                one = "there are no descriptions here (1 other file was passed over)"
+                told = Message(many, count=others) if others > 1 else Message(one)
+            self.complain(", ".join(map(str, files)), "no-descriptions", told, hint)
         return list(found.values())
 
     def unwritten(self, option: str, path: Path | None) -> None:
@@ -97,7 +103,9 @@ class Options:
         from mbsym_cli.files import taken
 
         if path is not None and taken(path):
-            self.complain(option, "exists", f"{printable(path)} is there already", "another name, or --force")
+            self.complain(
+                option, "exists", Message("[[file]] is there already", file=printable(path)), "another name, or --force"
+            )
 
     def time(self, text: str | None) -> float | None:
         """``--time``, without which nothing can be simulated."""
@@ -114,17 +122,21 @@ class Options:
             ends = (first, last) if dash else (first, first)
             if not all(end.isascii() and end.isdigit() and len(end) < 10 for end in ends):
                 hint = "write for example 1-5 or 1,3,6"
-                self.complain("--problems", "bad-number", f"'{part}' is no problem number", hint)
+                self.complain("--problems", "bad-number", Message("'[[text]]' is no problem number", text=part), hint)
                 continue
             low, high = map(int, ends)
             if low > high:
-                hint = f"a range goes upwards: write {last}-{first}"
-                self.complain("--problems", "bad-range", f"the range {part} is empty", hint)
+                hint = Message("a range goes upwards: write [[example]]", example=f"{last}-{first}")
+                self.complain("--problems", "bad-range", Message("the range [[text]] is empty", text=part), hint)
                 continue
             wrong = [n for n in dict.fromkeys((low, high)) if n not in NUMBERS]
             if wrong:
-                message = f"there is no problem {' and no problem '.join(map(str, wrong))}"
-                self.complain("--problems", "unknown-problem", message, f"problems are numbered {ranges()}")
+                message = Message("there is no problem [[number]]", number=wrong[0])
+                if len(wrong) > 1:
+                    words = "there is no problem [[first]] and no problem [[last]]"
+                    message = Message(words, first=wrong[0], last=wrong[1])
+                hint = Message("problems are numbered [[numbers]]", numbers=ranges())
+                self.complain("--problems", "unknown-problem", message, hint)
                 continue
             found.update(number for number in NUMBERS if low <= number <= high)
         return tuple(sorted(found))
@@ -133,7 +145,7 @@ class Options:
         """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""
         if text is None:
             return None
-        from mbsym.algebra.failures import Failure
+        from mbsym.algebra.failures import Failure, message_of
         from mbsym.expressions.parser import parse_expression
         from mbsym.expressions.tree import CONSTANTS, Name, walk
         from mbsym.numerics.scenario import exact
@@ -148,19 +160,29 @@ class Options:
         if value is not None:
             for node in walk(value):
                 if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
-                    complaints.error("unknown-name", f"a number is wanted here, not {ascii_safe(node.name)}", node.span)
+                    complaints.error(
+                        "unknown-name",
+                        Message("a number is wanted here, not [[name]]", name=ascii_safe(node.name)),
+                        node.span,
+                    )
         found = None
         if value is not None and not complaints.errors:
             try:
                 found = float(exact(value, {}))
             except Failure as reason:
-                complaints.error("bad-number", f"it has no value: {reason}", whole)
+                complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
             else:
-                within = f"choose between {least:g} and {most:g}" if most is not None and least else None
+                within = None
+                if most is not None:
+                    within = Message("it is at most [[most]]", most=f"{most:g}")
+                if most is not None and least:
+                    within = Message("choose between [[least]] and [[most]]", least=f"{least:g}", most=f"{most:g}")
                 if not found > 0:
-                    complaints.error("bad-number", "it must be positive", whole, within)
+                    complaints.error("bad-number", "it must be positive", whole, within if least else None)
                 elif found < least or (most is not None and found > most):
-                    complaints.error("bad-number", within or f"it is at most {most:g}", whole)
+                    complaints.error(
+                        "bad-number", within or Message("it is at least [[least]]", least=f"{least:g}"), whole
+                    )
         self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints.sorted()]
         return None if complaints.errors else found
 
@@ -171,12 +193,17 @@ class Options:
         short = text.strip()
         digits = short.removeprefix("-").removeprefix("+")
         if not (digits.isascii() and digits.isdigit() and len(digits) <= 30):
-            self.complain(option, "bad-number", f"a whole number is wanted, not {ascii_safe(text)}")
+            self.complain(
+                option, "bad-number", Message("a whole number is wanted, not [[text]]", text=ascii_safe(text))
+            )
             return None
         value = int(short)
         if not least <= value <= most:
-            bound = f"at least {least}" if value < least else f"at most {most}"
-            self.complain(option, "bad-number", f"{value} is out of bounds: {bound}{why if value < least else ''}")
+            told = Message("[[value]] is out of bounds: at most [[most]]", value=value, most=most)
+            if value < least:
+                bounds = "[[value]] is out of bounds: at least [[least]][[why]]"
+                told = Message(bounds, value=value, least=least, why=worded(why))
+            self.complain(option, "bad-number", told)
             return None
         return value
 
@@ -204,7 +231,12 @@ class Options:
             if name not in choices:
                 self._unknown(option, name, [*choices, every] if every else choices, what)
         if not chosen:
-            self.complain(option, f"unknown-{what}", f"there is no {what} in it", _listed(choices, every))
+            self.complain(
+                option,
+                f"unknown-{what}",
+                Message("there is no [[what]] in it", what=worded(what)),
+                _listed(choices, every),
+            )
         return tuple(name for name in chosen if name in choices)
 
     def _unknown(self, option: str, name: str, choices: Iterable[str], what: str) -> None:
@@ -212,12 +244,19 @@ class Options:
 
         known = list(choices)
         close = closest(name, known, _MISSPELT)
-        hint = f"did you mean '{close}'? There are {', '.join(known)}" if close else _listed(known)
-        self.complain(option, f"unknown-{what}", f"there is no {what} {ascii_safe(name)}", hint)
+        hint = _listed(known)
+        if close:
+            words = "did you mean '[[other]]'? There are [[names]]"
+            hint = Message(words, other=close, names=", ".join(known))
+        told = Message("there is no [[what]] [[name]]", what=worded(what), name=ascii_safe(name))
+        self.complain(option, f"unknown-{what}", told, hint)
 
 
-def _listed(choices: Iterable[str], every: str = "") -> str:
-    return f"choose from {', '.join(choices)}" + (f" or {every}" if every else "")
+def _listed(choices: Iterable[str], every: str = "") -> Message:
+    names = ", ".join(choices)
+    if every:
+        return Message("choose from [[names]] or [[every]]", names=names, every=every)
+    return Message("choose from [[names]]", names=names)
 
 
 def identity_of(path: Path) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe
 from mbsym.studies.request import (
     Assignments,
@@ -161,7 +162,8 @@ def _read(field: Field, given: Any, system: System | None, options: Options, mot
 def _share(option: str, text: str, options: Options) -> tuple[int, int] | None:
     first, slash, last = (part.strip() for part in text.partition("/"))
     if not slash:
-        options.complain(option, "bad-number", f"{ascii_safe(text[:40])} is no share", f"for example {option} 3/16")
+        told = Message("[[text]] is no share", text=ascii_safe(text[:40]))
+        options.complain(option, "bad-number", told, Message("for example [[example]]", example=f"{option} 3/16"))
         return None
     of = options.whole(option, last, 1, 10**6)
     number = options.whole(option, first, 1, of or 10**6)
@@ -174,11 +176,12 @@ def _whole_numbers(option: str, kind: Named, texts: tuple[str, ...], options: Op
     for text in texts:
         name, equals, right = (part.strip() for part in text.partition("="))
         if not equals or not name:
-            told = f"{ascii_safe(text[:80])} is no {kind.metavar}"
-            options.complain(option, "bad-assignment", told, f"for example {option} {kind.example}")
+            told = Message("[[text]] is no [[form]]", text=ascii_safe(text[:80]), form=kind.metavar)
+            hint = Message("for example [[example]]", example=f"{option} {kind.example}")
+            options.complain(option, "bad-assignment", told, hint)
             continue
         if name in found:
-            options.complain(option, "repeated-name", f"{ascii_safe(name)} is given twice")
+            options.complain(option, "repeated-name", Message("[[name]] is given twice", name=ascii_safe(name)))
         value = options.whole(option, right, kind.least, kind.most)
         found[name] = kind.least if value is None else value
     return found

@@ -38,7 +38,7 @@ def read_variations(
     if not texts:
         options.complain(option, "missing-option", "what varies is not said", _HINT)
     if len(texts) > kind.most:
-        options.complain(option, "too-large", f"at most {kind.most} names vary at once")
+        options.complain(option, "too-large", Message("at most [[most]] names vary at once", most=kind.most))
     if not 0 < len(texts) <= kind.most:
         return None
     exact = partial(read_rational, options=options)
@@ -53,7 +53,9 @@ def _varied(text: str, option: str, read: Read, system: System | None, options: 
 
     name, equals, right = (part.strip() for part in text.partition("="))
     if not equals or not name or not right or len(text) > MAX_LENGTH:
-        options.complain(option, "bad-variation", f"{ascii_safe(text[:80])}: this says no range", _HINT)
+        options.complain(
+            option, "bad-variation", Message("[[text]]: this says no range", text=ascii_safe(text[:80])), _HINT
+        )
         return None
     option = f"{option} {name if name.isidentifier() else ascii_safe(name)}"
     tolerance, draw = _TOLERANCE.fullmatch(right), _DRAW.fullmatch(right)
@@ -86,8 +88,10 @@ def _about(
         given = next((one.value for one in parameters if one.name == name), None)
         middle = None if given is None else rational(given)
         if middle is None:
-            told = f"{ascii_safe(name)} has no rational number in the description to vary about"
-            options.complain(option, "missing-value", told, f"write {ascii_safe(name)}=1 +- 5%")
+            shown = ascii_safe(name)
+            told = Message("[[name]] has no rational number in the description to vary about", name=shown)
+            hint = Message("write [[example]]", example=f"{shown}=1 +- 5%")
+            options.complain(option, "missing-value", told, hint)
     if middle is None or size is None:
         return None
     reach = abs(middle) * size / 100 if tolerance["percent"] else size
@@ -99,7 +103,7 @@ def _about(
 
 def _number(text: str, option: str, motion: Scenario | None, options: Options) -> float | None:
     """A number made of numbers, pi and parameters, of either sign."""
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
     from mbsym.expressions.tree import names
     from mbsym.numerics.scenario import exact
 
@@ -110,12 +114,14 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
     if value is not None and not complaints.errors:
         unknown = sorted(names(value) - {*known, "pi"})
         if unknown and motion is not None:
-            complaints.error("unknown-name", f"unknown name {unknown[0]}", whole, "numbers, pi and parameters")
+            complaints.error(
+                "unknown-name", Message("unknown name [[name]]", name=unknown[0]), whole, "numbers, pi and parameters"
+            )
         elif not unknown:
             try:
                 found = float(exact(value, known))
             except Failure as reason:
-                complaints.error("bad-number", f"it has no value: {reason}", whole)
+                complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
     options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
     return found
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
 from mbsym_cli.console import BAD_INPUT, OutPath
 from mbsym_cli.options import Options
@@ -164,7 +165,9 @@ def _seconds(asked: Options, text: str) -> float | None:
     except ValueError:
         value = -1.0
     if not 0 <= value < 1e9:
-        asked.complain("--timeout", "bad-number", f"a number of seconds is wanted, not {ascii_safe(text)}")
+        asked.complain(
+            "--timeout", "bad-number", Message("a number of seconds is wanted, not [[text]]", text=ascii_safe(text))
+        )
     return value or None
 
 
@@ -177,5 +180,10 @@ def _part(asked: Options, text: str | None) -> tuple[int, int] | None:
         part, parts = int(first), int(second)
         if 1 <= part <= parts:
             return part, parts
-    asked.complain("--shard", "bad-shard", f"a part like 3/8 is wanted, not {ascii_safe(text)}", "they count from 1")
+    asked.complain(
+        "--shard",
+        "bad-shard",
+        Message("a part like 3/8 is wanted, not [[text]]", text=ascii_safe(text)),
+        "they count from 1",
+    )
     return None

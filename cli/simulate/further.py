@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.condition import AxisText, Condition, parse_axes, parse_condition
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.safe import quoted
 from mbsym.source import render_option
@@ -80,7 +81,8 @@ def _fixed(request: Request, text: str, system: System, asked: Options) -> Reque
     for name in names:
         if name not in known:
             way = did_you_mean(name, known) or listed("these can be fixed", known)
-            asked.complain("--fixed", "unknown-name", f"there is nothing called {quoted(name)} to be fixed", way)
+            told = Message("there is nothing called [[name]] to be fixed", name=quoted(name))
+            asked.complain("--fixed", "unknown-name", told, way)
     return replace(request, fixed=tuple(name for name in names if name in known))
 
 
@@ -117,7 +119,7 @@ def _conditions(option: str, texts: Sequence[str], system: System, asked: Option
     for text in (" ".join(one.splitlines()) for one in texts):
         complaints = Complaints()
         found.append(parse_condition(text, known_names(system), complaints, place_in))
-        asked.complaints += [render_option(complaint, text, option) for complaint in complaints.sorted()]
+        asked.complaints += [render_option(one, text, option, asked.say) for one in complaints.sorted()]
     return tuple(one for one in found if one is not None)
 
 
@@ -126,7 +128,7 @@ def _axes(text: str | None, system: System, asked: Options) -> tuple[AxisText, .
 
     complaints = Complaints()
     found = () if text is None else parse_axes(text, known_names(system), complaints, place_in)
-    asked.complaints += [render_option(complaint, text or "", "--axes") for complaint in complaints.sorted()]
+    asked.complaints += [render_option(one, text or "", "--axes", asked.say) for one in complaints.sorted()]
     return found
 
 
@@ -158,16 +160,19 @@ def _model(texts: Mapping[str, Any], system: System | None, asked: Options) -> M
 
 
 def _continued(request: Request, path: Path, system: System, asked: Options) -> Request:
+    from mbsym.algebra.failures import message_of
     from mbsym.report.runs.earlier_run import Unfit, read_earlier
 
     try:
         earlier = read_earlier(path, system)
     except Unfit as reason:
-        asked.complain("--continue", "unfit-run", str(reason), "take the simulation.json of a run of this FILE")
+        asked.complain("--continue", "unfit-run", message_of(reason), "take the simulation.json of a run of this FILE")
         return request
     if 0 < request.time <= earlier.time:
-        hint = f"--time is counted from the start: take one beyond {earlier.time:.9g}"
-        asked.complain("--time", "conflicting-options", f"that run is at t = {earlier.time:.9g} already", hint)
+        there = f"{earlier.time:.9g}"
+        hint = Message("--time is counted from the start: take one beyond [[time]]", time=there)
+        told = Message("that run is at t = [[time]] already", time=there)
+        asked.complain("--time", "conflicting-options", told, hint)
     return replace(request, earlier=earlier)
 
 
@@ -196,15 +201,21 @@ def going_on(request: Request, given: Scenario | None, typed: Collection[str], a
         return request
     if request.model != earlier.model:
         for option in sorted({"--gravity", "--linear", "--without"} & set(typed)):
-            message = f"{option} does not go with --continue: that run was one {_worded(earlier.model)}"
+            message = Message("[[option]] does not go with --continue: that run was one as described", option=option)
+            if earlier.model.label != "as described":
+                words = "[[option]] does not go with --continue: that run was one of another model: [[model]]"
+                message = Message(words, option=option, model=worded(earlier.model.label))
             asked.complain(option, "conflicting-options", message, "leave it out: the model of that run is taken")
     request = replace(request, model=earlier.model, arithmetic=earlier.arithmetic)
     if request.method == "auto":
         request = _as_before(request, earlier, typed, asked)
     elif earlier.arithmetic not in METHODS[request.method].traits.scalars:
-        message = f"--method {request.method} does not go with --continue: that run was one in {earlier.arithmetic}"
+        words = "--method [[method]] does not go with --continue: that run was one in [[arithmetic]]"
+        message = Message(words, method=request.method, arithmetic=earlier.arithmetic)
         able = ", ".join(name for name, one in METHODS.items() if earlier.arithmetic in one.traits.scalars)
-        asked.complain("--method", "conflicting-options", message, f"these compute in it: {able}")
+        asked.complain(
+            "--method", "conflicting-options", message, Message("these compute in it: [[names]]", names=able)
+        )
     _check_values(request, given, asked)
     return request
 
@@ -213,14 +224,11 @@ def _as_before(request: Request, earlier: Earlier, typed: Collection[str], asked
     """With the method of the earlier run, its tolerance unless one was typed, or its step."""
     if earlier.step is not None:
         for option in sorted({"--tolerance", "--max-step"} & set(typed)):
-            message = f"{option} does not go with --continue: that run took steps of one length by {earlier.method}"
+            words = "[[option]] does not go with --continue: that run took steps of one length by [[method]]"
+            message = Message(words, option=option, method=earlier.method)
             asked.complain(option, "conflicting-options", message, "--method dop853 chooses its steps")
     tolerance = None if earlier.step is not None else request.tolerance or earlier.tolerance
     return replace(request, method=earlier.method, tolerance=tolerance, step=earlier.step)
-
-
-def _worded(model: Model) -> str:
-    return model.label if model.label == "as described" else f"of another model: {model.label}"
 
 
 def _check_values(request: Request, given: Scenario | None, asked: Options) -> None:
@@ -231,5 +239,5 @@ def _check_values(request: Request, given: Scenario | None, asked: Options) -> N
         return
     different = list(changed(request.earlier, given))
     if different:
-        message = f"that run had other values: {'; '.join(different)}"
+        message = Message("that run had other values: [[values]]", values="; ".join(different))
         asked.complain("--continue", "unfit-run", message, "repeat the --set of that run, or leave out --continue")

@@ -7,6 +7,7 @@ from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import Ranges
 from mbsym_cli.options import Options
 from mbsym_cli.variations import read_variations
@@ -63,7 +64,8 @@ def read_many(
     found = [one.variation for one in read or ()]
     if found and all(isinstance(one, Grid) for one in found):
         for option in sorted({"--seed", "--sampling"} & set(typed)):
-            told = f"{option} does not go with --vary {found[0].name}: a grid, of which nothing is drawn"
+            words = "[[option]] does not go with --vary [[name]]: a grid, of which nothing is drawn"
+            told = Message(words, option=option, name=found[0].name)
             options.complain(option, "conflicting-options", told, "draw it: name=uniform(low, high)")
     if given is None or read is None or seed is None or sampling is None:
         return None, names
@@ -81,12 +83,16 @@ def _check_method(wanted: Asked, options: Options) -> None:
 
     request = wanted.request
     if request.method != "auto" and request.method not in TABLEAUX:
-        told = f"members do not run side by side with {request.method}"
-        options.complain("--method", "unsuitable-method", told, f"choose from {', '.join(TABLEAUX)}")
+        told = Message("members do not run side by side with [[method]]", method=request.method)
+        options.complain(
+            "--method", "unsuitable-method", told, Message("choose from [[names]]", names=", ".join(TABLEAUX))
+        )
     for kind in wanted.formats:
         if kind not in ("csv", "svg", "png", "pdf"):
-            told = f"there is no {kind} of an ensemble"
-            options.complain("--format", "conflicting-options", told, "choose from csv, svg, png, pdf")
+            told = Message("there is no [[format]] of an ensemble", format=kind)
+            options.complain(
+                "--format", "conflicting-options", told, Message("choose from [[names]]", names="csv, svg, png, pdf")
+            )
 
 
 def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tuple[str, ...]:
@@ -94,7 +100,12 @@ def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tu
         return ()
     named = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
     if not named:
-        options.complain("--sensitivity", "missing-option", "there is no name in it", "for example theta,m1")
+        options.complain(
+            "--sensitivity",
+            "missing-option",
+            "there is no name in it",
+            Message("for example [[example]]", example="theta,m1"),
+        )
     if given is None:
         return named
     from mbsym.source.scope import closest
@@ -105,10 +116,13 @@ def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tu
     for name in named:
         if name not in known:
             close = closest(name, known)
-            hint = f"did you mean '{close}'?" if close else f"there are {', '.join(known)}"
-            options.complain("--sensitivity", "unknown-name", f"there is nothing called {name!r} here", hint)
+            hint = Message("there are [[names]]", names=", ".join(known))
+            if close:
+                hint = Message("did you mean '[[other]]'?", other=close)
+            told = Message("nothing is called '[[name]]' here", name=name)
+            options.complain("--sensitivity", "unknown-name", told, hint)
         elif name in following:
-            told = f"{name} follows from other parameters"
+            told = Message("[[name]] follows from other parameters", name=name)
             options.complain("--sensitivity", "bad-variation", told, "name those of which its relation is made")
     if _jumps(given):
         told = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"

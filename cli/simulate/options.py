@@ -14,6 +14,7 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
+from mbsym.expressions.message import Message, worded
 from mbsym.studies.request import fields_of
 from mbsym.studies.simulate import Request
 from mbsym_cli.console import OutPath
@@ -132,8 +133,9 @@ class Apart:
     hint: str | None = None
 
     @property
-    def message(self) -> str:
-        return f"{self.option} does not go with {self.other}: {self.why}"
+    def message(self) -> Message:
+        words = "[[option]] does not go with [[other]]: [[why]]"
+        return Message(words, option=self.option, other=self.other, why=worded(self.why))
 
 
 @dataclass(frozen=True)
@@ -245,7 +247,12 @@ def complain_of_pairs(typed: Collection[str], asked: Options) -> None:
             asked.complain(one.option.split()[0], "conflicting-options", one.message, one.hint)
     for need in NEEDED:
         if need.option in typed and need.other not in typed:
-            asked.complain(need.option, "missing-option", f"{need.option} goes with {need.other}", need.hint)
+            asked.complain(
+                need.option,
+                "missing-option",
+                Message("[[option]] goes with [[other]]", option=need.option, other=need.other),
+                need.hint,
+            )
 
 
 def complain_of_names(settings: Collection[str], others: Mapping[str, Collection[str]], asked: Options) -> None:
@@ -254,5 +261,6 @@ def complain_of_names(settings: Collection[str], others: Mapping[str, Collection
     for option, texts in others.items():
         for name in dict.fromkeys(text.partition("=")[0].strip() for text in texts):
             if name in given and name.isidentifier():  # what is no name is complained about where it is read
-                message = f"--set {name} does not go with {option} {name}: both give its value"
+                words = "--set [[name]] does not go with [[option]] [[name]]: both give its value"
+                message = Message(words, name=name, option=option)
                 asked.complain("--set", "conflicting-options", message)

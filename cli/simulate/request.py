@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.model.constraints import listed
 from mbsym.studies.simulate import Request as Fields
 from mbsym_cli.options import Options
@@ -78,7 +79,8 @@ def read_request(system: System | None, texts: Mapping[str, Any], options: Optio
     if system is not None and (texts["samples"] is None or texts["every"] is None):
         _check_rows(system, end, read["every"], read["samples"], options)
     if step is not None and end is not None and step > end:
-        options.complain("--step", "bad-number", f"{step:g} is longer than the whole time {end:g}")
+        told = Message("[[step]] is longer than the whole time [[time]]", step=f"{step:g}", time=f"{end:g}")
+        options.complain("--step", "bad-number", told)
     request = Request(
         time=end or 0.0,
         method=method or "auto",
@@ -101,8 +103,8 @@ def _check_rows(system: System, end: float | None, every: float | None, samples:
         rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
     most = most_rows_in_file(system)
     if rows is not None and rows > most:
-        hint = f"at most {most} for this system; use --every with a longer interval, or --samples"
-        asked.complain(option, "too-large", f"{rows} rows are too many", hint)
+        hint = Message("at most [[most]] for this system; use --every with a longer interval, or --samples", most=most)
+        asked.complain(option, "too-large", Message("[[rows]] rows are too many", rows=rows), hint)
 
 
 def check_held(request: Request, system: System | None, many: bool, asked: Options) -> None:
@@ -119,10 +121,13 @@ def check_held(request: Request, system: System | None, many: bool, asked: Optio
     tied = system is not None and bool(system.constraints)  # their drift is measured by the whole motion
     if system is None or not (needing or tied) or rows is None or rows <= most_rows(system):
         return
-    way_out = f", or leave out {', '.join(needing)}" if needing and not tied else ""
-    hint = f"at most {most_rows(system)} for this system{way_out}"
+    hint = Message("at most [[most]] for this system", most=most_rows(system))
+    if needing and not tied:
+        words = "at most [[most]] for this system, or leave out [[options]]"
+        hint = Message(words, most=most_rows(system), options=", ".join(needing))
     option = "--every" if request.every is not None else "--samples"
-    asked.complain(option, "too-large", f"{rows} rows are too many to be held in memory, as they have to be here", hint)
+    told = Message("[[rows]] rows are too many to be held in memory, as they have to be here", rows=rows)
+    asked.complain(option, "too-large", told, hint)
 
 
 def _check_method(system: System | None, request: Request, texts: Mapping[str, Any], asked: Options) -> None:
@@ -139,31 +144,47 @@ def _check_method(system: System | None, request: Request, texts: Mapping[str, A
     fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
     if name == "auto":
         if has_step and not has_tolerance:
-            hint = f"--step goes with a method of fixed step, for example --method rk4 (also {fixed})"
+            words = "--step goes with a method of fixed step, for example --method rk4 (also [[others]])"
+            hint = Message(words, others=fixed)
             asked.complain("--step", "conflicting-options", "--method auto chooses its steps by a tolerance", hint)
         return
     traits = METHODS[name].traits
     if request.arithmetic not in traits.scalars:
         able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
-        message = f"{name} does not compute in {request.arithmetic}"
-        asked.complain("--arithmetic", "conflicting-options", message, f"these do: {able or 'none'}")
+        message = Message("[[method]] does not compute in [[arithmetic]]", method=name, arithmetic=request.arithmetic)
+        asked.complain(
+            "--arithmetic",
+            "conflicting-options",
+            message,
+            Message("these do: [[names]]", names=able) if able else "no method does",
+        )
     if traits.fixed and has_tolerance:
-        place = "leave it out" if has_step else "give a --step in its place"
-        hint = f"{place}, or take a method that chooses its steps, for example --method dop853"
-        asked.complain("--tolerance", "conflicting-options", f"{name} takes steps of one length, no tolerance", hint)
+        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
+        if has_step:
+            hint = "leave it out, or take a method that chooses its steps, for example --method dop853"
+        told = Message("[[method]] takes steps of one length, no tolerance", method=name)
+        asked.complain("--tolerance", "conflicting-options", told, hint)
     elif traits.fixed and not has_step:
         many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
-        hint = f"for example {many}, a {TRIAL_STEPS}th of the time; then halve it until the results no longer change"
-        asked.complain("--method", "missing-option", f"{name} takes steps of one length, and there is no --step", hint)
+        hint = Message(
+            "for example [[step]], a [[steps]]th of the time; then halve it until the results no longer change",
+            step=many, steps=TRIAL_STEPS,
+        )  # fmt: skip
+        told = Message("[[method]] takes steps of one length, and there is no --step", method=name)
+        asked.complain("--method", "missing-option", told, hint)
     if traits.fixed and texts["max_step"] is not None:
-        hint = f"give a shorter --step in its place, for example --step {request.longest or 0.01:g}"
-        asked.complain("--max-step", "conflicting-options", f"{name} takes steps of one length", hint)
+        example = f"{request.longest or 0.01:g}"
+        hint = Message("give a shorter --step in its place, for example --step [[step]]", step=example)
+        told = Message("[[method]] takes steps of one length", method=name)
+        asked.complain("--max-step", "conflicting-options", told, hint)
     if not traits.fixed and has_step and not has_tolerance:
-        hint = f"leave --step out, give a --tolerance, or take a method of fixed step: {fixed}"
-        asked.complain("--step", "conflicting-options", f"{name} chooses its steps by a --tolerance", hint)
+        hint = Message("leave --step out, give a --tolerance, or take a method of fixed step: [[names]]", names=fixed)
+        told = Message("[[method]] chooses its steps by a --tolerance", method=name)
+        asked.complain("--step", "conflicting-options", told, hint)
     loads = without_potential(system) if traits.conservative and system is not None else ()
     if loads:
-        message = f"{name} is for conservative systems; these loads have no potential: {', '.join(loads)}"
+        words = "[[method]] is for conservative systems; these loads have no potential: [[loads]]"
+        message = Message(words, method=name, loads=", ".join(loads))
         asked.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
 
 
@@ -179,11 +200,11 @@ def check_constrained(system: System | None, wanted: Asked, asked: Options) -> N
     request = wanted.request
     told = listed(system.constraints)
     if request.model.linear:
-        message = f"--linear does not take constraints into account yet ({told})"
+        message = Message("--linear does not take constraints into account yet ([[which]])", which=told)
         asked.complain("--linear", "constraints", message, "without them this would be another system")
     if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
-        hint = "these do: auto, dop853, rk45, rk4, taylor, radau, bdf"
-        message = f"{request.method} does not keep to constraints ({told})"
+        hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, radau, bdf")
+        message = Message("[[method]] does not keep to constraints ([[which]])", method=request.method, which=told)
         asked.complain("--method", "unsuitable-method", message, hint)
 
 
@@ -203,14 +224,21 @@ def check_states(system: System | None, wanted: Asked, asked: Options) -> None:
     }
     for option, there in options.items():
         if there:
-            message = f"{option} knows coordinates and their velocities only, and this system has speeds"
+            words = "[[option]] knows coordinates and their velocities only, and this system has speeds"
+            message = Message(words, option=option)
             asked.complain(option, "variables", message, WAY_OUT)
     if request.method == "lsoda" and any(body.orientation for body in system.bodies):
         message = "lsoda does not keep quaternions and unit vectors at their lengths"
         asked.complain("--method", "unsuitable-method", message, "take dop853, rk4, taylor, radau or bdf")
     if request.method in METHODS and METHODS[request.method].traits.conservative:
-        message = f"{request.method} integrates coordinates and their velocities only, and this system has speeds"
-        asked.complain("--method", "unsuitable-method", message, f"take dop853, rk4, taylor or radau; {WAY_OUT}")
+        words = "[[method]] integrates coordinates and their velocities only, and this system has speeds"
+        message = Message(words, method=request.method)
+        asked.complain(
+            "--method",
+            "unsuitable-method",
+            message,
+            joined(("take dop853, rk4, taylor or radau", worded(WAY_OUT)), "; "),
+        )
 
 
 # --- ``--accuracy`` and ``--plan`` ---
@@ -261,7 +289,8 @@ def _accuracy(system: System | None, text: str | None, asked: Options) -> Accura
         value = asked.number("--accuracy", right if equals else left, FINEST, COARSEST)
         name = left if equals else "everything"
         if name in named or (not equals and everything is not None):
-            asked.complain("--accuracy", "conflicting-options", f"two errors are given for {name}")
+            told = Message("two errors are given for [[name]]", name=name if equals else worded(name))
+            asked.complain("--accuracy", "conflicting-options", told)
         elif not equals:
             everything = value
         elif system is None or asked.word("--accuracy", name, known, "quantity") is not None:

@@ -81,16 +81,19 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
         complain(file, say(Message("interrupted while the run was being planned; nothing was run or written")))
         return INTERRUPTED
     except NoEvent as error:
-        options.complain(f"--{error.option}", "no-value", f"{ascii_safe(error.text)} has no value: {error.reason}")
+        told = Message("[[name]] has no value: [[why]]", name=ascii_safe(error.text), why=error.reason)
+        options.complain(f"--{error.option}", "no-value", told)
         options.refused(file)
         return BAD_INPUT
     except Unusable as error:
-        options.complain("--method", "unsuitable-method", str(error), "--method auto chooses one that can")
+        options.complain("--method", "unsuitable-method", message_of(error), "--method auto chooses one that can")
         options.refused(file)
         return BAD_INPUT
     except NotAnalytic as error:
         hint = "leave --certify out: enclosures go through power series"
-        options.complain("--certify", "not-analytic", f"{error} in the equations has no power series", hint)
+        options.complain(
+            "--certify", "not-analytic", Message("[[what]] in the equations has no power series", what=str(error)), hint
+        )
         options.refused(file)
         return BAD_INPUT
     except (Breakdown, Failure) as error:
@@ -196,6 +199,7 @@ def simulated(file: Path, texts: Mapping[str, Any]) -> int:
     folder, settings = folder_for(file, texts["out"]), texts["values"]
     system = read_description(file, moving="simulate")
     asked, context = Options(), click.get_current_context()
+    asked.say = Language("" if system is None else system.language).say
     typed = typed_options(context)
     complain_of_pairs(typed, asked)
     complain_of_names(settings, {"--vary": texts["vary"], "--without": texts["without"]}, asked)

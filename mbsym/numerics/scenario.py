@@ -15,10 +15,11 @@ from flint import arb, ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
-from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint
+from mbsym.algebra.failures import Failure, NotRational, NoValue, SingularPoint, message_of
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import Expression, names
 from mbsym.expressions.tree import text as spelled
 from mbsym.mechanics.given_matrices import refuse_matrices
@@ -133,7 +134,7 @@ def scenario(
         return _with_own(system, own, overrides, numbers, missing, given_laws, inputs, declared)
     for name in own if not state else ():
         if name in overrides:
-            text = f"'{name}' is a declared variable, and positions are taken in coordinates here"
+            text = Message("'[[name]]' is a declared variable, and positions are taken in coordinates here", name=name)
             numbers.contradictions.append(Contradiction("misplaced-name", name, text))
     given = initial_values(system, overrides)
     positions, velocities = [], []
@@ -243,7 +244,7 @@ class _Numbers:
         try:
             return exact(expression, self.known)
         except Failure as reason:
-            text = f"{name} has no value: {reason}"
+            text = Message("[[name]] has no value: [[why]]", name=name, why=message_of(reason))
             self.contradictions.append(Contradiction("bad-number", name.split(" ")[-1], text))
             self.refused.add(name)
             return Fraction(0)
@@ -280,22 +281,33 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             follows = numbers.value(f"the relation of {relation.name}", relation.value)
             own = numbers.known[relation.name]
             if abs(follows - own) > AGREEMENT * max(abs(follows), abs(own)):
-                text = f"{relation.name} = {float(own):.12g} contradicts its relation, which gives "
-                text += f"{float(follows):.12g}"
+                text = Message(
+                    "[[name]] = [[value]] contradicts its relation, which gives [[other]]",
+                    name=relation.name, value=f"{float(own):.12g}", other=f"{float(follows):.12g}",
+                )  # fmt: skip
                 numbers.contradictions.append(Contradiction("conflicting-values", relation.name, text))
     for parameter in system.parameters:
         found = numbers.known.get(parameter.name)
         if found is not None and not has_sign(found, parameter.sign):
-            text = f"{parameter.name} = {float(found):.12g}, but it is declared {parameter.sign}"
+            text = Message(
+                "[[name]] = [[value]], but it is declared [[sign]]",
+                name=parameter.name, value=f"{float(found):.12g}", sign=worded(parameter.sign),
+            )  # fmt: skip
             inferred = parameter.value is not None and parameter.sign in ("positive", "negative")
-            hint = f"if its value alone says so, {parameter.name}: {{real: true, value: ...}} allows any sign"
+            hint = Message(
+                "if its value alone says so, [[entry]] allows any sign",
+                entry=f"{parameter.name}: {{real: true, value: ...}}",
+            )
             wrong = Contradiction("sign-contradiction", parameter.name, text, hint if inferred else None)
             numbers.contradictions.append(wrong)
     for assumption, left, right in broken(system, numbers.known, AGREEMENT, _evaluated) if assumed else ():
         used = names(assumption.left) | names(assumption.right)
         name = next((one for one in overrides if one in used), min(used, default=""))
         written = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
-        told = f"the values break the assumption {written}: {float(left):.12g} against {float(right):.12g}"
+        told = Message(
+            "the values break the assumption [[assumption]]: [[left]] against [[right]]",
+            assumption=written, left=f"{float(left):.12g}", right=f"{float(right):.12g}",
+        )  # fmt: skip
         numbers.contradictions.append(Contradiction("broken-assumption", name, told))
 
 

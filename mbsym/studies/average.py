@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import Named, Names, Number, Text
 from mbsym.studies.study import (
     Answer,
@@ -73,17 +74,19 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     from mbsym.analysis.averaged import fast_phases
 
     known, phase = fast_phases(system), request.phase
-    listed = ", ".join(known) or "none"
+    listed = Message("prescribed quantities whose rate is a parameter: [[names]]", names=", ".join(known))
+    if not known:
+        listed = Message("there is no prescribed quantity whose rate is a parameter")
     if phase is None and len(known) != 1:
         hint = "name one of them" if known else "prescribed: {phi: {rate: nu}}, nu a parameter"
-        yield Unfit("--phase", "no-phase", f"prescribed quantities whose rate is a parameter: {listed}", hint)
+        yield Unfit("--phase", "no-phase", listed, hint)
     elif phase is not None and phase not in known:
-        told = f"{phase!r} is no prescribed quantity whose rate is a parameter"
+        told = Message("[[name]] is no prescribed quantity whose rate is a parameter", name=repr(phase))
         yield Unfit("--phase", "unknown-name", told, listed)
     for option, names in (("--small", request.small), ("--order", request.order)):
         for name in names:
             if name not in system.parameter_names:
-                yield Unfit(option, "unknown-name", f"there is no parameter called {name!r}")
+                yield Unfit(option, "unknown-name", Message("there is no parameter called [[name]]", name=repr(name)))
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import Number, Numbers, Whole
 from mbsym.studies.study import (
     FILE,
@@ -61,7 +62,11 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         return
     for name in request.values:
         if name == small.name or name in dict(small.powers):
-            yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+            yield Unfit(
+                "--set",
+                "bad-assignment",
+                Message("[[name]] belongs to the small parameter: it stays a symbol", name=name),
+            )
 
 
 @dataclass(frozen=True)

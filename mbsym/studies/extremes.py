@@ -50,7 +50,9 @@ class Request:
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     if request.sequences and system.constraints:
-        told = f"sequences are ranked without constraints, and here are some ({listed(system.constraints)})"
+        told = Message(
+            "sequences are ranked without constraints, and here are some ([[which]])", which=listed(system.constraints)
+        )
         yield Unfit("--sequences", "constraints", told, "without them this would be another system")
 
 

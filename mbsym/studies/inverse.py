@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from mbsym.expressions.message import Message
 from mbsym.studies.described import analysis_of
 from mbsym.studies.request import Formulas, Stateless, Whole, duration
 from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program, refused
@@ -50,8 +51,8 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     """Coordinates without a motion; with constraints some may follow from the others, which is seen at every time."""
     for name in system.coordinates if not (system.constraints and request.motion) else ():
         if name not in request.motion:
-            hint = f'for example --motion "{name}=0"'
-            yield Unfit("--motion", "missing-option", f"no motion is given for {name}", hint)
+            hint = Message("for example [[example]]", example=f'--motion "{name}=0"')
+            yield Unfit("--motion", "missing-option", Message("no motion is given for [[name]]", name=name), hint)
 
 
 def derive(asked: Asked, request: Request, watch: Watch) -> InverseDynamics:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Number, Values, Whole, duration
@@ -50,15 +51,28 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     count, every, time = request.count, request.every, request.time
     there = 2 * len(system.coordinates)
     if count is not None and count > there:
-        yield Unfit("--count", "bad-number", f"{count} is out of bounds: at most {there}")
+        yield Unfit(
+            "--count", "bad-number", Message("[[value]] is out of bounds: at most [[most]]", value=count, most=there)
+        )
     if every is None or time is None:
         return
     if time / every > 1e6:
-        yield Unfit("--every", "too-large", f"{time / every:.3g} intervals are too many", "at most a million")
+        yield Unfit(
+            "--every",
+            "too-large",
+            Message("[[count]] intervals are too many", count=f"{time / every:.3g}"),
+            "at most a million",
+        )
     if time / every < LEAST_INTERVALS * (1 - 1e-12):
-        needed = f"a --time of {LEAST_INTERVALS * every:g} and more: {LEAST_INTERVALS} intervals"
-        hint = f"at most {time / LEAST_INTERVALS:.3g} here; with fewer nothing can be said of the uncertainty"
-        yield Unfit("--every", "too-large", f"--every {every:g} goes with {needed}", hint)
+        told = Message(
+            "--every [[every]] goes with a --time of [[time]] and more: [[least]] intervals",
+            every=f"{every:g}", time=f"{LEAST_INTERVALS * every:g}", least=LEAST_INTERVALS,
+        )  # fmt: skip
+        hint = Message(
+            "at most [[most]] here; with fewer nothing can be said of the uncertainty",
+            most=f"{time / LEAST_INTERVALS:.3g}",
+        )
+        yield Unfit("--every", "too-large", told, hint)
 
 
 @public(Request)

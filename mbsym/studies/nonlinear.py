@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message, worded
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import ExactSettings, Range
 from mbsym.studies.study import (
@@ -70,15 +71,19 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     related = {one.name for one in system.relations}
     for name, value in request.values.items():
         if name not in signs:
-            yield Unfit("--set", "unknown-name", f"{name} is a symbol of the notation", "set the parameters in it")
+            told = Message("[[name]] is a symbol of the notation", name=name)
+            yield Unfit("--set", "unknown-name", told, "set the parameters in it")
         elif name in related:
-            yield Unfit("--set", "wrong-use", f"{name} follows from a relation", "set the parameters in it")
+            told = Message("'[[name]]' follows from a relation", name=name)
+            yield Unfit("--set", "wrong-use", told, "set the parameters in it")
         elif not has_sign(value, signs[name]):
-            yield Unfit("--set", "sign-contradiction", f"{name} is declared {signs[name]}, {value} is not")
+            sign = worded(str(signs[name]))
+            told = Message("[[name]] is declared [[sign]], [[value]] is not", name=name, sign=sign, value=str(value))
+            yield Unfit("--set", "sign-contradiction", told)
     if request.vary is not None:
         varied = request.vary.name
         if varied in request.values:
-            told = f"'{varied}' has an interval and a number"
+            told = Message("'[[name]]' has an interval and a number", name=varied)
             yield Unfit("--set", "repeated-name", told, "leave one of them out")
         names = [name for name in _lacking(system, request.values) if name != varied]
         if names:

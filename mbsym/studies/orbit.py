@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Named, Number, Values, Word
@@ -55,8 +56,10 @@ class Request:
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     for name in request.turns:
         if name not in system.coordinates:
-            told = f"there is no coordinate {name!r}"
-            yield Unfit("--turns", "unknown-name", told, f"there are {', '.join(system.coordinates)}")
+            told = Message("there is no coordinate [[name]]", name=repr(name))
+            yield Unfit(
+                "--turns", "unknown-name", told, Message("there are [[names]]", names=", ".join(system.coordinates))
+            )
 
 
 @public(Request)

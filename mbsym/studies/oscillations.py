@@ -7,6 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
 from mbsym.studies.study import (
     FILE,
@@ -92,11 +93,15 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
     known = (*system.coordinates, *system.velocities, *system.variables)
     if leading and leading not in known:
-        told = f"there is no variable called {leading[:60]!r}"
-        yield Unfit("--of", "unknown-name", told, f"one of: {', '.join(known)}")
+        told = Message("there is no variable called [[name]]", name=repr(leading[:60]))
+        yield Unfit("--of", "unknown-name", told, Message("there are [[names]]", names=", ".join(known)))
     for name in request.values:
         if small is not None and (name == small.name or name in {*dict(small.powers)} - {*system.parameter_names}):
-            yield Unfit("--set", "bad-assignment", f"{name} belongs to the small parameter: it stays a symbol")
+            yield Unfit(
+                "--set",
+                "bad-assignment",
+                Message("[[name]] belongs to the small parameter: it stays a symbol", name=name),
+            )
     if request.scale is not None:
         yield from _unscaled(request.scale, system)
     if "language" in typed and "format" not in typed:
@@ -114,7 +119,9 @@ def _unscaled(text: str, system: System) -> Iterator[Unfit]:
         yield Unfit("--scale", one.code, one.message, one.hint)
     if found is not None and system.small is not None and system.small.name in found.new:
         hint = "the series are in its powers, which stand before what is scaled"
-        yield Unfit("--scale", "misplaced-name", f"{system.small.name} is the small parameter", hint)
+        yield Unfit(
+            "--scale", "misplaced-name", Message("[[name]] is the small parameter", name=system.small.name), hint
+        )
 
 
 @dataclass(frozen=True)

@@ -132,7 +132,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
             Message("for example [[example]]", example="--time 60"),
         )
     if not moving and "time" in typed:
-        told = f"--time goes with --measure {MOTION}FORMULA only"
+        told = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
         yield Unfit("--time", "conflicting-options", told, "leave it out")
     if "parquet" in request.format and not _arrow():
         yield Unfit("--format", "missing-package", "parquet needs PyArrow", "pip install 'mbsym[parquet]'")
@@ -144,7 +144,9 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
             code = "bad-variation" if name in known else "unknown-name"
             yield Unfit(f"--vary {name}", code, told, hint or None)
     for name in request.values.keys() & {one.name for one in variations}:
-        yield Unfit(f"--set {name}", "conflicting-options", f"{name} is varied", "leave one of the two out")
+        yield Unfit(
+            f"--set {name}", "conflicting-options", Message("[[name]] is varied", name=name), "leave one of the two out"
+        )
 
 
 def _arrow() -> bool:
@@ -223,12 +225,16 @@ def _executor(system: System, request: Request, wanted: Wanted, measure: Measure
 
 def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     if found.cut:
-        told = f"interrupted; {found.done} of {found.asked} chunks are kept: the same command goes on from there"
+        words = "interrupted; [[done]] of [[all]] chunks are kept: the same command goes on from there"
+        told = Message(words, done=found.done, all=found.asked)
         return Answer(complaints=(told,), code=Exit.INTERRUPTED)
     if request.shard is not None:
+        from mbsym.report.language import Language
+
         number, of = request.shard
-        told = f"shard {number} of {of}: {found.asked} chunks are done; without --shard all are put together"
-        return Answer((line(f"  {told}"),))
+        words = "shard [[number]] of [[all]]: [[count]] chunks are done; without --shard all are put together"
+        told = Message(words, number=number, all=of, count=found.asked)
+        return Answer((line(f"  {Language(asked.system.language).say(told)}"),))
     from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total

@@ -19,6 +19,8 @@ ROOT = Path(mbsym.__file__).parent
 LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "problems")
 #: What is said before a reason, by the function that says it, and which argument that is.
 BEFORE = {"refused": 0, "failed": 1}
+#: Where among the arguments of a complaint about an option the message stands; a hint follows.
+COMPLAINTS = {"complain": 2, "complain_whole": 3}
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,11 @@ class Module(ast.NodeVisitor):
             self._words(node.args[:1], node)
         elif name in ("error", "warning") and self.of_descriptions:
             self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
+        elif name == "Unfit" and self.name.startswith("studies/"):
+            self._words(self._unpacked(node.args)[2:4], node)
+        elif name in COMPLAINTS and self.name.startswith("cli/"):
+            first = COMPLAINTS[name]
+            self._words(self._unpacked(node.args)[first : first + 2], node)
         elif name in ("Breakdown", "_fail") and self.name.startswith("numerics/"):
             self._words(node.args[1:2], node)
         elif name == "Counted":
@@ -82,6 +89,16 @@ class Module(ast.NodeVisitor):
         elif name == "Check":
             self._words([x for k, x in enumerate(node.args[:5]) if k != 3 and not isinstance(x, ast.Starred)], node)
         self._words([x.value for x in node.keywords if x.arg in ("remark", "detail", "why_not", "missing")], node)
+
+    def _unpacked(self, values: list[ast.expr]) -> list[ast.expr]:
+        """Of ``*NAMED`` what that tuple of the module holds."""
+        found: list[ast.expr] = []
+        for one in values:
+            starred = isinstance(one, ast.Starred) and isinstance(one.value, ast.Name)
+            named = self.known.get(ast.unparse(one)[1:], []) if starred else []
+            whole = [x for x in named if isinstance(x, ast.Tuple)]
+            found += whole[0].elts if whole else [one]
+        return found
 
     def _message(self, node: ast.Call) -> None:
         first = node.args[0]

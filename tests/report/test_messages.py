@@ -44,6 +44,7 @@ from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
+from mbsym_cli.simulate.options import APART, NEEDED
 from tests.report import said
 
 OTHERS = [name for name in LANGUAGES if name != "en"]
@@ -138,6 +139,31 @@ def test_each_gap_of_a_message_has_its_value_and_each_value_its_gap(told: list[s
         if one.gaps is not None and one.gaps != frozenset(GAP.findall(one.text))
     ]
     assert not wrong
+
+
+def test_what_is_wrong_with_a_complaint_about_options_is_found() -> None:
+    """Negative control: in a study, in a command, and by a tuple that has a name."""
+    study = """
+UNWRITTEN = ("code", "nobody says this", "nor this")
+
+def unfit(name):
+    yield Unfit("--set", "code", f"{name} is lost", Message("take [[other]]", other=name))
+    yield Unfit("--set", *UNWRITTEN)
+"""
+    module = said.Module("studies/planted.py", ast.parse(study), frozenset())
+    assert [place.partition(": ")[0] for place in module.open] == ["studies/planted.py:5"]
+    assert {one.text for one in module.texts} == {"take [[other]]", "nobody says this", "nor this"}
+    command = 'asked.complain("--set", "code", "nobody says this", f"take {name}")'
+    module = said.Module("cli/planted.py", ast.parse(command), frozenset())
+    assert len(module.open) == 1
+    assert [one.text for one in module.texts] == ["nobody says this"]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_why_options_of_a_run_do_not_go_together_is_translated(name: str) -> None:
+    known = {english for _, english in messages(name)}
+    asked = {text for one in APART for text in (one.why, one.hint)} | {one.hint for one in NEEDED}
+    assert not {text for text in asked if text is not None} - known
 
 
 PLANTED = """

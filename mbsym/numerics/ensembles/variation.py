@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fractions import Fraction
 from math import isfinite, prod
 from typing import Any
@@ -15,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.base import Lowering
-from mbsym.algebra.failures import Failure
-from mbsym.expressions.guessing import guess
+from mbsym.algebra.failures import Failure, message_of
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import names, number
 from mbsym.expressions.tree import text as spelled
 from mbsym.model.assumptions import has_sign, holds
@@ -110,23 +111,32 @@ def complaints(
     seen: set[str] = set()
     for one in variations:
         if one.name not in known:
-            yield one.name, f"there is nothing called '{one.name}' to vary{guess(one.name, known)}", ""
+            told = Message("there is nothing called '[[name]]' to vary", name=one.name)
+            near = get_close_matches(one.name, known, 1)
+            hint = Message("did you mean '[[other]]'?", other=near[0]) if near else ""
+            if not near and known:
+                hint = Message("there are [[names]]", names=", ".join(known))
+            yield one.name, told, hint
         elif one.name in following:
-            yield one.name, f"{one.name} follows from other parameters", "vary those of which its relation is made"
+            told = Message("[[name]] follows from other parameters", name=one.name)
+            yield one.name, told, "vary those of which its relation is made"
         if one.name in seen:
-            yield one.name, f"{one.name} is varied twice", "join the two"
+            yield one.name, Message("[[name]] is varied twice", name=one.name), "join the two"
         seen.add(one.name)
         yield from badly_ranged(one)
     clash = list(mixed(variations))
     yield from clash
     grids = [one for one in variations if isinstance(one, Grid)]
     if not clash and grids and members is not None:
-        yield grids[0].name, f"a grid says itself how many {what} it has", f"leave --{what} out"
+        told = Message("a grid says itself how many [[what]] it has", what=worded(what))
+        yield grids[0].name, told, Message("leave --[[option]] out", option=what)
     elif not grids and members is None and variations:
-        yield variations[0].name, f"how many {what} to draw is not said", f"for example --{what} {example}"
+        told = Message("how many [[what]] to draw is not said", what=worded(what))
+        yield variations[0].name, told, Message("for example [[example]]", example=f"--{what} {example}")
     count = prod(one.count for one in grids) if grids else members or 0
     if count > most:
-        yield variations[0].name, f"{count} {what} are too many", f"at most {most}"
+        told = Message("[[count]] [[what]] are too many", count=count, what=worded(what))
+        yield variations[0].name, told, Message("at most [[most]]", most=most)
 
 
 def complaints_of(
@@ -141,13 +151,18 @@ def badly_ranged(one: Variation) -> Iterator[tuple[str, str, str]]:
     """What is wrong with one range: (name, sentence, hint)."""
     ends = (one.low, one.high) if isinstance(one, Grid) else (one.first, one.second)
     if not all(map(isfinite, ends)):
-        yield one.name, f"the range of {one.name} is not finite", ""
+        yield one.name, Message("the range of [[name]] is not finite", name=one.name), ""
     elif isinstance(one, Grid) and one.low == one.high:
-        yield one.name, f"the range of {one.name} is empty: {one.low:g} to {one.high:g}", "give two ends"
+        yield one.name, _empty(one.name, one.low, one.high), "give two ends"
     if isinstance(one, Draw) and one.kind == NORMAL and not one.second > 0:
-        yield one.name, f"the standard deviation of {one.name} must be positive, not {one.second:g}", ""
+        words = "the standard deviation of [[name]] must be positive, not [[value]]"
+        yield one.name, Message(words, name=one.name, value=f"{one.second:g}"), ""
     if isinstance(one, Draw) and one.kind == UNIFORM and not one.second > one.first:
-        yield one.name, f"the range of {one.name} is empty: {one.first:g} to {one.second:g}", "the smaller one first"
+        yield one.name, _empty(one.name, one.first, one.second), "the smaller one first"
+
+
+def _empty(name: str, low: float, high: float) -> Message:
+    return Message("the range of [[name]] is empty: [[low]] to [[high]]", name=name, low=f"{low:g}", high=f"{high:g}")
 
 
 def mixed(variations: Sequence[Variation]) -> Iterator[tuple[str, str, str]]:
@@ -222,7 +237,9 @@ def members(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Membe
     starts = _begun(dynamics, varied, values) if one_by_one else _starts(dynamics, varied, values, parameters)
     bad = np.flatnonzero(~np.all(np.isfinite(starts), axis=0))
     if len(bad):
-        raise Unvaried([(varied[0], f"{len(bad)} of {count} members have no initial state", "")])
+        raise Unvaried(
+            [(varied[0], Message("[[count]] of [[all]] members have no initial state", count=len(bad), all=count), "")]
+        )
     return Members(dynamics, tuple(varied), values, starts, parameters)
 
 
@@ -249,12 +266,14 @@ def _begun(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Any:
             starts.append([float(x) for x in begun.state])
             if dynamics.keeps(begun):
                 continue
-            why = "other rows of the constraints follow from others with {} than at the description's values"
+            words = "other rows of the constraints follow from others with [[values]] than at the description's values"
+            why: dict[str, str] = {}
             remedy = "give the description values like those of the range, or narrow it"
         except (Failure, Incomplete) as reason:
-            why, remedy = f"no motion begins with {{}}: {reason}", "narrow the range"
+            words, remedy = "no motion begins with [[values]]: [[why]]", "narrow the range"
+            why = {"why": message_of(reason)}
         told = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
-        raise Unvaried([(varied[0], why.format(told), remedy)])
+        raise Unvaried([(varied[0], Message(words, values=told, **why), remedy)])
     return np.array(starts).T
 
 
@@ -268,12 +287,15 @@ def _signs(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, 
     for name, row in zip(moving, found, strict=True):
         ends = [float(np.min(row)), float(np.max(row))]
         if not np.all(np.isfinite(row)):
-            yield name, f"{name} has no value in {int(np.sum(~np.isfinite(row)))} members", ""
+            count = int(np.sum(~np.isfinite(row)))
+            yield name, Message("[[name]] has no value in [[count]] members", name=name, count=count), ""
             continue
         values = [*ends, *([0.0] if np.any(row == 0) else [])]
         wrong = next((value for value in values if not has_sign(Fraction(value), signs[name])), None)
         if wrong is not None:
-            yield name, f"{name} = {wrong:.12g} in some member, but it is declared {signs[name]}", "narrow its range"
+            words = "[[name]] = [[value]] in some member, but it is declared [[sign]]"
+            value, sign = f"{wrong:.12g}", worded(signs[name])
+            yield name, Message(words, name=name, value=value, sign=sign), "narrow its range"
 
 
 def _assumptions(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, str]]:
@@ -290,5 +312,6 @@ def _assumptions(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str,
         broken = np.flatnonzero(~np.array([holds(value, assumption.relation) for value in values]))
         if len(broken):
             told = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
-            count = f"{len(broken)} of {len(values)} members break the assumption {told}"
+            words = "[[count]] of [[all]] members break the assumption [[assumption]]"
+            count = Message(words, count=len(broken), all=len(values), assumption=told)
             yield next(name for name in dynamics.free), count, "narrow the range"

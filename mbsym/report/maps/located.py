@@ -16,6 +16,7 @@ from flint import fmpq
 from mbsym.algebra.plane import Point
 from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import compare, sign
+from mbsym.expressions.message import Message
 from mbsym.maps.mapping import Judge
 from mbsym.maps.result import Cell, Lack, Map, Of, Shape
 from mbsym.maps.slices import Layer, Stack, at_level
@@ -58,19 +59,21 @@ def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wro
     try:
         lines = list(csv.reader(io.StringIO(text, newline="")))
     except csv.Error as error:
-        return None, [Wrong(1, f"it cannot be read: {error}")]
+        return None, [Wrong(1, Message("it cannot be read: [[why]]", why=str(error)))]
     if not lines:
         return None, [Wrong(1, "it is empty: a header with the names of the axes is needed")]
     header = [name.strip() for name in lines[0]]
-    wrong = [Wrong(1, f"there is no column '{name}'") for name in axes if name not in header]
-    wrong += [Wrong(1, f"there are two columns '{name}'") for name in axes if header.count(name) > 1]
+    wrong = [Wrong(1, Message("there is no column '[[name]]'", name=name)) for name in axes if name not in header]
     wrong += [
-        Wrong(1, f"the column '{name}' would be written a second time")
+        Wrong(1, Message("there are two columns '[[name]]'", name=name)) for name in axes if header.count(name) > 1
+    ]
+    wrong += [
+        Wrong(1, Message("the column '[[name]]' would be written a second time", name=name))
         for name in (WHERE, VERDICT, BORDER)
         if name in header
     ]
     if len(lines) - 1 > MOST_POINTS:
-        wrong.append(Wrong(1, f"more than {MOST_POINTS} rows"))
+        wrong.append(Wrong(1, Message("more than [[most]] rows", most=MOST_POINTS)))
     if wrong:
         return None, wrong
     places = [header.index(name) for name in axes]
@@ -79,11 +82,15 @@ def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wro
         if not line:
             continue
         if len(line) != len(header):
-            wrong.append(Wrong(number, f"{len(line)} entries under {len(header)} columns"))
+            wrong.append(
+                Wrong(
+                    number, Message("[[count]] entries under [[columns]] columns", count=len(line), columns=len(header))
+                )
+            )
             continue
         found = [_number(line[k]) for k in places]
         wrong += [
-            Wrong(number, f"{name}: a rational or decimal number is wanted")
+            Wrong(number, Message("[[name]]: a rational or decimal number is wanted", name=name))
             for name, value in zip(axes, found, strict=True)
             if value is None
         ]

@@ -10,6 +10,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
+from mbsym.expressions.message import Message
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Assignments, Number, Range, formats, language
 from mbsym.studies.section import against_sign, unless_parameter
@@ -86,7 +87,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     else:
         yield from unless_parameter("--vary", request.varied, system)
         if request.varied in request.values:
-            told = f"'{request.varied}' has an interval and a number"
+            told = Message("'[[name]]' has an interval and a number", name=request.varied)
             yield Unfit("--set", "repeated-name", told, "leave one of them out")
         yield from against_sign("--vary", request.vary, system)
     overrides: dict[str, Value] = {}
@@ -117,7 +118,8 @@ def _exact(request: Request, system: System) -> Iterator[tuple[str, Value | Unfi
         whole = substitute(expression, {k: v for k, v in known.items() if k != name})
         value = rational(whole)
         if value is None and (request.vary is not None or names_in(whole)):
-            told, hint = "an exact rational number is needed", f"write for example {name}=3/2"
+            told = "an exact rational number is needed"
+            hint = Message("write for example [[example]]", example=f"{name}=3/2")
             yield name, Unfit("--set", "not-rational", told, hint, name)
         else:
             yield name, whole if value is None else value

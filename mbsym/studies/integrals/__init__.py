@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
 from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
@@ -79,7 +80,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         told = "with --vary other parameters are numbers"
         yield Unfit("--cases", "not-together", told, "choose one of them")
     if request.vary is not None and request.vary.name in request.values:
-        told = f"'{request.vary.name}' has an interval and a number"
+        told = Message("'[[name]]' has an interval and a number", name=request.vary.name)
         yield Unfit("--set", "repeated-name", told, "leave one of them out")
     if "budget" in typed and not request.cases:
         yield Unfit("--budget", "missing-option", "--budget goes with --cases", "add --cases")
@@ -126,16 +127,19 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
     for name in request.weights:
         if name not in there.field.variables:
             known = ", ".join(there.field.variables)
-            yield Unfit("--weight", "unknown-name", f"the field has no variable {name}", f"there are {known}")
+            told = Message("the field has no variable [[name]]", name=name)
+            yield Unfit("--weight", "unknown-name", told, Message("there are [[names]]", names=known))
     axis = request.vary
     if axis is None:
         return
     if axis.name not in there.field.parameters:
-        yield Unfit("--vary", "not-there", f"the equations do not depend on {axis.name}", "take another parameter")
+        told = Message("the equations do not depend on [[name]]", name=axis.name)
+        yield Unfit("--vary", "not-there", told, "take another parameter")
     lacking = [name for name in there.field.parameters if name != axis.name]
     if lacking:
         example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
-        yield Unfit("--set", "missing-value", f"no number for {', '.join(lacking)}", f"for example {example}")
+        lacks = Message("no number for [[names]]", names=", ".join(lacking))
+        yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:

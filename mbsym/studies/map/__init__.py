@@ -100,17 +100,25 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
     name = safe(str(path))
     try:
         if path.stat().st_size > MOST_BYTES:
-            return None, (Unfit("--locate", "too-large", f"more than {MOST_BYTES} bytes in {name}"),)
+            return None, (
+                Unfit(
+                    "--locate", "too-large", Message("more than [[most]] bytes in [[file]]", most=MOST_BYTES, file=name)
+                ),
+            )
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         return None, (Unfit("--locate", "unreadable", f"{name}: {error.strerror or error}"),)
     except UnicodeDecodeError:
-        return None, (Unfit("--locate", "unreadable", f"{name} is no text in UTF-8"),)
+        return None, (Unfit("--locate", "unreadable", Message("[[file]] is no text in UTF-8", file=name)),)
     found, wrong = read_points(text, axes)
-    hint = f"the columns {' and '.join(axes)} hold rational or decimal numbers"
+    hint = Message("the columns [[names]] hold rational or decimal numbers", names=", ".join(axes))
     told = [Unfit(f"--locate {name}:{one.line}", "bad-point", one.message, hint) for one in wrong[:MOST_TOLD]]
     if len(wrong) > MOST_TOLD:
-        told.append(Unfit(f"--locate {name}", "bad-point", f"{len(wrong) - MOST_TOLD} more lines are wrong"))
+        told.append(
+            Unfit(
+                f"--locate {name}", "bad-point", Message("[[count]] more lines are wrong", count=len(wrong) - MOST_TOLD)
+            )
+        )
     return found, tuple(told)
 
 
