@@ -93,8 +93,8 @@ class Options:
             told = Message("there are no descriptions here")
             if others:
                 many = "there are no descriptions here ([[count]] other files were passed over)"
-                one = "there are no descriptions here (1 other file was passed over)"
-                told = Message(many, count=others) if others > 1 else Message(one)
+                single = "there are no descriptions here (1 other file was passed over)"
+                told = Message(many, count=others) if others > 1 else Message(single)
             self.complain(", ".join(map(str, files)), "no-descriptions", told, hint)
         return list(found.values())
 

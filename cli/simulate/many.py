@@ -73,8 +73,8 @@ def read_many(
         return None, names
     from mbsym.numerics.ensembles.variation import complaints_of
 
-    for name, told, hint in complaints_of(given.system, found, members):
-        options.complain(f"--vary {name}", "bad-variation", told, hint or None)
+    for name, wrong, hint in complaints_of(given.system, found, members):
+        options.complain(f"--vary {name}", "bad-variation", wrong, hint or None)
     return Varied(tuple(found), members, seed, sampling), names
 
 
@@ -119,15 +119,15 @@ def _sensitive(text: str | None, given: Scenario | None, options: Options) -> tu
             hint = Message("there are [[names]]", names=", ".join(known))
             if close:
                 hint = Message("did you mean '[[other]]'?", other=close)
-            told = Message("nothing is called '[[name]]' here", name=name)
+            told = Message("there is nothing called '[[name]]' here", name=name)
             options.complain("--sensitivity", "unknown-name", told, hint)
         elif name in following:
             told = Message("[[name]] follows from other parameters", name=name)
             options.complain("--sensitivity", "bad-variation", told, "name those of which its relation is made")
     if _jumps(given):
-        told = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
-        hint = "compare runs: --vary with two or three values close together"
-        options.complain("--sensitivity", "not-smooth", told, hint)
+        jumps = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
+        way = "compare runs: --vary with two or three values close together"
+        options.complain("--sensitivity", "not-smooth", jumps, way)
     return named
 
 

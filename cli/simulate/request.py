@@ -228,8 +228,8 @@ def check_states(system: System | None, wanted: Asked, asked: Options) -> None:
             message = Message(words, option=option)
             asked.complain(option, "variables", message, WAY_OUT)
     if request.method == "lsoda" and any(body.orientation for body in system.bodies):
-        message = "lsoda does not keep quaternions and unit vectors at their lengths"
-        asked.complain("--method", "unsuitable-method", message, "take dop853, rk4, taylor, radau or bdf")
+        lengths = "lsoda does not keep quaternions and unit vectors at their lengths"
+        asked.complain("--method", "unsuitable-method", lengths, "take dop853, rk4, taylor, radau or bdf")
     if request.method in METHODS and METHODS[request.method].traits.conservative:
         words = "[[method]] integrates coordinates and their velocities only, and this system has speeds"
         message = Message(words, method=request.method)

@@ -140,9 +140,9 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     if request.points is not None or "points" not in typed:
         known = _names(system, request.measure.text)
         wrong = complaints(variations, request.points, known, (), "points", MOST_POINTS, 100_000)
-        for name, told, hint in wrong:
+        for name, text, hint in wrong:
             code = "bad-variation" if name in known else "unknown-name"
-            yield Unfit(f"--vary {name}", code, told, hint or None)
+            yield Unfit(f"--vary {name}", code, text, hint or None)
     for name in request.values.keys() & {one.name for one in variations}:
         yield Unfit(
             f"--set {name}", "conflicting-options", Message("[[name]] is varied", name=name), "leave one of the two out"
