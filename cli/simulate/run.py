@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 
 def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Options) -> int:
     """The exit code; ``options`` takes the complaint of a method that does not apply here."""
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
     from mbsym.numerics.enclosure.field import NotAnalytic
     from mbsym.numerics.methods.interface import Breakdown, Unusable
     from mbsym.simulation import NoEvent, simulate
