@@ -169,7 +169,7 @@ READS = {
 }
 READS = {f"numerics.{name}": why for name, why in READS.items()} | {
     "analysis.stages": TOLD,
-    "serving.tasks": TOLD,
+    "serving.worker": TOLD,
     "report.exports.fmu": "how long a compiler may take, which is told",
     **dict.fromkeys(["serving.jobs", "serving.guard", "serving.server", "serving.application"], ASKED),
     **dict.fromkeys(["batch.isolation", "batch.nursery", "batch.cluster"], ASKED),
