@@ -441,18 +441,22 @@ class Presenter:
     def _sines_restored(
         self, content: int, common: Monomial, parts: list[tuple[Terms, int]]
     ) -> tuple[int, Monomial, list[tuple[Terms, int]]]:
-        """(cos x - 1)*(cos x + 1) is -sin(x)**2."""
+        """(cos x - 1)**n*(cos x + 1)**n is (-1)**n*sin(x)**(2*n)."""
         for index in sorted({k for part, _ in parts for m in part for k, _ in m}, key=self.place):
             if index >= self._waves.first:
                 continue
             g = self.ring.generators[index]
             if g.kind != "cosine" or g.argument is not None:
                 continue
-            minus: tuple[Terms, int] = ({((index, 1),): 1, (): -1}, 1)
-            plus: tuple[Terms, int] = ({((index, 1),): 1, (): 1}, 1)
-            if minus in parts and plus in parts:
-                parts = [part for part in parts if part not in (minus, plus)]
-                content, common = -content, self._joined(common, (self.ring.index("sine", g.name), 2))
+            minus: Terms = {((index, 1),): 1, (): -1}
+            plus: Terms = {((index, 1),): 1, (): 1}
+            powers = [next((n for part, n in parts if part == one), 0) for one in (minus, plus)]
+            both = min(powers)
+            if both:
+                left = [(one, n - both) for one, n in zip((minus, plus), powers, strict=True) if n > both]
+                parts = [*(item for item in parts if item[0] not in (minus, plus)), *left]
+                content = -content if both % 2 else content
+                common = self._joined(common, (self.ring.index("sine", g.name), 2 * both))
         return content, common, parts
 
     def _whole_reciprocals(
