@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from itertools import count
 from operator import add, mul, sub, truediv
 from random import Random
 from typing import TYPE_CHECKING, Any, cast
@@ -127,13 +128,17 @@ class _Start:
         self.moving = {own.generators[k].name for k in indices if own.generators[k].kind == "coordinate"}
         self.moving |= {velocity_name(n) for n in bases}
         self.letters = {name: x for name, x in given.items() if name not in self.moving}
+        for name in sorted({*self.letters} & {*parameters, "pi"}):
+            raise NoClosedForm(Message("[[name]] is a parameter: a letter needs a name of its own", name=name))
         seen = [name for x in given.values() for name in sorted(names(x))]
         known = {*parameters, *self.letters, *self.moving, "pi"}
         self.fresh = [name for name in dict.fromkeys(seen) if name not in known]
         self.moving |= {*self.fresh, *map(velocity_name, self.fresh)}
-        firsts = [f"{name}_0" for name in bases]
-        self._constants = [f"c{k}" for k in range(1, len(bases) + 1)]
-        added = [name for name in (*firsts, *self._constants) if name not in {*known, *self.fresh}]
+        taken = {*known, *self.fresh}
+        numbered = (f"c{k}" for k in count(1))
+        self._firsts = {name: next(x for x in _tried(f"{name}_0") if x not in taken) for name in bases}
+        self._constants = [next(x for x in numbered if x not in taken) for _ in bases]
+        added = [*self._firsts.values(), *self._constants]
         if asked.small and asked.small not in parameters:
             raise NoClosedForm(Message("[[name]] is no parameter of the equations", name=asked.small))
         fixed = dict.fromkeys((*parameters, *added))
@@ -218,12 +223,12 @@ class _Start:
         found = {}
         for place in places:
             g = self.ring.generators[self.transfer.places[place]]
-            if g.kind == "coordinate" and f"{g.name}_0" in self.environment:
-                found[place] = self._sorted(self.environment[f"{g.name}_0"])
+            if g.kind == "coordinate" and g.name in self._firsts:
+                found[place] = self._sorted(self.environment[self._firsts[g.name]])
         return found
 
-    def constants(self, count: int) -> list[Series]:
-        return [self._sorted(self.environment[name]) for name in self._constants[:count]]
+    def constants(self, many: int) -> list[Series]:
+        return [self._sorted(self.environment[name]) for name in self._constants[:many]]
 
     def whole(self, x: Expression) -> Expression:
         """Without letters."""
@@ -277,6 +282,11 @@ class _Start:
                 found.setdefault(k, {})[rest] = c
             parts.append(Series(context, {k: Quotient.of(context.from_dict(x)) for k, x in found.items()}))
         return parts[0].over(parts[1], self.known if len(parts[1].coefficients) > 1 else None)
+
+
+def _tried(name: str) -> Iterator[str]:
+    """q_0, q_00, ...: a name that stands for something else already is not taken."""
+    return (name + "0" * k for k in count())
 
 
 def _carrier(own: Ring, ring: Ring, environment: Mapping[str, Any], formulas: Formulas | None) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -170,6 +171,19 @@ def test_a_cyclic_velocity_goes_as_routh_says() -> None:
     own |= {"theta_dot": Fraction(2), "c1": Fraction(3)}
     again = eval(str(found.formula(energy.coefficients[0])), own)
     assert again - (Fraction(2 * 9 * 4, 2) + Fraction(9, 2 * 2 * 9) / sine**2 - 2 * 5 * 3 * cosine) == shift
+
+
+def test_names_that_stand_for_something_are_not_taken_for_constants() -> None:
+    """The spherical pendulum with a mass called c1: the momentum is another constant, not the mass."""
+    text = re.sub(r"\bm\b", "c1", (SHIPPED / "spherical-pendulum.yaml").read_text(encoding="utf-8"))
+    found = reduced(Analysis(mbsym.loads(text).system), asked("psi_dot by integrals"))
+    own: dict[str, Any] = {n: Fraction(k) for n, k in (("c1", 2), ("l", 3), ("g", 5), ("c2", 7))}
+    sine, cosine = Fraction(3, 5), Fraction(4, 5)
+    own |= {"sin": lambda _: sine, "cos": lambda _: cosine, "theta": 0, "theta_dot": 0}
+    expected = Fraction(49, 4 * 81) * cosine / sine**3 - Fraction(5, 3) * sine
+    assert eval(rates(found)["theta_ddot"][0], own) == expected
+    with pytest.raises(NoClosedForm, match="l is a parameter"):
+        reduced(Analysis(mbsym.loads(text).system), asked("theta=x*l,l=g*g"))
 
 
 def test_the_flow_before_the_slow_manifold_is_put_in() -> None:
