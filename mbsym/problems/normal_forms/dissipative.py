@@ -17,11 +17,11 @@ from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.rest import rational_values
 from mbsym.model.system import velocity_name
 from mbsym.problems.normal_forms.exact import (
     Reduced,
     common_factor,
+    exact_values,
     in_ring,
     matrix_of,
     occurring_parameters,
@@ -50,10 +50,10 @@ def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tupl
 
 def judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
     """What is decided at rational values."""
-    exact = rational_values(values)
-    if len(exact) < len(values):
-        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     tower = Tower()
+    exact = exact_values(found, tower, values)
+    if exact is None:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     field, positions = state_field(over_tower(found, tower, exact))
     whole_ones = faddeev(matrix_of(field), tower.zero, tower.one)[1]
     coefficients = [x for one in whole_ones if (x := tower.rational(one)) is not None]

@@ -23,6 +23,7 @@ from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import (
     Resonant,
     even_part,
+    exact_values,
     in_ring,
     known,
     occurring_parameters,
@@ -143,15 +144,15 @@ def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], res
 
 def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:
     tower = Tower()
-    matrix = matrix_of(over_tower(found, tower, rational_values(values)).hamiltonian())
+    matrix = matrix_of(over_tower(found, tower, exact_values(found, tower, values) or {}).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
     return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
 def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
-    """A root is zero exactly, at rational values."""
+    """A root is zero exactly, at exact values."""
     tower = Tower()
-    numbers = over_tower(found, tower, rational_values(values))
+    numbers = over_tower(found, tower, exact_values(found, tower, values) or {})
     balls = enclosed(found, values).hamiltonian()
 
     def ball_of(x: Element) -> arb:
@@ -191,11 +192,11 @@ def ball(value: Any) -> arb:
 
 
 def _exactly(found: Expansion, values: Mapping[str, Any]) -> Resonant:
-    """Exact resonances, where all values are rational and the coefficients hold nothing but square roots."""
-    exact = rational_values(values)
-    if len(exact) < len(values):
-        return Resonant(None, None)
+    """Exact resonances, where values and coefficients hold nothing but square roots."""
     tower = Tower()
+    exact = exact_values(found, tower, values)
+    if exact is None:
+        return Resonant(None, None)
 
     def coefficients() -> list[Element]:
         quadratic = over_tower(found, tower, exact).hamiltonian()
