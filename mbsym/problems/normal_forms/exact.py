@@ -20,7 +20,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower, angle_in
-from mbsym.algebra.truncated import Space, Truncated
+from mbsym.algebra.truncated import Coefficients, Space, Truncated
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
@@ -338,11 +338,15 @@ def primitive(tower: Tower, x: Element) -> Element:
 
 @dataclass(frozen=True)
 class Reduced:
-    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state."""
+    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state.
+
+    ``quintic`` is c' of z' = lambda z + c z^2 z* + c' z^3 z*^2 of a pair, where the field goes so far.
+    """
 
     quadratic: Any
     cubic: Any
     lengths: tuple[Any, ...]
+    quintic: Any = None
 
 
 def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
@@ -354,15 +358,65 @@ def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
 def on_pair(
     field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
 ) -> Reduced:
-    """The pair ``root``, -root, simple.  Raises what ``inverse`` raises where the root is not simple, or 0 or 2 root is
-    one."""
+    """The pair ``root``, -root, simple.
+
+    Raises what ``inverse`` raises where the root is not simple, or 0 or a multiple of root is one.
+    """
     source = field[0].space
     zero, one = source.zero, source.one
     matrix = matrix_of(field)
     q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
-    conjugate = [row[column] for row in adjugate_at(matrix, -root, zero, one)]
-    third = _third(field, root, q, conjugate, matrix, inverse)
-    return Reduced(zero, dot(p, third), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+    whole = adjugate_at(matrix, -root, zero, one)
+    conjugate = [row[column] for row in whole]
+    row = max(whole, key=lambda row: size(row[column]))
+    dual = [x * inverse(dot(row, conjugate)) for x in row]
+    found = [dot(p, _third(field, root, q, conjugate, matrix, inverse)), None]
+    if source.order >= 5:
+        found = _on_centre(field, root, (q, conjugate), (p, dual), inverse)
+    return Reduced(zero, found[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), found[1])
+
+
+def _on_centre(
+    field: Sequence[Truncated],
+    root: Any,
+    vectors: tuple[Sequence[Any], Sequence[Any]],
+    duals: tuple[Sequence[Any], Sequence[Any]],
+    inverse: Callable[[Any], Any],
+) -> list[Any]:
+    """c, c' by  x = H(z, z*) = q z + q* z* + sum h_jk z^j z*^k  and  DH (z', z*') = A H + N(H), up to the fifth order:
+
+        ((j - k) lambda - A) h_jk = N_jk - sum_l (c_l (j - l) + c_l* (k - l)) h_(j-l)(k-l),
+
+    where for j = k + 1 a multiple of q makes the right side one of those with p h = 0, c_k, and so for its conjugate.
+    """
+    source = field[0].space
+    m, zero, one = len(field), source.zero, source.one
+    matrix, space = matrix_of(field), Space(2, 5, zero, one)
+    (q, p), (conjugate, dual) = zip(vectors, duals, strict=True)
+    state = [space.linear((a, b)) for a, b in zip(q, conjugate, strict=True)]
+    rates: dict[int, list[Any]] = {}
+    for order in range(2, 6):
+        forced = [row.beyond(1).composed(state) for row in field]
+        added: list[Coefficients] = [{} for _ in field]
+        for j in range(order + 1):
+            k = order - j
+            right = [x[j, k] for x in forced]
+            for back, (c, other) in rates.items():
+                if min(j, k) >= back and order - 2 * back > 1:
+                    factor = c * (j - back) + other * (k - back)
+                    right = [x - factor * h[j - back, k - back] for x, h in zip(right, state, strict=True)]
+            moved = [[(root * (j - k) if r == s else zero) - matrix[r][s] for s in range(m)] for r in range(m)]
+            for which, (own, left, ahead) in enumerate(((q, p, j - k), (conjugate, dual, k - j))):
+                if ahead == 1:
+                    share = dot(left, right)
+                    right = [x - share * y for x, y in zip(right, own, strict=True)]
+                    moved = [[moved[r][s] + own[r] * left[s] for s in range(m)] for r in range(m)]
+                    rates.setdefault(min(j, k), [zero, zero])[which] = share
+            if order < 5:
+                for row, x in zip(added, _applied(inverted(moved, inverse, zero, one), right), strict=True):
+                    row[j, k] = x
+        state = [x + Truncated(space, extra) for x, extra in zip(state, added, strict=True)]
+    return [rates[1][0], rates[2][0]]
 
 
 def on_double_pair(

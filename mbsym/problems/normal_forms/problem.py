@@ -61,7 +61,7 @@ class _Expanded:
     def at(self, values: Mapping[str, Any]) -> Judged:
         """What is decided at values of all parameters."""
         with ctx.workprec(PRECISION):
-            return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to(4), values)
+            return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to, values)
 
 
 def judge(
@@ -105,10 +105,10 @@ def normal_forms(
     )
 
 
-def _judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
+def _judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
     """With applied forces, at numbers: undecided where coefficients are no exact numbers (sines, exponentials)."""
     try:
-        return judged_field(found, values)
+        return judged_field(to(4), values, lambda: to(ORDER))
     except SingularMass:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
     except (NoClosedForm, NoValue):  # the tower has square roots of numbers, but no pi
