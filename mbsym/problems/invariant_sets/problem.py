@@ -239,7 +239,7 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
         kind=kind,
         solved=tuple((arena.name(g), _value(place, g)) for g in arena.variables if g in place.solved),
         relations=tuple(arena.formula(p) for p in place.branch.remaining),
-        nonzero=tuple(arena.formula(p) for p in _denominators(place)),
+        nonzero=tuple(arena.formula(p) for p in place.divided_by),
         free=tuple(arena.name(g) for g in place.free_variables),
         multipliers=tuple(
             (arena.name(g), _value(place, g) if g in place.solved else None)
@@ -287,17 +287,6 @@ def _lowest(top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial
     return top / common, bottom / common
 
 
-def _denominators(place: Place) -> list[Polynomial]:
-    """What is divided by on the set and is no polynomial in parameters alone."""
-    found: list[Polynomial] = []
-    top, _ = place.fraction(place.arena.denominator)
-    for p in (*(s.denominator for s in place.branch.solved), top):
-        for f, _ in irreducible_factors(p)[1]:
-            if not _is_parameter(place.arena, f) and f not in found:
-                found.append(f)
-    return found
-
-
 def _invariant(place: Place) -> bool | None:
     """d/dt of every equation of the set, for constant multipliers, vanishes on it by the equations of motion."""
     arena = place.arena
@@ -316,8 +305,13 @@ def _invariant(place: Place) -> bool | None:
 def why_empty(place: Place) -> tuple[Polynomial, ...] | None:
     """Polynomials in parameters alone: where none of them vanishes the branch has no points; None where that is open.
 
-    The resultant of two polynomials lies in their ideal, so that it vanishes at every common zero.
+    An equation may have no real solution, as k x^2 + 1 = 0.  The resultant of two polynomials lies in their ideal, so
+    that it vanishes at every common zero.
     """
+    for p in place.branch.remaining:
+        provided = _nonzero(place, p)
+        if provided is not None:
+            return provided
     unknown = (*place.arena.multipliers, *place.arena.variables)
     for p, q in combinations(place.branch.remaining, 2):
         if len(p) * len(q) > MOST_TERMS**2:

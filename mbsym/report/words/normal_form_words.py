@@ -183,6 +183,21 @@ def _centre(found: Judged) -> Iterator[Said]:
         )
         return
     soft = found.outcome is Outcome.ASYMPTOTIC
+    if found.degree is not None:
+        yield say(
+            "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
+            "the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times its "
+            "power [[degree]]: asymptotically stable."
+            if soft
+            else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre "
+            "manifold the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times "
+            "its power [[degree]]: unstable.",
+            w=_number(found.frequencies[0]),
+            a=_number(found.coefficient),
+            name=named((found.amplitude_of,)),
+            degree=str(found.degree),
+        )
+        return
     yield say(
         "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold the "
         "amplitude of [[name]] grows at the rate [[a]] times its cube: asymptotically stable, a soft border."
