@@ -56,7 +56,7 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
 
     Body k has mass m_k and, where it turns, its mass centre at the distance l_k below its joint and principal moments
     of inertia about the mass centre; coordinates q_k1, q_k2, ...; the next body hangs at the distance d_k below the
-    joint of its carrier.
+    joint of its carrier, on one that never turns at the joint itself.
     Raises ValueError for an unknown joint, or a carrier that does not stand before its body.
     """
     _check(bodies)
@@ -85,7 +85,7 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
             "",
             "# Numbers, for simulations only; results stay in symbols.",
             f"values: {{{', '.join(f'{name}: {one.value}' for name, one in parameters.items())}}}",
-            f"initial: {{{', '.join(_initial(bodies))}}}",
+            f"initial: {{{', '.join(f'{name}: {value}' for name, value in _initial(bodies).items())}}}",
             "",
         ]
     )
@@ -106,7 +106,7 @@ def _parameters(bodies: Sequence[NewBody], gravity: bool) -> dict[str, NewParame
     carriers, turning = {body.carrier for body in bodies}, _turning(bodies)
     for number, body in enumerate(bodies, 1):
         found |= parameters_of(number, body, body.name in turning)
-        if body.name in carriers:
+        if body.name in carriers & turning:
             found[f"d{number}"] = NewParameter(f"distance from the joint of {body.name} to the next one", "1")
     return found | ({"g": NewParameter("acceleration of gravity", "9.81")} if gravity else {})
 
@@ -193,8 +193,9 @@ _COMMENTS = {
 def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
     told = f"{body.joint}: {JOINTS[body.joint][2]}"
     lines = [f"  - name: {quoted(body.name)}", f"    attached to: {quoted(body.carrier) if body.carrier else 0}"]
-    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier), None)
-    data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}", body.name in _turning(bodies))
+    turning = _turning(bodies)
+    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier and one.name in turning), None)
+    data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}", body.name in turning)
     comments = {**_COMMENTS, "rotation": told}
     if "rotation" not in data:
         lines[0] += f" # {told}"
@@ -217,9 +218,14 @@ def _gravity() -> list[str]:
     ]
 
 
-def _initial(bodies: Sequence[NewBody]) -> list[str]:
-    return [
-        f"{name}: 0.{index % 9 + 1}"
-        for k, body in enumerate(bodies, 1)
-        for index, name in enumerate(_rotations(k, body), 1)
-    ]
+def _initial(bodies: Sequence[NewBody]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for number, body in enumerate(bodies, 1):
+        found |= initial_of(number, body)
+    return found
+
+
+def initial_of(number: int, body: NewBody) -> dict[str, str]:
+    """Somewhere away from rest, so that a simulation moves: rotations, or translations where there are none."""
+    names = _rotations(number, body) or _translations(number, body)
+    return {name: f"0.{index % 9 + 1}" for index, name in enumerate(names, 1)}

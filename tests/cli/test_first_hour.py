@@ -63,8 +63,8 @@ def test_what_never_turns_has_a_mass_alone() -> None:
     system, _ = read(text, "cart.yaml")
     assert system is not None
     given = {one.name for one in system.parameters}
-    assert {"l1", "J11"}.isdisjoint(given)
-    assert {"m1", "d1", "m2", "l2", "J23", "m3", "l3", "J33"} <= given
+    assert {"l1", "J11", "d1"}.isdisjoint(given)
+    assert {"m1", "m2", "d2", "l2", "J23", "m3", "l3", "J33"} <= given
     assert not [check for check in Analysis(system).checks if check.failed]
 
 

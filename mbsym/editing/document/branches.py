@@ -11,7 +11,7 @@ from mbsym.editing.document.words import body_renamed, pattern, places, words_of
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
-from mbsym.source.starter import JOINTS, NewBody, NewParameter, coordinates_of, on_its_joint, parameters_of
+from mbsym.source.starter import JOINTS, NewBody, NewParameter, coordinates_of, initial_of, on_its_joint, parameters_of
 
 
 def bodies_of(found: Written) -> list[tuple[str, str]]:
@@ -72,13 +72,21 @@ def add_body(found: Written, operation: Json) -> Meant:
         for index, _ in enumerate(bodies_of(found)):
             known |= set(own_names(found, found.tree, index))
     number = next(k for k in count(path[1] + 1) if known.isdisjoint(_names(k, body)))
-    turns = bool(body.axes) or _turns(found, parent)
+    carried = _turns(found, parent)
+    turns = bool(body.axes) or carried
     parameters = parameters_of(number, body, turns)
-    below = "0" if parent == "0" else f"d{number}"
-    if parent != "0":
+    below = f"d{number}" if carried else "0"
+    if carried:
         parameters[below] = NewParameter(f"distance from the joint of {parent} to that of {name}", "1")
     data |= on_its_joint(number, body, below, turns)
-    return Meant([*_declared(found, parameters), setting(found, path, data, None)], select=path)
+    moved = initial_of(number, body)
+    begun = [setting(found, ("initial", one), value, None) for one, value in moved.items()] if _begins(found) else []
+    return Meant([*_declared(found, parameters), setting(found, path, data, None), *begun], select=path)
+
+
+def _begins(found: Written) -> bool:
+    """Whether coordinates of an initial state are listed one by one."""
+    return isinstance(node_at(found.tree, ("initial",)), Mapping)
 
 
 def _turns(found: Written, name: str) -> bool:
