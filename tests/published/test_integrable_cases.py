@@ -1,4 +1,4 @@
-"""Integrable cases of the literature: the books' integrals are integrals here and are found; beside them there are none.
+"""Integrable cases of the literature: the books' integrals are found, and beside them there are none.
 
 Quartic potentials: A. Ramani, B. Dorizzi, B. Grammaticos, Phys. Rev. Lett. 49 (1982) 1539; J. Hietarinta, Phys. Rep.
 147 (1987) 87.  Kirchhoff's equations: A. V. Borisov, I. S. Mamaev, Rigid Body Dynamics (2018), chapter 3.
