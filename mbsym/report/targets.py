@@ -176,14 +176,19 @@ TARGETS = {
 }
 
 
-def _exported(language: str, render: str = "render") -> Callable[[Analysis, Sequence[int]], str]:
+def _exported(language: str) -> Callable[[Analysis, Sequence[int]], str]:
     def text(analysis: Analysis, problems: Sequence[int]) -> str:
-        from importlib import import_module
+        from mbsym.report.exports.languages import render
 
-        written: str = getattr(import_module(f"mbsym.report.exports.{language}"), render)(analysis, problems)
-        return written
+        return render(language, analysis, problems)
 
     return text
+
+
+def _modelica(analysis: Analysis, problems: Sequence[int]) -> str:
+    from mbsym.report.exports.modelica import render
+
+    return render(analysis, problems)
 
 
 def _fmu(version: int) -> Callable[[Analysis, Sequence[int]], bytes]:
@@ -210,13 +215,13 @@ EXPORTS = {
             "model_casadi.py",
             (7,),
             "functions for CasADi",
-            _exported("python_functions", "casadi"),
+            _exported("casadi"),
             program=True,
         ),
-        Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("python_functions", "jax"), program=True),
+        Target("jax", "model_jax.py", (7,), "functions for JAX", _exported("jax"), program=True),
         Target("octave", "model.m", (7,), "functions for MATLAB and Octave", _exported("octave"), program=True),
         Target("julia", "model.jl", (7,), "a module for Julia", _exported("julia"), program=True),
-        Target("modelica", "model.mo", (7,), "a model in Modelica", _exported("modelica"), program=True),
+        Target("modelica", "model.mo", (7,), "a model in Modelica", _modelica, program=True),
         Target("fmu2", "model-fmi2.fmu", (), "an FMU for model exchange, FMI 2.0", _fmu(2), (), True, _fmu_remark),
         Target("fmu3", "model-fmi3.fmu", (), "an FMU for model exchange, FMI 3.0", _fmu(3), (), True, _fmu_remark),
     )

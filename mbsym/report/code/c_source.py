@@ -25,7 +25,7 @@ from mbsym.model.speeds import Quaternion
 from mbsym.model.system import Parameter, System
 from mbsym.numerics.scenario import exact
 from mbsym.report.code.functions import Function, Functions, c_definition, identifier, prescribed_value
-from mbsym.report.code.identifiers import number, prefix_of
+from mbsym.report.code.identifiers import number, prefix_of, spelled
 from mbsym.report.code.model_code import programs_of, solved, undetermined
 from mbsym.report.code.named_dynamics import bodies as bodies_of
 from mbsym.report.code.named_dynamics import named_dynamics
@@ -199,10 +199,7 @@ def _told(system: System, item: Parameter) -> str:
 
 def proposed(name: str) -> str:
     """A C identifier for a name; what C reserves gets an underscore at its end."""
-    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter == "_") else "_" for letter in name)
-    if plain.startswith("_") or plain[:1].isdigit():
-        plain = "v" + plain
-    return plain + "_" if plain in RESERVED else plain
+    return spelled(name, RESERVED, lambda plain: plain.startswith("_"))
 
 
 def declared(prefix: str) -> frozenset[str]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import hashlib
 import re
 import unicodedata
+from collections.abc import Callable, Collection
 from fractions import Fraction
 
 from mbsym.algebra.failures import Limit, NoClosedForm
@@ -38,6 +39,16 @@ def prefix_of(name: str) -> str:
 def camel(prefix: str) -> str:
     """``DoublePendulum``, as types and modules are called."""
     return "".join(word.capitalize() for word in prefix.split("_"))
+
+
+def spelled(name: str, reserved: Collection[str], unfit: Callable[[str], bool] = lambda plain: False) -> str:
+    """A declared name in ASCII letters, digits and underscores, a ``v`` in front of a digit and of what is ``unfit``.
+
+    What is ``reserved`` gets an underscore at its end.
+    """
+    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter == "_") else "_" for letter in name)
+    plain = "v" + plain if plain[:1].isdigit() or unfit(plain) else plain
+    return plain + "_" if plain in reserved else plain
 
 
 # Constants of generated code.

@@ -13,7 +13,7 @@ from mbsym.formulas.names import free_name
 from mbsym.formulas.straight_line import Dialect, angle_name
 from mbsym.model.system import System, velocity_name
 from mbsym.model.units import ENERGY, LENGTH, TIME, Units
-from mbsym.report.code.identifiers import number
+from mbsym.report.code.identifiers import number, spelled
 from mbsym.report.environment import rendered
 from mbsym.report.exports.interface import COMMON, Export, Language, Written, export
 from mbsym.report.unit_text import base_unit, modelica
@@ -44,9 +44,7 @@ SHOWN = (
 
 def proposed(name: str) -> str:
     """An identifier of Modelica."""
-    plain = "".join(letter if letter.isascii() and (letter.isalnum() or letter == "_") else "_" for letter in name)
-    plain = plain if not plain[:1].isdigit() else "v" + plain
-    return plain + "_" if plain in RESERVED else plain
+    return spelled(name, RESERVED)
 
 
 LANGUAGE = Language(
