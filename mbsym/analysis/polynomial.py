@@ -49,7 +49,7 @@ from mbsym.problems.polynomial_integrals.result import (
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.symmetries import Gradients
-from mbsym.problems.vector_field import Transfer, vector_field
+from mbsym.problems.vector_field import Transfer, put_in, vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -141,10 +141,11 @@ def _following(analysis: Analysis, values: Mapping[str, Fraction]) -> Callable[[
 
     As the length of the angular momentum is of its components in space, which a field without orientations lacks.
     """
-    gradients = Gradients(analysis.system, blocks_of(analysis, values))
+    blocks = blocks_of(analysis, values)
+    gradients = Gradients(analysis.system, blocks)
     for one in analysis.integrals:
-        gradients.add(one.formula.polynomial)
-    return lambda formula: gradients.grows(formula.polynomial) is False
+        gradients.add(put_in(blocks.ring, one.formula.polynomial, blocks.images))
+    return lambda formula: gradients.grows(put_in(blocks.ring, formula.polynomial, blocks.images)) is False
 
 
 def _product(field: PolynomialField) -> Any:

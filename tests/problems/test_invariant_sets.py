@@ -208,12 +208,47 @@ def test_orbital_equilibria_in_quaternions():
         assert one.gap is Gap.FOUND
 
 
-def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
+@pytest.fixture(scope="module")
+def kovalevskaya():
+    return mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+
+
+def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect(kovalevskaya):
     """Zeros of Kovalevskaya's integral, a sum of two squares, are stationary: r = gamma3 = 0 is no set of its own."""
-    found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
-    assert all(one.invariant is not False for family in found.families for one in family.sets)
-    assert all(family.parts for family in found.families[:2])
-    assert not found.complete
+    assert all(one.invariant is not False for family in kovalevskaya.families for one in family.sets)
+    assert kovalevskaya.families[0].parts
+    assert not kovalevskaya.complete
+    zeros = [dict(one.solved) for family in kovalevskaya.families[:2] for one in family.sets]
+    assert not any(str(one.get("r")) == "0" == str(one.get("gamma3")) and "gamma2" not in one for one in zeros)
+
+
+def test_delaunays_class_and_that_of_bobylev_and_steklov(kovalevskaya):
+    """Of Kovalevskaya's top, P = m g x0, though most branches are left aside.
+
+    Where her integral is zero (N. B. Delaunay 1892), which is stable as a set; q = 0, p constant, P gamma3 = C p r
+    (D. K. Bobylev, V. A. Steklov 1896).
+    """
+    found = kovalevskaya
+    at = {"C": 2, "m": 1, "g": 5, "x0": 3, "p": 7, "q": 11, "gamma3": Fraction(1, 2)}
+    delaunay = [
+        one
+        for family in found.families
+        for one in family.sets
+        if one.dimension == 3 and {name for name, _ in one.solved} == {"gamma1", "gamma2"}
+    ]
+    (one,) = delaunay
+    gamma = {name: _value(x, **at) for name, x in one.solved}
+    assert gamma == {"gamma1": Fraction(2 * (7**2 - 11**2), 15), "gamma2": Fraction(2 * 2 * 7 * 11, 15)}
+    assert one.invariant is True
+    assert one.variation.outcome is Definiteness.STABLE
+    bobylev = [one for family in found.families for one in family.sets if ("q", "0") in _texts(one) and one.union == 3]
+    (other,) = bobylev
+    assert _value(dict(other.solved)["r"], **at) == Fraction(15, 2 * 2 * 7)
+    assert ("p", "0") in [(name, str(x)) for name, x in other.motion]
+
+
+def _texts(one):
+    return [(name, str(x)) for name, x in one.solved]
 
 
 def test_a_wrong_sign_in_the_equations_is_seen():

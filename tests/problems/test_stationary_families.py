@@ -226,3 +226,12 @@ def test_of_a_set_it_is_said_that_stability_is_its_own():
     (text,) = [x for x in said if x.startswith("Sufficient")]
     assert "as a set" in text
     assert is_translated(text)
+
+
+def test_a_saddle_off_its_axis_is_unstable_without_a_condition():
+    """V = (x^2 + 4 y^2)/2 + x^2 y: y = -1/2, x^2 = 2; V_xx = 0, V_xy = 2 x: one square of a root is positive."""
+    (family,) = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2 + x**2*y")).families
+    (saddle,) = [one for one in family.sets if one.relations]
+    assert saddle.first.unstable
+    assert saddle.first.necessary == ()
+    assert all(str(factor[-1]) == "1" for factor in saddle.first.factors)

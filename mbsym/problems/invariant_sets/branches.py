@@ -155,6 +155,8 @@ def arena(
 #: A prime over which generic points are looked for, and how often.
 PRIME = (1 << 31) - 1
 ATTEMPTS = 40
+#: Degrees in what is eliminated of two polynomials.
+MOST_ELIMINATED = 4
 #: Numbers that are put in for unknowns of which equations leave a few.
 MOST_CASES = 8
 #: Longer polynomials are not reduced further.
@@ -198,10 +200,20 @@ class Place:
     geometric: tuple[Polynomial, ...] = ()
 
     def never_zero(self, p: Polynomial) -> bool:
-        """Whether p vanishes nowhere on the branch: it is divided by, or its square there vanishes nowhere."""
-        square = self.shortened(p * p)
-        divided = any(q in (p, -p) for q in self._divisors)
-        return divided or (square != 0 and self.arena.signs.never_zero(square))
+        """Whether p vanishes nowhere on the branch.
+
+        It is divided by, its square there vanishes nowhere, or it has no real zeros in common with an equation.
+        """
+        square, never = self.shortened(p * p), self.arena.signs.never_zero
+        if any(q in (p, -p) for q in self._divisors) or (square != 0 and never(square)):
+            return True
+        for r in self.branch.remaining:
+            for g in occurring([p]):
+                if 0 < r.degrees()[g] <= MOST_ELIMINATED and len(p) * len(r) <= MOST_ELIMINATED**4:
+                    shared = p.resultant(r, g)
+                    if shared != 0 and never(shared):
+                        return True
+        return False
 
     def sign(self, p: Polynomial) -> str:
         """Of p on the branch: one of ``algebra.signs``, in all its ``cases``."""

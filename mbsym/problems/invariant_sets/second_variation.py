@@ -237,6 +237,8 @@ def first_approximation(place: Place) -> FirstApproximation | None:
             complete, left = False, left + len(uneven) - 1
             unstable |= any(arena.signs.sign(place.shortened(c * uneven[-1])) == "negative" for c in uneven)
             continue
+        if arena.signs.sign(even[-1]) == "negative":
+            even = [-c for c in even]
         factors.append(tuple(arena.formula(c) for c in even))
         if len(even) < 2:
             continue

@@ -369,11 +369,10 @@ def on_pair(
     whole = adjugate_at(matrix, -root, zero, one)
     conjugate = [row[column] for row in whole]
     row = max(whole, key=lambda row: size(row[column]))
-    dual = [x * inverse(dot(row, conjugate)) for x in row]
-    found = [dot(p, _third(field, root, q, conjugate, matrix, inverse)), None]
-    if source.order >= 5:
-        found = _on_centre(field, root, (q, conjugate), (p, dual), inverse)
-    return Reduced(zero, found[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), found[1])
+    dual = [x * inverse(dot(row, conjugate)) for x in row] if source.order > 3 else []
+    lower, last = _on_centre(field, root, (q, conjugate), (p, dual), inverse)
+    found = [*lower, dot(p, last)]
+    return Reduced(zero, found[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), *found[1:])
 
 
 def _on_centre(
@@ -382,41 +381,43 @@ def _on_centre(
     vectors: tuple[Sequence[Any], Sequence[Any]],
     duals: tuple[Sequence[Any], Sequence[Any]],
     inverse: Callable[[Any], Any],
-) -> list[Any]:
-    """c, c' by  x = H(z, z*) = q z + q* z* + sum h_jk z^j z*^k  and  DH (z', z*') = A H + N(H), up to the fifth order:
+) -> tuple[list[Any], list[Any]]:
+    """c_1, c_2, ... below the order 2 n + 1 of the field (3, or 5), and the right side N of z^(n + 1) z*^n.
+
+    By  x = H(z, z*) = q z + q* z* + sum h_jk z^j z*^k  and  DH (z', z*') = A H + N(H):
 
         ((j - k) lambda - A) h_jk = N_jk - sum_l (c_l (j - l) + c_l* (k - l)) h_(j-l)(k-l),
 
     where for j = k + 1 a multiple of q makes the right side one of those with p h = 0, c_k, and so for its conjugate.
     """
     source = field[0].space
-    m, zero, one = len(field), source.zero, source.one
-    matrix, space = matrix_of(field), Space(2, 5, zero, one)
-    (q, p), (conjugate, dual) = zip(vectors, duals, strict=True)
-    state = [space.linear((a, b)) for a, b in zip(q, conjugate, strict=True)]
+    m, zero, one, most = len(field), source.zero, source.one, source.order // 2
+    matrix, space = matrix_of(field), Space(2, 2 * most + 1, zero, one)
+    state = [space.linear((a, b)) for a, b in zip(*vectors, strict=True)]
     rates: dict[int, list[Any]] = {}
-    for order in range(2, 6):
+    for order in range(2, 2 * most + 2):
         forced = [row.beyond(1).composed(state) for row in field]
         added: list[Coefficients] = [{} for _ in field]
-        for j in range(order + 1):
+        for j in range(max(0, order - most), min(order, most + 1) + 1):  # others do not reach z^(n + 1) z*^n
             k = order - j
             right = [x[j, k] for x in forced]
             for back, (c, other) in rates.items():
                 if min(j, k) >= back and order - 2 * back > 1:
                     factor = c * (j - back) + other * (k - back)
                     right = [x - factor * h[j - back, k - back] for x, h in zip(right, state, strict=True)]
+            if k == most and j > most:
+                return [rates[n][0] for n in sorted(rates)], right
             moved = [[(root * (j - k) if r == s else zero) - matrix[r][s] for s in range(m)] for r in range(m)]
-            for which, (own, left, ahead) in enumerate(((q, p, j - k), (conjugate, dual, k - j))):
+            for which, (own, left, ahead) in enumerate(zip(vectors, duals, (j - k, k - j), strict=True)):
                 if ahead == 1:
                     share = dot(left, right)
                     right = [x - share * y for x, y in zip(right, own, strict=True)]
                     moved = [[moved[r][s] + own[r] * left[s] for s in range(m)] for r in range(m)]
                     rates.setdefault(min(j, k), [zero, zero])[which] = share
-            if order < 5:
-                for row, x in zip(added, _applied(inverted(moved, inverse, zero, one), right), strict=True):
-                    row[j, k] = x
+            for row, x in zip(added, _applied(inverted(moved, inverse, zero, one), right), strict=True):
+                row[j, k] = x
         state = [x + Truncated(space, extra) for x, extra in zip(state, added, strict=True)]
-    return [rates[1][0], rates[2][0]]
+    raise AssertionError("the last order ends it")
 
 
 def on_double_pair(
@@ -437,29 +438,8 @@ def on_double_pair(
     conjugate = [row[j] for row in adjugate_at(matrix, -root, zero, one)]
     generalised = [row[j] for row in adjugate_slope_at(matrix, root, zero, one)]
     factor = inverse(dot(p, generalised))
-    third = _third(field, root, q, conjugate, matrix, inverse)
+    _, third = _on_centre(field, root, (q, conjugate), ((), ()), inverse)
     return dot(p, third) * factor * inverse(dot(q, conjugate))
-
-
-def _third(
-    field: Sequence[Truncated],
-    root: Any,
-    q: Sequence[Any],
-    conjugate: Sequence[Any],
-    matrix: Sequence[Sequence[Any]],
-    inverse: Callable[[Any], Any],
-) -> list[Any]:
-    """The coefficients of z^2 z* in the field on x = q z + q* z* + h20 z^2/2 + h11 z z* + ..."""
-    source = field[0].space
-    m, zero, one = len(field), source.zero, source.one
-    space = Space(2, 3, zero, one)
-    plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
-    second = [row.beyond(1).composed(plane) for row in field]
-    doubled = [[(root * 2 if i == j else zero) - matrix[i][j] for j in range(m)] for i in range(m)]
-    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second])
-    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second])]
-    bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
-    return [row.beyond(1).composed(bent)[2, 1] for row in field]
 
 
 def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Callable[[Any], float]) -> Reduced:

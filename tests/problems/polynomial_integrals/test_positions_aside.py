@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import jsonschema
 import pytest
@@ -11,6 +12,7 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.found import beyond
+from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
@@ -129,6 +131,13 @@ def test_what_integrals_with_orientations_give_is_no_further_one(told):
     assert not found.new
     assert [one.name for one in found.generators if one.independent][-1] == FUNCTION
     assert not beyond(loaded)
+
+
+def test_of_a_symmetric_body_its_rate_about_the_axis_follows_too():
+    """A = B = 1: |G|^2 - 2 T = C (C - 1) r^2, so that r is a function of what problem 7 has."""
+    there = setting(mbsym.loads(FREE_BODY), {"A": Fraction(1), "B": Fraction(1)})
+    found = integrals_of(there, 2)
+    assert [(one.weight, one.name) for one in found.generators] == [(1, FUNCTION), (2, "generalised energy")]
 
 
 def test_euler_bodys_families_hold_it_all_the_same():
