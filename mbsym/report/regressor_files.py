@@ -39,7 +39,7 @@ def sum_of(one: Base) -> str:
 
 
 def _number(factor: Formula) -> str:
-    """A decimal as descriptions write it, 0.2717 and not 2717/10000; "" for others: 1/2 is the square of a sine, too."""
+    """A decimal as descriptions write it, 0.2717 and not 2717/10000; "" for others: 1/2 may be a squared sine."""
     number = Fraction(str(factor)) if factor.is_number else Fraction(0)
     return "" if number.denominator % 5 else decimal_text(number)
 
