@@ -72,6 +72,10 @@ class Letters(Generic[T]):
     def _best(self, one: _Wanted[T]) -> Place | None:
         best, least = None, float("inf")
         size = hypot(*one.away)
+        far = one.near + FURTHER_OUT[-1] + hypot(one.wide, HIGH) + 0.04
+        within = [
+            (p, q) for p, q in self.lines if abs(p - one.place[0]) <= far and abs(q - one.place[1]) <= far
+        ]  # no box that is tried reaches further
         for out in FURTHER_OUT:
             for k in range(AROUND if one.near else 1):
                 angle = 2 * pi * k / AROUND
@@ -83,8 +87,7 @@ class Letters(Generic[T]):
                 if any(_meet(place, one.wide, other, wide) for other, wide in self._boxes):
                     continue
                 crossed = sum(
-                    abs(p - place[0]) < one.wide / 2 + 0.02 and abs(q - place[1]) < HIGH / 2 + 0.02
-                    for p, q in self.lines
+                    abs(p - place[0]) < one.wide / 2 + 0.02 and abs(q - place[1]) < HIGH / 2 + 0.02 for p, q in within
                 )
                 cost = 3 * crossed + 4 * out + (1 - cos(angle) if size else 0.0)
                 if cost < least - 1e-9:
