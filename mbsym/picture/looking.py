@@ -256,10 +256,6 @@ def principal(tensor: Sequence[Sequence[float]]) -> tuple[Numbers, Rows]:
     return _numbers([a[k][k] for k in order]), (first, second, cross(first, second))
 
 
-def _transposed(rows: list[list[float]]) -> list[list[float]]:
-    return [[row[k] for row in rows] for k in range(3)]
-
-
 def _rotated(rows: list[list[float]], p: int, q: int, c: float, s: float) -> list[list[float]]:
     found = list(rows)
     found[p] = [c * x + s * y for x, y in zip(rows[p], rows[q], strict=True)]
