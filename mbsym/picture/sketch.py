@@ -150,8 +150,7 @@ class _Paper:
         self.found, self.system, self.unknown = found, system, unknown
         self.bodies = {body.name: body for body in found.bodies}
         self.own: dict[str, Body] = {body.name: body for body in system.bodies}
-        view = found.view
-        self.look = projection(view.up, view.azimuth, view.elevation)
+        self.look = projection(found.view)
         self.state = self._state()
         self.values = found.program.at(self.state)
         self.marks: list[Mark] = []

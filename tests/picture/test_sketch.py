@@ -19,6 +19,7 @@ from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
 from mbsym.picture.program import Varied
 from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
+from mbsym.picture.values import View
 from mbsym.report.html.writer import Writer as HtmlWriter
 from mbsym.report.language import Language
 from mbsym.report.latex.labels import Form, Labels
@@ -222,7 +223,7 @@ def test_outlines_by_hand() -> None:
     oval, edges = outlined("ellipsoid", (3.0, 1.0, 2.0), (0.0, 0.0, 0.0), FRONT, FRONT)
     assert [(x / 3) ** 2 + y**2 for x, y in oval] == pytest.approx([1.0] * len(oval))
     assert len(edges) == 2, "the ellipse in the plane of the paper is the outline itself"
-    diagonal = projection((0.0, 0.0, 1.0), 45.0, np.degrees(np.arctan(1 / sqrt(2))))
+    diagonal = projection(View((0.0, 0.0, 1.0), 45.0, np.degrees(np.arctan(1 / sqrt(2))), False))
     hexagon, edges = outlined("box", (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), FRONT, diagonal)
     assert len(hexagon) == 6
     assert [dist(x, (0.0, 0.0)) for x in hexagon] == pytest.approx([sqrt(2 / 3)] * 6)
