@@ -102,7 +102,7 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
             complain(file, text)
         return refusal.code
     except OSError as error:
-        complain(file, f"the results cannot be written: {reason_of(error)}")
+        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
     except MemoryError:
         complain(file, "out of memory; ask for fewer --samples")
     return FAILED
