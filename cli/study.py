@@ -69,7 +69,7 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
     """``--json``, ``--out`` and ``--quiet``, where there is something to them."""
     if study.letters:
         yield letters_option()
-    if study.json is not None:
+    if study.json is not None or (isinstance(study.out, Folder) and study.out.json):
         yield click.Option(["--json", "as_json"], is_flag=True, help=study.json_help)
     match study.out:
         case Folder() as out:
@@ -183,8 +183,8 @@ class _Run:
             for text in (refusal.text, *refusal.more):
                 complain(file, text, self.say)
             return refusal.code
-        if self.as_json and study.json is not None:
-            click.echo(study.json(asked, request, found), nl=False)
+        if self.as_json:
+            click.echo(_json(answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
@@ -228,6 +228,13 @@ class _Run:
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
+
+
+def _json(answer: Answer) -> str:
+    """What the file says that is JSON; nothing where what ended early has none."""
+    texts = (text for name, text in answer.files.items() if name.endswith(".json"))
+    text = next(texts, "")
+    return text if isinstance(text, str) else "".join(map(str, text))
 
 
 def leave(file: Path, command: Callable[[], int]) -> NoReturn:

@@ -65,7 +65,7 @@ def run(request: Request) -> int:
         return BAD_INPUT
     found = found_in(request.folders, request.out)
     places = chosen(found.places, request.patterns)
-    say = speaking(*(place.file for place in places))
+    say = speaking(*(place.file for place in places or found.places))
     if not places and not found.unreadable:
         print("\n".join(map(say, _nothing(request, found))), file=sys.stderr)
         return BAD_INPUT

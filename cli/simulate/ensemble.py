@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from mbsym.expressions.message import Message
 from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, progress, status
 from mbsym_cli.files import deliver
@@ -66,6 +68,8 @@ def spread(
         return FAILED
     if found is None:
         return FAILED
+    if wanted.as_json:
+        click.echo(texts["ensemble.json"], nl=False)
     if not wanted.quiet:
         show_result(file, given.system, sentences(found), folder, texts)
     if found.interrupted:

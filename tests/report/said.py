@@ -169,7 +169,7 @@ def _in_english(node: ast.expr) -> bool:
     if isinstance(node, ast.Call):
         if re.match(r"(\w+\.)*say\b|speaking\b", ast.unparse(node.func)):
             return False
-        return any(map(_in_english, [*node.args, *(x.value for x in node.keywords if x.arg != "style")]))
+        return any(map(_in_english, node.args))
     if isinstance(node, ast.JoinedStr):
         return any(map(_in_english, node.values))
     if isinstance(node, ast.FormattedValue):
