@@ -174,6 +174,10 @@ def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, s
     )
 
 
+class NoMotionThere(Exception):
+    """The state that was drawn keeps no constraints: about it there is nothing to be linearised."""
+
+
 def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[bool], list[Pair]]) -> Check:
     """Compares pairs at one state: of rational numbers if ``exact`` and possible, else of balls (argument True)."""
     try:
@@ -186,6 +190,9 @@ def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[boo
         with ctx.workprec(PRECISION):
             outcome, detail = _verdict(pairs(True))
         return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail or "random parameters")
+    except NoMotionThere:
+        detail = Message("the condition of problem 4 does not hold at random parameters")
+        return Check(name, *routes, UNDECIDED, detail)
     except ZeroDivisionError as reason:
         return Check(name, *routes, UNDECIDED, Message("singular: [[why]]", why=message_of(reason)))
 

@@ -29,7 +29,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Dual, FirstOrder, Oracle, State
 from mbsym.mechanics.states import SEED
 from mbsym.model.system import System, acceleration_name, velocity_name
-from mbsym.problems.checks import D_ALEMBERT, Check, Pair, decide
+from mbsym.problems.checks import D_ALEMBERT, Check, NoMotionThere, Pair, agreement, decide
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.perturbation import Dependent, has_rational_states, matrix_pairs, unperturbed_state
 from mbsym.problems.reduction import Reduction
@@ -60,12 +60,14 @@ def check_reduced_motion(
 
 
 def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
-    """Problem 5."""
+    """Problem 5; undecided where parameters would have to fulfil a condition of problem 4 that is not solved for them."""
     about = linear.constrained
     assert about is not None
 
     def pairs(balls: bool) -> list[Pair]:
         place = _Disturbed(system, ring, about, dependent, balls)
+        if any(agreement(x, place.state.numbers.zero) is False for _, x in place.left_over):
+            raise NoMotionThere
         free = place.free_residuals()
         rows = {name: free[name].b for name in about.speeds}
         rows |= dict.fromkeys(about.following, place.state.numbers.zero)  # their velocities follow from the rows

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
@@ -217,3 +218,20 @@ def test_what_was_divided_by_must_not_vanish_at_the_values(p: str, word: Word) -
     assert [str(x) for x in about.assumed] == ["p"]
     assert found.stability.numerical is not None
     assert found.stability.numerical.word is word
+
+
+def test_a_motion_that_keeps_its_constraints_only_under_a_condition_fails_no_check() -> None:
+    """A sphere at the lowest place of its dish whose spin is inclined by b: the contact slips unless s sin b = 0.
+
+    At the given s = 1, b = 1/3 there is no such motion; random parameters are none at which it could be compared.
+    """
+    text = (SHIPPED / "dish-sphere.yaml").read_text(encoding="utf-8")
+    text = text.replace(
+        "motion: {x: 0, y: 0, z: -l, alpha: 0, beta: 0,", "motion: {x: 0, y: 0, z: -l, alpha: 0, beta: 1/3,"
+    )
+    system, complaints = read(text, "dish.yaml")
+    assert system is not None, complaints.sorted()
+    analysis = Analysis(system)
+    outcomes = {one.name: one.outcome for one in analysis.checks}
+    assert "failed" not in {str(one).lower() for one in outcomes.values()}
+    assert outcomes["perturbed motion"] == "undecided"
