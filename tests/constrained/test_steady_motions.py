@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis.pipeline import Analysis
@@ -225,7 +224,7 @@ def test_a_motion_that_keeps_its_constraints_only_under_a_condition_fails_no_che
 
     At the given s = 1, b = 1/3 there is no such motion; random parameters are none at which it could be compared.
     """
-    text = (SHIPPED / "dish-sphere.yaml").read_text(encoding="utf-8")
+    text = (SYSTEMS / "dish-sphere.yaml").read_text(encoding="utf-8")
     text = text.replace(
         "motion: {x: 0, y: 0, z: -l, alpha: 0, beta: 0,", "motion: {x: 0, y: 0, z: -l, alpha: 0, beta: 1/3,"
     )
