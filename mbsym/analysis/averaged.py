@@ -11,6 +11,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, Name, names, number
+from mbsym.model.basics import rational
 from mbsym.model.loads import ForceFunction
 from mbsym.model.substitution import folded, put
 from mbsym.model.system import System
@@ -27,10 +28,12 @@ def fast_phases(system: System) -> tuple[str, ...]:
     return tuple(item.name for item in system.prescribed if isinstance(item.rate, Name) and item.rate.name in declared)
 
 
-def averaging_of(analysis: Analysis, phase: str, amplitudes: Sequence[str] | Mapping[str, int] = ()) -> Averaged:
-    """The effective potential of an analysis whose ``phase`` is fast.
+def averaging_of(
+    analysis: Analysis, phases: str | Sequence[str], amplitudes: Sequence[str] | Mapping[str, int] = ()
+) -> Averaged:
+    """The effective potential of an analysis whose ``phases`` (one, or several) are fast.
 
-    ``amplitudes``: the parameters that set how strongly the phase acts, with their powers of eps (1 where only names
+    ``amplitudes``: the parameters that set how strongly the phases act, with their powers of eps (1 where only names
     are given); found where they are left out and plain.
 
     Raises NoClosedForm with the reason where there is none.
@@ -40,17 +43,32 @@ def averaging_of(analysis: Analysis, phase: str, amplitudes: Sequence[str] | Map
         raise NoClosedForm("averaging is for systems in coordinates, without constraints and inputs")
     if system.time_scale is not None:
         raise NoClosedForm("averaging is in physical time: leave the description's own time out")
-    rate = next(item.rate for item in system.prescribed if item.name == phase)
-    assert isinstance(rate, Name)
-    _refuse_company(system, phase, rate.name)
+    chosen = (phases,) if isinstance(phases, str) else tuple(phases)
+    given = {item.name: item.rate for item in system.prescribed}
+    rates = {phase: rate.name for phase in chosen if isinstance(rate := given[phase], Name)}
     told = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
-    if rate.name in told:
-        raise NoClosedForm(
-            Message("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=rate.name, phase=phase)
-        )
-    orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, phase, rate.name)
-    _refuse_ties(system, phase, (rate.name, *orders))
-    return averaging.averaged(analysis.scene, analysis.energy, phase, rate.name, orders)
+    for phase, speed in rates.items():
+        _refuse_company(system, phase, speed)
+        if speed in told:
+            raise NoClosedForm(
+                Message("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=speed, phase=phase)
+            )
+    orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, rates)
+    _refuse_ties(system, chosen, (*rates.values(), *orders))
+    found = averaging.averaged(analysis.scene, analysis.energy, rates, orders)
+    values = {one.name: one.value for one in system.parameters}
+    numbers = {name: rational(values[name]) for name in rates.values()}
+    known = {name: x for name, x in numbers.items() if x is not None}
+    for combination in found.apart:
+        if len(known) == len(numbers) and combination.subs(known).is_zero:
+            raise NoClosedForm(
+                Message(
+                    "at the given values [[combination]] = 0: the phases do not turn independently of each other",
+                    combination=combination,
+                ),
+                remedy="write both by one phase, as phi and 2*phi",
+            )
+    return found
 
 
 def _refuse_company(system: System, phase: str, rate: str) -> None:
@@ -67,11 +85,11 @@ def _refuse_company(system: System, phase: str, rate: str) -> None:
             )
 
 
-def _refuse_ties(system: System, phase: str, scaled: Sequence[str]) -> None:
+def _refuse_ties(system: System, phases: Sequence[str], scaled: Sequence[str]) -> None:
     """Raises NoClosedForm where what is small or large is tied to others: powers of eps would be hidden in that."""
     for item in system.prescribed:
         tied = [name for name in scaled if name in names(item.rate)]
-        if tied and item.name != phase:
+        if tied and item.name not in phases:
             raise NoClosedForm(
                 Message(
                     "[[name]] takes part in the rate of [[other]]: what is small or large must be free",
@@ -97,14 +115,14 @@ def averaged_system(system: System, found: Averaged) -> System:
     at_rest = {name: number(0) for name, _ in found.orders}
     base = replace(system, parameters=(), initial=(), claims=(), abbreviations=(), prescribed=())
     still: System = put(base, at_rest, folded)
-    kept = tuple(item for item in system.prescribed if item.name != found.phase)
-    loads = still.loads
+    kept = tuple(item for item in system.prescribed if item.name not in found.phases)
+    loads, fast = still.loads, ", ".join(found.phases)
     if not found.vibrational.is_zero:
         loads = (*loads, ForceFunction(_expression(str(found.vibrational)), "potential"))
     return replace(
         still,
-        name=f"{system.name}, averaged over {found.phase}",
-        description=f"Its effective potential holds what the fast {found.phase} does on average "
+        name=f"{system.name}, averaged over {fast}",
+        description=f"Its effective potential holds what the fast {fast} does on average "
         f"({found.scaling}).  {system.description}",
         parameters=system.parameters,
         initial=system.initial,

@@ -135,14 +135,13 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
                     known.append((claim.place or Message("claim [[number]]", number=k + 1), top))
     with suppress(Failure):
         most = 2 * max(polynomial.weights_of(there).weights)
-        new = [one for one in polynomial.integrals_of(there, most).new if one.certainty is Certainty.PROVED]
+        found = [one for one in polynomial.integrals_of(there, most).generators if one.certainty is Certainty.PROVED]
+        new = [one for one in found if one.is_new]
         for k, one in enumerate(new, 1):
-            known.append(
-                (
-                    Message("further integral [[k]]", k=k) if len(new) > 1 else Message("further integral"),
-                    one.polynomial,
-                )
-            )
+            name = Message("further integral [[k]]", k=k) if len(new) > 1 else Message("further integral")
+            known.append((name, one.polynomial))
+        # What follows from integrals that are none of the field is one of the field all the same.
+        known += [(one.name, one.polynomial) for one in found if one.name == polynomial.FUNCTION and one.independent]
     order = sorted(range(len(known)), key=lambda k: (known[k][0] not in energies, -_degree(field, known[k][1]), k))
     return [known[k] for k in order]
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
@@ -16,7 +17,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.signs import Signs
-from mbsym.analysis.symmetric import symmetries_of
+from mbsym.analysis.symmetric import blocks_of, symmetries_of
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
@@ -37,6 +38,7 @@ from mbsym.problems.polynomial_integrals import (
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
 from mbsym.problems.polynomial_integrals.result import (
+    FUNCTION,
     Cases,
     DarbouxAlong,
     DarbouxPolynomials,
@@ -46,7 +48,8 @@ from mbsym.problems.polynomial_integrals.result import (
     Relations,
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
-from mbsym.problems.vector_field import Transfer, vector_field
+from mbsym.problems.symmetries import Gradients
+from mbsym.problems.vector_field import Transfer, put_in, vector_field
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -68,6 +71,8 @@ class Setting:
     vectors: tuple[tuple[str, ...], ...]
     known: tuple[tuple[str, Any], ...]
     aside: tuple[str, ...] = ()
+    #: Whether a formula is a function of the integrals of problem 7, those that are none of ``known`` among them.
+    follows: Callable[[Formula], bool] = lambda formula: False
 
     def formula(self, p: Any) -> Formula:
         """A polynomial over ``field``, or one with numbers in place of further parameters, as a formula."""
@@ -126,7 +131,21 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     found = [one for one in grouped_by if one]
     apart = (exponentials,) if form is None else (*dict.fromkeys(found), *alone)
     kinds = tuple(x for x in (speeds, *apart) if x)
-    return Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside)
+    follows = cache(partial(_following, analysis, dict(values or {}))) if len(known) < len(listed) else None
+    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside)
+    return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
+
+
+def _following(analysis: Analysis, values: Mapping[str, Fraction]) -> Callable[[Formula], bool]:
+    """Whether a formula is a function of the integrals of problem 7: by gradients at a state of the whole system.
+
+    As the length of the angular momentum is of its components in space, which a field without orientations lacks.
+    """
+    blocks = blocks_of(analysis, values)
+    gradients = Gradients(analysis.system, blocks)
+    for one in analysis.integrals:
+        gradients.add(put_in(blocks.ring, one.formula.polynomial, blocks.images))
+    return lambda formula: gradients.grows(put_in(blocks.ring, formula.polynomial, blocks.images)) is False
 
 
 def _product(field: PolynomialField) -> Any:
@@ -241,7 +260,11 @@ def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grad
 def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
     """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
     found = polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
-    return replace(found, aside=there.aside)
+    named = (
+        replace(one, name=FUNCTION) if not one.name and there.follows(there.formula(one.polynomial)) else one
+        for one in found.generators
+    )
+    return replace(found, aside=there.aside, generators=tuple(named))
 
 
 #: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.

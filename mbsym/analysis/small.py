@@ -27,12 +27,12 @@ OSCILLATION_ORDER = 2
 
 @dataclass(frozen=True, repr=False)
 class Averaging(Shown):
-    """The effective potential for one fast phase, before it is measured; ``failure``: why there is none.
+    """The effective potential for fast phases, before it is measured; ``failure``: why there is none.
 
     ``analysis`` is that of the averaged description, for problem 6.
     """
 
-    phase: str
+    phases: tuple[str, ...]
     found: Averaged | None = None
     analysis: Analysis | None = None
     failure: str = ""
@@ -45,7 +45,8 @@ class SmallParameters(Shown):
     ``oscillation``: the periodic solution that is led by the variable which the description names as leading, or, where
     there is no slow manifold, by the only one that oscillates where the small parameter is zero; ``no_oscillation``:
     why there is none, with what can be done ("": none was asked for).
-    ``averaged``: one for each prescribed quantity whose rate is a parameter, as it is for a fast phase.
+    ``averaged``: one for each prescribed quantity whose rate is a parameter, as it is for a fast phase, and one for all
+    of them where they are several.
     """
 
     small: str = ""
@@ -70,7 +71,7 @@ def small_parameters_of(analysis: Analysis) -> SmallParameters:
         return SmallParameters()
     if system.small is not None:
         refuse_constraints(system, Message("not expanded"))
-    averaged = tuple(_averaging(analysis, phase) for phase in phases)
+    averaged = tuple(_averaging(analysis, one) for one in dict.fromkeys((*((x,) for x in phases), phases)) if one)
     if system.small is None:
         return SmallParameters(averaged=averaged)
     slow, missing = _slow(analysis)
@@ -110,15 +111,15 @@ def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:
     return found, ""
 
 
-def _averaging(analysis: Analysis, phase: str) -> Averaging:
+def _averaging(analysis: Analysis, phases: tuple[str, ...]) -> Averaging:
     from mbsym.analysis.pipeline import Analysis as Whole
 
     try:
-        found = averaging_of(analysis, phase)
+        found = averaging_of(analysis, phases)
         broken = analysis.broken(("energy",))
         if broken is not None:
             raise NoClosedForm(broken.reason)
     except Failure as reason:
-        return Averaging(phase, failure=_with_remedy(reason))
+        return Averaging(phases, failure=_with_remedy(reason))
     averaged: System = averaged_system(analysis.system, found)
-    return Averaging(phase, found, Whole(averaged, (6,)))
+    return Averaging(phases, found, Whole(averaged, (6,)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.motion import relations
-from mbsym.problems.symmetries import Symmetries, in_coordinates, in_speeds, symmetries
+from mbsym.problems.symmetries import Blocks, Symmetries, in_coordinates, in_speeds, symmetries
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -22,6 +22,11 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
     the ``values``.
     """
     refuse_constraints(analysis.system, Message("symmetries are not looked for"))
+    return symmetries(analysis.system, blocks_of(analysis, values), analysis.optional("integrals"))
+
+
+def blocks_of(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Blocks:
+    """What conditions of symmetries are made of, with numbers in place of some parameters."""
     ring, form = analysis.ring, analysis.speed_form
     numbers = {
         ring.index("parameter", name): ring.number(x)
@@ -31,7 +36,5 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
     images = {k: ring.substitute(x, numbers) for k, x in relations(analysis.parameters_scene).items()} | numbers
     equations: Any = analysis.equations
     if form is None:
-        blocks = in_coordinates(analysis.scene, analysis.energy, equations, images)
-    else:
-        blocks = in_speeds(form, analysis.energy, equations, images)
-    return symmetries(analysis.system, blocks, analysis.optional("integrals"))
+        return in_coordinates(analysis.scene, analysis.energy, equations, images)
+    return in_speeds(form, analysis.energy, equations, images)

@@ -16,6 +16,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number, text
 from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.images import Images
@@ -92,13 +93,14 @@ def _signs(analysis: Analysis, section: Section, found: list[Demand]) -> None:
         relation = RELATION_OF_SIGN.get(words[k])
         if relation is None:
             continue
+        about = f"{name} {relation} 0"
         try:
             top, bottom = section.images(analysis.ring.context.gen(k))
         except (Failure, ZeroDivisionError):
             continue  # a relation among what the section does not hold
         if relation in _FLIPPED:
             top, relation = -top, _FLIPPED[relation]
-        condition = Condition(Origin.SIGN, top * bottom, about=f"{name} {words[k]}")
+        condition = Condition(Origin.SIGN, top * bottom, about=about)
         found.append(Demand(condition, relation))
 
 
@@ -124,7 +126,7 @@ def _triangles(analysis: Analysis, body: Body, images: Images, found: list[Deman
     tensor = body.inertia.tensor
     if sum(not is_number(x, 0) for row in tensor for x in row) == 1:
         return  # one moment alone is that of plane motion, and leaves the others open
-    scene, about = analysis.parameters_scene, f"inertia of {body.name}"
+    scene, about = analysis.parameters_scene, Message("inertia of [[body]]", body=body.name)
     try:
         moments = list(_second_moments(scene, body))
     except (Failure, ZeroDivisionError):

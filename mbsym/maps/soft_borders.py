@@ -232,11 +232,12 @@ class SoftBorders:
 def _told(judged: Higher) -> SoftOrHard:
     """What problem 11 says, in the words of borders."""
     onset = Onset.OPEN
-    if judged.theorem is Theorem.REDUCTION and judged.coefficient is not None and judged.amplitude_of:
+    cubic = judged.degree is None  # of another power the border is neither soft nor hard
+    if judged.theorem is Theorem.REDUCTION and judged.coefficient is not None and judged.amplitude_of and cubic:
         onset = Onset.SOFT if judged.outcome is Outcome.ASYMPTOTIC else Onset.HARD
     frequency = judged.frequencies[0] if judged.frequencies else None
-    why = Why.NONE if onset is not Onset.OPEN else judged.why
-    return SoftOrHard(onset, why, frequency, judged.coefficient, judged.amplitude_of)
+    why = Why.NONE if onset is not Onset.OPEN else judged.why if cubic else Why.COEFFICIENT_OPEN
+    return SoftOrHard(onset, why, frequency, judged.coefficient if cubic else 0, judged.amplitude_of)
 
 
 def _plane(x: Any, curve: Any) -> Any:

@@ -124,7 +124,7 @@ class Ladder:
 
     @property
     def title(self) -> str:
-        return f"{self.subject} times" if self.kind == RATIO else self.subject
+        return Message("[[parameter]] times", parameter=self.subject) if self.kind == RATIO else self.subject
 
 
 def ladders(

@@ -124,7 +124,10 @@ def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tup
         yield "periodicSolution", listed(told)
     potentials = [one.found for one in averages(found, system) if one.found is not None]
     if potentials:
-        yield "effectivePotentials", listed(f"{{{string(x.phase)}, {x.potential.wolfram()}}}" for x in potentials)
+        yield (
+            "effectivePotentials",
+            listed(f"{{{string(', '.join(x.phases))}, {x.potential.wolfram()}}}" for x in potentials),
+        )
 
 
 def _rate(velocity: str, names: WolframNames) -> str:

@@ -21,7 +21,7 @@ from mbsym.simulation.run import simulate
 
 #: Rows in which the two motions are compared.
 ROWS = 400
-#: Periods of the fast phase, at the given numbers, that are simulated unless a time is asked for.
+#: Periods of the slowest of the fast phases, at the given numbers, that are simulated unless a time is asked for.
 PERIODS = 60
 #: Distances that the errors of the integrations may make up.
 NOISE = 1e-6
@@ -40,7 +40,7 @@ def measured(
     """
     given = scenario(system)
     values = dict(given.parameters)
-    rate = abs(float(values[found.rate]))
+    rate = min(abs(float(values[one])) for one in found.rates)
     time = PERIODS * 2 * pi / rate if time is None else time
     distances = []
     for part in PARTS:
@@ -48,7 +48,7 @@ def measured(
         scaled: dict[str, Expression] = {
             name: number(Fraction(values[name]) * part**power) for name, power in found.orders
         }
-        scaled[found.rate] = number(Fraction(values[found.rate]) / part)
+        scaled |= {one: number(Fraction(values[one]) / part) for one in found.rates}
         own = scenario(system, scaled)
         exact = simulate(own, Request(time=time, samples=ROWS, estimate=False))
         start = _start(own, found)

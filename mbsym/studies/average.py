@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
-from mbsym.studies.request import Named, Names, Number, Text
+from mbsym.studies.request import Named, Names, Number
 from mbsym.studies.study import (
     Answer,
     Asked,
@@ -34,7 +34,7 @@ ORDER = (
 
 @dataclass(frozen=True)
 class Request:
-    """Average FILE over a fast phase (prescribed, its rate a parameter): Kapitza's effective potential, exactly.
+    """Average FILE over fast phases (prescribed, their rates parameters): Kapitza's effective potential, exactly.
 
     With the rate of order 1/eps, lengths h that the phase shakes of order eps (--order h=1) and forces of zero mean of
     order 1/eps (--order v=-1), the motion is within a distance of order eps of one in an effective potential, for times
@@ -56,7 +56,9 @@ class Request:
     """
 
     _: KW_ONLY
-    phase: Annotated[str | None, Text("NAME", "The fast prescribed quantity, where there are several.")] = None
+    phase: Annotated[
+        tuple[str, ...], Names("NAME", "The fast prescribed quantity, where there are several; repeatable.")
+    ] = ()
     small: Annotated[tuple[str, ...], Names("NAME", "The same as --order NAME=1; repeatable.")] = ()
     order: Annotated[Mapping[str, int], Named("NAME=POWER", ORDER, least=-9, most=9, example="v=-1")] = field(
         default_factory=dict
@@ -73,16 +75,17 @@ class Request:
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
     from mbsym.analysis.averaged import fast_phases
 
-    known, phase = fast_phases(system), request.phase
+    known, phases = fast_phases(system), request.phase
     listed = Message("prescribed quantities whose rate is a parameter: [[names]]", names=", ".join(known))
     if not known:
         listed = Message("there is no prescribed quantity whose rate is a parameter")
-    if phase is None and len(known) != 1:
+    if not phases and len(known) != 1:
         hint = "name one of them" if known else "prescribed: {phi: {rate: nu}}, nu a parameter"
         yield Unfit("--phase", "no-phase", listed, hint)
-    elif phase is not None and phase not in known:
-        told = Message("[[name]] is no prescribed quantity whose rate is a parameter", name=repr(phase))
-        yield Unfit("--phase", "unknown-name", told, listed)
+    for phase in phases:
+        if phase not in known:
+            told = Message("[[name]] is no prescribed quantity whose rate is a parameter", name=repr(phase))
+            yield Unfit("--phase", "unknown-name", told, listed)
     for option, names in (("--small", request.small), ("--order", request.order)):
         for name in names:
             if name not in system.parameter_names:
@@ -113,7 +116,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
     watch("deriving")
     analysis = Analysis(asked.system)
-    found = averaging_of(analysis, request.phase or fast_phases(asked.system)[0], request.powers)
+    found = averaging_of(analysis, request.phase or fast_phases(asked.system), request.powers)
     broken = analysis.broken(("energy",))
     if broken is not None:
         raise Unsound(broken.reason)
@@ -133,7 +136,7 @@ def _withdrawn(system: System, found: Averaged, measured: Measured | str) -> str
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    said = of_averaging(JudgedAverage(Averaging(found.phase, found), measured, True))
+    said = of_averaging(JudgedAverage(Averaging(found.phases, found), measured, True))
     return Writer(Language(system.language)).inline(Phrase((joined(said, " "),)))
 
 
@@ -144,7 +147,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    one = Averaging(found.averaged.phase, found.averaged, Analysis(found.system, (6,)))
+    one = Averaging(found.averaged.phases, found.averaged, Analysis(found.system, (6,)))
     return Answer(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))))
 
 

@@ -176,7 +176,9 @@ def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict
 
     try:
         paths = oscillation_paths(system, found, request.values)
-        drawn = oscillation_figures(system, paths, found.found, request.format, Language(request.language or "en"))
+        drawn = oscillation_figures(
+            system, paths, found.found, request.format, Language(request.language or system.language)
+        )
     except Incomplete:
         return {}, NO_NUMBERS
     except ZeroDivisionError:

@@ -103,18 +103,16 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
 
 def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str, str | bytes]:
-    from mbsym.model.quantities import time_unit, with_unit
+    from mbsym.model.quantities import time_unit
     from mbsym.report.figures.tradeoff_figure import work_precision
     from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv
-    from mbsym.report.unit_text import pretty
 
     trade, models, unit = found.trade, found.models, time_unit(asked.system)
     mark = "-partial" if trade.interrupted else ""
     files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
     if models:
         files["fidelity.csv"] = fidelity_csv(models)
-    title = f"{asked.system.name}, t = 0 to {with_unit(f'{request.time:g}', pretty(unit))}"
-    pictures = work_precision(trade, request.target, title, models, ("svg", "png"))
+    pictures = work_precision(asked.system, request.time, trade, request.target, models, ("svg", "png"))
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 

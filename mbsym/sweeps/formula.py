@@ -87,7 +87,7 @@ class FormulaMeasure:
     """``expression`` in the parameters of a section.  Raises NoValue for a name that has no value there."""
 
     def __init__(self, section: Section, expression: Expression, text: str) -> None:
-        self.columns = (Column("value", f"{text}, in floating point"),)
+        self.columns = (Column("value", f"{text}, in floating point", title=text),)
         program = Program()
         names = tuple(axis.name for axis in section.axes)
         node = Lowering(program, _Values(section, program))(expression)

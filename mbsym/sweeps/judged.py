@@ -43,6 +43,7 @@ VERDICT = Column(
     "they stand",
     WORDS,
     whole=True,
+    title="verdict of problem 6",
 )
 RIGHT = Column("unstable_roots", "how many roots of the characteristic polynomial have Re > 0; -1: not counted")
 EXACT = Column("singly", "1: near a border, judged by itself; 0: by the signs that it shares with other points")

@@ -78,12 +78,16 @@ class Points:
 
 @dataclass(frozen=True)
 class Column:
-    """``words`` are what its whole numbers stand for, where they are codes; ``meaning`` says what is in it."""
+    """``words`` are what its whole numbers stand for, where they are codes; ``meaning`` says what is in it.
+
+    ``title`` is what figures call it.
+    """
 
     name: str
     meaning: str
     words: tuple[str, ...] = ()
     whole: bool = False
+    title: str = ""
 
 
 class Measure(Protocol):

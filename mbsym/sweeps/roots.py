@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.matrices import added
+from mbsym.expressions.message import Message
 from mbsym.maps.section import Section
 from mbsym.numerics.kernels import llvm
 from mbsym.numerics.kernels.interface import Code
@@ -52,7 +53,8 @@ class RootsMeasure:
     def columns(self) -> tuple[Column, ...]:
         found = []
         for number in range(1, self.count + 1):
-            found.append(Column(f"real{number}", f"real part of eigenvalue {number}, in {self.unit}"))
+            title = Message("real part of eigenvalue [[number]]", number=number)
+            found.append(Column(f"real{number}", f"real part of eigenvalue {number}, in {self.unit}", title=title))
             found.append(Column(f"imaginary{number}", f"imaginary part of eigenvalue {number}, in {self.unit}"))
         return tuple(found)
 
@@ -112,7 +114,7 @@ class DampingMeasure:
     def __init__(self, section: Section, unit: str) -> None:
         self._roots = RootsMeasure(section, unit)
         meaning = f"the largest real part of an eigenvalue, in {unit}; below 0: disturbances of first order decay"
-        self.columns = (Column("largest_real_part", meaning),)
+        self.columns = (Column("largest_real_part", meaning, title="largest real part of an eigenvalue"),)
 
     def at(self, points: Any) -> Mapping[str, Any]:
         return {"largest_real_part": np.max(self._roots.roots(points).real, axis=1) + 0.0}  # no -0
@@ -127,7 +129,10 @@ class FrequencyMeasure:
         meaning = (
             f"the positive imaginary parts of the eigenvalues from low to high, in {unit}; empty where there are fewer"
         )
-        self.columns = tuple(Column(f"frequency{number}", meaning) for number in range(1, self._count + 1))
+        self.columns = tuple(
+            Column(f"frequency{number}", meaning, title=Message("frequency [[number]]", number=number))
+            for number in range(1, self._count + 1)
+        )
 
     def at(self, points: Any) -> Mapping[str, Any]:
         roots = self._roots.roots(points)

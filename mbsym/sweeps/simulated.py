@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.algebra.base import Lowering
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.numerics.closing import begun
 from mbsym.numerics.ensembles.ensemble import beginning
@@ -54,7 +55,11 @@ class SimulatedMeasure:
         node = Lowering(fresh, Names(fresh))(formula)
         self._formula = arrays.kernel(Code(fresh, self._dynamics.inputs, (node,)))
         self.columns = (
-            Column("final", f"{text} at t = {time:.12g}; not a number where the motion ended early"),
+            Column(
+                "final",
+                f"{text} at t = {time:.12g}; not a number where the motion ended early",
+                title=Message("[[formula]] at t = [[time]]", formula=text, time=f"{time:.12g}"),
+            ),
             Column("least", f"the least {text} at {ROWS} equally spaced times"),
             Column("greatest", f"the greatest {text} at {ROWS} equally spaced times"),
         )

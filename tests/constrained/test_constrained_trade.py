@@ -122,7 +122,7 @@ def test_the_drift_is_a_column_of_the_table_where_there_are_constraints(trade: T
 def test_where_no_run_came_to_the_end_there_is_no_figure(trade: Tradeoff) -> None:
     """A budget that is too short leaves rows without errors, which have no place on a logarithmic axis."""
     none = replace(trade, rows=tuple(replace(row, error=inf, drift=inf) for row in trade.rows))
-    assert work_precision(none, 1e-9, "nothing", (), ("png",)) == {}
+    assert work_precision(described(PENDULUM).system, 1.0, none, 1e-9, (), ("png",)) == {}
 
 
 def _at_end(truth: Reference) -> list[float]:

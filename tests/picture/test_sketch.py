@@ -17,6 +17,7 @@ from mbsym.formulas.mathml import mathml_names
 from mbsym.picture import lettering, picture
 from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
+from mbsym.picture.program import Varied
 from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
 from mbsym.picture.values import View
 from mbsym.report.html.writer import Writer as HtmlWriter
@@ -281,6 +282,11 @@ def test_every_system_is_drawn_on_its_paper(path: Path) -> None:
     state = {name: 0.1 * (k + 1) for k, name in enumerate(program.inputs)}
     with_it = [float(x) for x in program.evaluate(state)]
     assert program.at(state) == pytest.approx(with_it, nan_ok=True, rel=1e-9, abs=1e-9)
+    for name in program.inputs:
+        some = Varied(program, program.at(state), {name: 0.7, "no input": 1.0})
+        whole = program.at(state | {name: 0.7})
+        backwards = [some[k] for k in reversed(range(len(some)))]
+        assert backwards[::-1] == pytest.approx(whole, nan_ok=True, rel=0, abs=0)
 
 
 def test_letters_upon_each_other_are_found(monkeypatch: pytest.MonkeyPatch) -> None:

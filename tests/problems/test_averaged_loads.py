@@ -307,6 +307,9 @@ def test_a_phase_that_goes_with_it_is_refused_and_a_slow_one_stays():
         ((2.0, 1.9, 0.8), True),  # far away at the given values
         ((0.1, 0.1, 0.1), True),
         ((1e9, 0.5, 0.25), True),
+        ((0.53, 0.16, 0.068), False),  # coarse at the given values, and better than the theorem from there on
+        ((0.015, 0.0041, 0.0026), False),  # phases that beat
+        ((0.2, 0.1, 0.1), True),
     ],
 )
 def test_what_contradicts_a_result(distances, lie):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -118,7 +120,7 @@ def test_a_planted_mistake_is_seen_by_the_measured_order():
     """With the wrong sign of the vibrational potential the distance does not shrink with eps."""
     analysis = _shaken(theta="pi")
     right = averaging_of(analysis, "phi")
-    wrong = type(right)(right.phase, right.rate, right.orders, -right.vibrational, right.potential, right.swings)
+    wrong = replace(right, vibrational=-right.vibrational)
     told = measured(analysis.system, averaged_system(analysis.system, wrong), right, 3.0)
     assert all(order < 0.5 for order in told.orders)
     assert contradicts(told)

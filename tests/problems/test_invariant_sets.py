@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import permutations
+from itertools import permutations, product
 
 import numpy as np
 import pytest
@@ -120,7 +120,7 @@ def test_the_middle_axis_of_a_given_body(tmp_path):
 def _all_hold(relations, **numbers):
     for one in relations:
         x = _value(one.formula, **numbers)
-        if not {">": x > 0, ">=": x >= 0, "!=": x != 0}[one.relation]:
+        if not {">": x > 0, ">=": x >= 0, "!=": x != 0, "=": x == 0}[one.relation]:
             return False
     return True
 
@@ -208,12 +208,47 @@ def test_orbital_equilibria_in_quaternions():
         assert one.gap is Gap.FOUND
 
 
-def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect():
+@pytest.fixture(scope="module")
+def kovalevskaya():
+    return mbsym.load("systems/kovalevskaya.yaml").invariant_sets
+
+
+def test_pieces_of_the_sets_of_kovalevskayas_top_are_no_defect(kovalevskaya):
     """Zeros of Kovalevskaya's integral, a sum of two squares, are stationary: r = gamma3 = 0 is no set of its own."""
-    found = mbsym.load("systems/kovalevskaya.yaml").invariant_sets
-    assert all(one.invariant is not False for family in found.families for one in family.sets)
-    assert all(family.parts for family in found.families[:2])
-    assert not found.complete
+    assert all(one.invariant is not False for family in kovalevskaya.families for one in family.sets)
+    assert kovalevskaya.families[0].parts
+    assert not kovalevskaya.complete
+    zeros = [dict(one.solved) for family in kovalevskaya.families[:2] for one in family.sets]
+    assert not any(str(one.get("r")) == "0" == str(one.get("gamma3")) and "gamma2" not in one for one in zeros)
+
+
+def test_delaunays_class_and_that_of_bobylev_and_steklov(kovalevskaya):
+    """Of Kovalevskaya's top, P = m g x0, though most branches are left aside.
+
+    Where her integral is zero (N. B. Delaunay 1892), which is stable as a set; q = 0, p constant, P gamma3 = C p r
+    (D. K. Bobylev, V. A. Steklov 1896).
+    """
+    found = kovalevskaya
+    at = {"C": 2, "m": 1, "g": 5, "x0": 3, "p": 7, "q": 11, "gamma3": Fraction(1, 2)}
+    delaunay = [
+        one
+        for family in found.families
+        for one in family.sets
+        if one.dimension == 3 and {name for name, _ in one.solved} == {"gamma1", "gamma2"}
+    ]
+    (one,) = delaunay
+    gamma = {name: _value(x, **at) for name, x in one.solved}
+    assert gamma == {"gamma1": Fraction(2 * (7**2 - 11**2), 15), "gamma2": Fraction(2 * 2 * 7 * 11, 15)}
+    assert one.invariant is True
+    assert one.variation.outcome is Definiteness.STABLE
+    bobylev = [one for family in found.families for one in family.sets if ("q", "0") in _texts(one) and one.union == 3]
+    (other,) = bobylev
+    assert _value(dict(other.solved)["r"], **at) == Fraction(15, 2 * 2 * 7)
+    assert ("p", "0") in [(name, str(x)) for name, x in other.motion]
+
+
+def _texts(one):
+    return [(name, str(x)) for name, x in one.solved]
 
 
 def test_a_wrong_sign_in_the_equations_is_seen():
@@ -343,6 +378,38 @@ loads:
 - generalized force: {x: m*w*y_dot, y: -m*w*x_dot}
 motion: {}
 """
+
+
+def test_at_a_saddle_it_is_not_a_square_that_has_to_be_negative():
+    """There V_xx = 0, V_xy = 2 a x: the squares of the roots have the product -4 a^2 x^2; only x = 0 is left."""
+    (family,) = mbsym.load("systems/henon-heiles.yaml").invariant_sets.families
+    (saddles,) = [one for one in family.sets if dict(one.solved).keys() >= {"y"} and len(one.relations) == 1]
+    assert [(str(one.formula), one.relation) for one in saddles.first.necessary if one.relation != ">="] == [("x", "=")]
+    assert not any(str(one.formula).startswith("-") for one in saddles.first.necessary if one.relation == ">=")
+
+
+def test_conditions_that_a_set_fulfils_by_itself_are_not_told():
+    """At rests of the double pendulum with unit weights each necessary condition is violated by one of them, at least.
+
+    What is m2 (l1 + l2)^2 + m1 (l1 - l2)^2 where cos theta2 = 1 never is.
+    """
+    (family,) = mbsym.load("systems/double-pendulum.yaml").invariant_sets.families
+    (rests,) = family.sets
+    assert rests.first.necessary
+    for one in rests.first.necessary:
+        places = [
+            {"cos_theta1": c1, "cos_theta2": c2, "m1": m1, "m2": 1, "l1": 1, "l2": l2, "g": 1}
+            for c1, c2, m1, l2 in product((1, -1), (1, -1), (1, 9), (1, 3))
+        ]
+        assert not all(_all_hold([replace(one, unless=())], sin_theta1=0, sin_theta2=0, **at) for at in places)
+
+
+def test_a_sign_that_the_set_itself_excludes_is_not_offered(clebsch):
+    """N (2 A l + 1)(2 B l + 1)(2 C l + 1) = lambda1^2 is not negative: the three factors are not all negative."""
+    (family, *_) = clebsch.families
+    (one,) = [x for x in family.sets if x.kind is Kind.MANIFOLD and x.free == ("gamma1", "gamma2", "gamma3")]
+    assert one.variation.positive is not None
+    assert one.variation.negative is None
 
 
 def test_what_vanishes_on_a_set_alone_is_zero_there():

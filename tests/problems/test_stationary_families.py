@@ -98,7 +98,26 @@ def test_no_gap_is_suspected_where_the_energy_alone_is_definite():
     found = _sets(PLANE.format(rest="parameters: {k: positive}\nloads:\n  - potential: k*(x**2 + y**2)/2"))
     rest = found.families[0].sets[0]
     assert rest.kind is Kind.STEADY
-    assert rest.gap is Gap.NONE_FOUND
+    assert rest.gap is not Gap.FOUND
+    assert rest.variation.outcome is Definiteness.STABLE
+    assert rest.variation.chosen == ()
+
+
+def test_what_has_no_real_points_is_no_set():
+    """grad of (y' x - x' y) + lambda (x' y' + k x y) vanishes off the rest where 1 + k lambda^2 = 0: nowhere."""
+    found = _sets(PLANE.format(rest="parameters: {k: positive}\nloads:\n  - potential: k*(x**2 + y**2)/2"))
+    (family,) = [one for one in found.families if len(one.integrals) == 2]
+    (rest,) = family.sets
+    assert rest.kind is Kind.STEADY
+
+
+def test_rates_that_say_nothing_are_not_told():
+    """On x = x' = 0 of V = (x^2 + 4 y^2)/2 the motion is y'' = -4 y, and not  y' = y'  besides."""
+    found = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2"))
+    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
+    assert "On it: y'' = -4 y." in text
+    assert "y' = y'" not in text
 
 
 def test_multipliers_near_zero_are_tried():
@@ -207,3 +226,12 @@ def test_of_a_set_it_is_said_that_stability_is_its_own():
     (text,) = [x for x in said if x.startswith("Sufficient")]
     assert "as a set" in text
     assert is_translated(text)
+
+
+def test_a_saddle_off_its_axis_is_unstable_without_a_condition():
+    """V = (x^2 + 4 y^2)/2 + x^2 y: y = -1/2, x^2 = 2; V_xx = 0, V_xy = 2 x: one square of a root is positive."""
+    (family,) = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2 + x**2*y")).families
+    (saddle,) = [one for one in family.sets if one.relations]
+    assert saddle.first.unstable
+    assert saddle.first.necessary == ()
+    assert all(str(factor[-1]) == "1" for factor in saddle.first.factors)

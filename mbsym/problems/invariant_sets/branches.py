@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import random
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import islice, product
 from typing import Any
 
 from flint import nmod_mat, nmod_poly
 
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.algebra.splitting import Branch, Solved
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
@@ -153,6 +155,10 @@ def arena(
 #: A prime over which generic points are looked for, and how often.
 PRIME = (1 << 31) - 1
 ATTEMPTS = 40
+#: Degrees in what is eliminated of two polynomials.
+MOST_ELIMINATED = 4
+#: Numbers that are put in for unknowns of which equations leave a few.
+MOST_CASES = 8
 #: Longer polynomials are not reduced further.
 MOST_TERMS = 3_000
 
@@ -194,9 +200,58 @@ class Place:
     geometric: tuple[Polynomial, ...] = ()
 
     def never_zero(self, p: Polynomial) -> bool:
-        """Whether p vanishes nowhere on the branch because its square there is a polynomial that vanishes nowhere."""
-        square = self.shortened(p * p)
-        return square != 0 and self.arena.signs.never_zero(square)
+        """Whether p vanishes nowhere on the branch.
+
+        It is divided by, its square there vanishes nowhere, or it has no real zeros in common with an equation.
+        """
+        square, never = self.shortened(p * p), self.arena.signs.never_zero
+        if any(q in (p, -p) for q in self._divisors) or (square != 0 and never(square)):
+            return True
+        for r in self.branch.remaining:
+            for g in occurring([p]):
+                if 0 < r.degrees()[g] <= MOST_ELIMINATED and len(p) * len(r) <= MOST_ELIMINATED**4:
+                    shared = p.resultant(r, g)
+                    if shared != 0 and never(shared):
+                        return True
+        return False
+
+    def sign(self, p: Polynomial) -> str:
+        """Of p on the branch: one of ``algebra.signs``, in all its ``cases``."""
+        words = {self.arena.signs.sign(images(p)) for images in self.cases}
+        return SIGN_WORDS[frozenset().union(*(SIGN_SETS.get(word, ANY) for word in words))]
+
+    @cached_property
+    def cases(self) -> tuple[Callable[[Polynomial], Polynomial], ...]:
+        """What puts in numbers for unknowns of which an equation such as (cos - 1)(cos + 1) = 0 leaves a few."""
+        ring, values = self.arena.ring, {}
+        for p in self.branch.remaining:
+            factors = [f for f, _ in irreducible_factors(p)[1]]
+            held = {g for f in factors for g in occurring([f])}
+            if len(held) == 1 and all(f.total_degree() == 1 for f in factors):
+                (g,) = held
+                x = ring.context.gen(g)
+                values[g] = [x - f / f.leading_coefficient() for f in factors]
+        gens = ring.context.gens()
+        every = [dict(zip(values, some, strict=True)) for some in islice(product(*values.values()), MOST_CASES + 1)]
+        if len(every) > MOST_CASES:
+            every = [{}]
+        return tuple(
+            partial(_put, images=[at.get(g, x) for g, x in enumerate(gens)]) if at else _as_it_is for at in every
+        )
+
+    @cached_property
+    def _divisors(self) -> tuple[Polynomial, ...]:
+        """Irreducible polynomials that stand in denominators on the branch."""
+        found: list[Polynomial] = []
+        for p in (*(s.denominator for s in self.branch.solved), self.fraction(self.arena.denominator)[0]):
+            found += [f for f, _ in irreducible_factors(p)[1] if f not in found] if p != 0 else []
+        return tuple(found)
+
+    @cached_property
+    def divided_by(self) -> tuple[Polynomial, ...]:
+        """Those of them that do not hold parameters alone."""
+        unknown = (*self.arena.multipliers, *self.arena.variables)
+        return tuple(f for f in self._divisors if any(f.degrees()[g] > 0 for g in unknown))
 
     def fixes(self, multiplier: int) -> bool:
         """Whether the state, or what remains, depends on a free multiplier."""
@@ -343,6 +398,14 @@ class Place:
             [*rows, *([int(j == m + i) for j in range(len(unknown))] for i in range(len(unknown) - m))]
         )
         return fixed, whole - moving
+
+
+def _put(p: Polynomial, images: Sequence[Polynomial]) -> Polynomial:
+    return p.compose(*images, ctx=p.context())
+
+
+def _as_it_is(p: Polynomial) -> Polynomial:
+    return p
 
 
 def evaluate(p: Polynomial, values: Mapping[int, int]) -> int:

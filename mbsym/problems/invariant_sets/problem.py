@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
-from mbsym.algebra.splitting import Branch, Solved, SplitLimits, exchanged, split
+from mbsym.algebra.splitting import Branch, Solved, Split, SplitLimits, exchanged, split
 from mbsym.formulas.formula import Formula
 from mbsym.problems.invariant_sets import second_variation
 from mbsym.problems.invariant_sets.branches import Arena, Place
@@ -28,7 +28,8 @@ from mbsym.problems.invariant_sets.trials import gap_between, is_real
 MOST_SETS = 40
 #: Equations in sines and cosines are longer: fewer branches are followed.
 IN_ANGLES = SplitLimits(branches=150, terms=120, pairs=4, long=24)
-
+#: Of what is asked with some multipliers zero.
+FEWER = SplitLimits(branches=300, terms=120)
 
 #: Terms of two equations whose resultant is asked for, and degrees in what is eliminated.
 MOST_TERMS, MOST_DEGREE = 24, 4
@@ -68,8 +69,12 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     equations = in_angles(arena, whole) if arena.floating else [whole.derivative(g) for g in arena.variables]
     limits = IN_ANGLES if arena.floating else SplitLimits()
     found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
-    generic = list(found.generic)
-    places = [place for branch in found.branches if (place := _on_relations(arena, branch, generic)) is not None]
+    branches, generic = list(found.branches), list(found.generic)
+    if found.unfinished:  # what fewer of the integrals make stationary is quickly found by itself
+        for part in _without_some(arena, equations):
+            branches += part.branches
+            generic += [p for p in part.generic if p not in generic]
+    places = [place for branch in branches if (place := _on_relations(arena, branch, generic)) is not None]
     places = [place for place in places if not _is_empty(place, generic)]
     places = [with_lagrangian(place, whole) for place in places] if arena.floating else places
     kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
@@ -87,6 +92,20 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     sets.sort(key=lambda one: (one.dimension, one.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
+
+
+def _without_some(arena: Arena, equations: Sequence[Polynomial]) -> Iterator[Split]:
+    """The equations with some of the multipliers zero, the fewest integrals first; all of which are taken apart."""
+    free = arena.constant
+    gens = arena.ring.context.gens()
+    for count in reversed(range(1, len(free) + 1)):
+        for some in combinations(free, count):
+            fixed = [gens[g] for g in some]
+            found = split(
+                [*fixed, *equations], (*arena.variables, *arena.constant), arena.signs.never_zero, limits=FEWER
+            )
+            if not found.unfinished:
+                yield found
 
 
 def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
@@ -147,6 +166,7 @@ def _on_relations(arena: Arena, branch: Branch, generic: list[Polynomial]) -> Pl
             continue
         factors = [f for f, _ in irreducible_factors(top)[1]]
         open_factors = [f for f in factors if f not in branch.nonzero and not _is_parameter(arena, f)]
+        open_factors = [f for f in open_factors if not arena.signs.never_zero(f)]  # it has no real zeros
         assumed = [f for f in factors if _is_parameter(arena, f) and not arena.signs.never_zero(f)]
         generic += [f for f in assumed if f not in generic]
         if not open_factors:
@@ -239,7 +259,7 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
         kind=kind,
         solved=tuple((arena.name(g), _value(place, g)) for g in arena.variables if g in place.solved),
         relations=tuple(arena.formula(p) for p in place.branch.remaining),
-        nonzero=tuple(arena.formula(p) for p in _denominators(place)),
+        nonzero=tuple(arena.formula(p) for p in place.divided_by),
         free=tuple(arena.name(g) for g in place.free_variables),
         multipliers=tuple(
             (arena.name(g), _value(place, g) if g in place.solved else None)
@@ -287,17 +307,6 @@ def _lowest(top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial
     return top / common, bottom / common
 
 
-def _denominators(place: Place) -> list[Polynomial]:
-    """What is divided by on the set and is no polynomial in parameters alone."""
-    found: list[Polynomial] = []
-    top, _ = place.fraction(place.arena.denominator)
-    for p in (*(s.denominator for s in place.branch.solved), top):
-        for f, _ in irreducible_factors(p)[1]:
-            if not _is_parameter(place.arena, f) and f not in found:
-                found.append(f)
-    return found
-
-
 def _invariant(place: Place) -> bool | None:
     """d/dt of every equation of the set, for constant multipliers, vanishes on it by the equations of motion."""
     arena = place.arena
@@ -316,8 +325,13 @@ def _invariant(place: Place) -> bool | None:
 def why_empty(place: Place) -> tuple[Polynomial, ...] | None:
     """Polynomials in parameters alone: where none of them vanishes the branch has no points; None where that is open.
 
-    The resultant of two polynomials lies in their ideal, so that it vanishes at every common zero.
+    An equation may have no real solution, as k x^2 + 1 = 0.  The resultant of two polynomials lies in their ideal, so
+    that it vanishes at every common zero.
     """
+    for p in place.branch.remaining:
+        provided = _nonzero(place, p)
+        if provided is not None:
+            return provided
     unknown = (*place.arena.multipliers, *place.arena.variables)
     for p, q in combinations(place.branch.remaining, 2):
         if len(p) * len(q) > MOST_TERMS**2:

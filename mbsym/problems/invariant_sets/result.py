@@ -28,7 +28,7 @@ class Definiteness(Enum):
 
 @dataclass(frozen=True)
 class Relation:
-    """``formula`` relation 0, the relation one of > >= !=; or one of ``unless`` vanishes."""
+    """``formula`` relation 0, the relation one of > >= != =; or one of ``unless`` vanishes."""
 
     formula: Formula
     relation: str

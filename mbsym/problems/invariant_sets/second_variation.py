@@ -28,6 +28,7 @@ from mbsym.algebra.characteristic import (
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import Operators, ScalarMatrix, dot
 from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import Condition, ContradictionError, Signs
 from mbsym.problems.invariant_sets.branches import Place, evaluate, rank
 from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Relation, SecondVariation
 
@@ -136,36 +137,76 @@ def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
     if any(x == 0 for x in minors):  # no definite form has such a minor, be the form degenerate or not
         return SecondVariation(Definiteness.DEGENERATE if minors[-1] == 0 else Definiteness.NEVER, size)
     wanted = [place.shortened(x * scale ** ((k + 1) % 2)) for k, x in enumerate(minors)]
-    positive = _sufficient(place, wanted)
-    negative = _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(wanted)])
-    if positive == () or negative == ():
-        outcome = Definiteness.STABLE
-    elif positive is None and negative is None:
-        outcome = Definiteness.NEVER
-    else:
-        outcome = Definiteness.CONDITIONAL
     chosen = {
         g
         for x in wanted
         for g, degree in enumerate(x.degrees())
         if degree > 0 and g in place.free_multipliers and not place.fixes(g)
     }
+    positive, negative = _both(place, wanted)
+    divided = (*(s.denominator for s in place.branch.solved), *place.branch.nonzero)
+    if () not in (positive, negative) and not any(p.degrees()[g] > 0 for p in divided for g in chosen):
+        # Without those multipliers K may be definite already.
+        gens = arena.ring.context.gens()
+        images = [arena.ring.zero if g in chosen else x for g, x in enumerate(gens)]
+        alone = _both(place, [x.compose(*images, ctx=arena.ring.context) for x in wanted])
+        if chosen and () in alone:
+            (positive, negative), chosen = alone, set()
+    if () in (positive, negative):
+        outcome = Definiteness.STABLE
+    elif positive is None and negative is None:
+        outcome = Definiteness.NEVER
+    else:
+        outcome = Definiteness.CONDITIONAL
     return SecondVariation(outcome, size, positive, negative, tuple(arena.name(g) for g in sorted(chosen)))
+
+
+def _both(
+    place: Place, wanted: Sequence[Polynomial]
+) -> tuple[tuple[Relation, ...] | None, tuple[Relation, ...] | None]:
+    """Conditions for a form with these minors to be positive definite, and negative definite."""
+    return _sufficient(place, wanted), _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(wanted)])
 
 
 def _sufficient(place: Place, wanted: Sequence[Polynomial]) -> tuple[Relation, ...] | None:
     """Conditions for all of them to be positive, each reduced by those before it; None where that is impossible."""
     arena = place.arena
     known, found = arena.signs, []
-    for p in wanted:
-        condition = known.condition(p)
-        if condition.kind == "never":
+    try:
+        for p in wanted:
+            condition = _condition(place, known, p)
+            if condition.kind == "never":
+                return None
+            told: list[tuple[Polynomial, str]] = [(condition.polynomial, ">")] if condition.kind == "inequality" else []
+            told += [(f, "!=") for f in condition.nonzero if not place.never_zero(f)]
+            known = known.assuming(told)
+            found += told
+        if found and any(_excluded(place, known, p) for p in place.branch.remaining):
             return None
-        told: list[tuple[Polynomial, str]] = [(condition.polynomial, ">")] if condition.kind == "inequality" else []
-        told += [(f, "!=") for f in condition.nonzero if not place.never_zero(f)]
-        known = known.assuming(told)
-        found += told
+    except ContradictionError:
+        return None
     return tuple(Relation(arena.formula(p), relation) for p, relation in found)
+
+
+def _condition(place: Place, known: Signs, p: Polynomial) -> Condition:
+    """For p > 0 on the branch: decided where it is so in all cases of the branch."""
+    cases = [known.condition(images(p)) for images in place.cases]
+    decided = {one.kind for one in cases} in ({"always"}, {"never"})
+    return cases[0] if decided or len(cases) == 1 else known.condition(p)
+
+
+def _excluded(place: Place, known: Signs, p: Polynomial) -> bool:
+    """Whether p = 0 has no solutions: what holds an unknown in it, and what does not, are of one sign."""
+    if known.never_zero(p):
+        return True
+    gens = p.context().gens()
+    for g in (*place.arena.multipliers, *place.arena.variables):
+        if p.degrees()[g] > 0:
+            rest = p.compose(*(x * 0 if k == g else x for k, x in enumerate(gens)), ctx=p.context())
+            signs = {known.sign(rest), known.sign(p - rest)}
+            if signs <= {"positive", "nonnegative"} or signs <= {"negative", "nonpositive"}:
+                return "positive" in signs or "negative" in signs
+    return False
 
 
 def first_approximation(place: Place) -> FirstApproximation | None:
@@ -196,6 +237,8 @@ def first_approximation(place: Place) -> FirstApproximation | None:
             complete, left = False, left + len(uneven) - 1
             unstable |= any(arena.signs.sign(place.shortened(c * uneven[-1])) == "negative" for c in uneven)
             continue
+        if arena.signs.sign(even[-1]) == "negative":
+            even = [-c for c in even]
         factors.append(tuple(arena.formula(c) for c in even))
         if len(even) < 2:
             continue
@@ -204,21 +247,22 @@ def first_approximation(place: Place) -> FirstApproximation | None:
         if len(even) > 2:
             wanted += [place.shortened(x) for x in subdiscriminants(even)[1:]]
         for p in map(place.or_zero, wanted):
-            sign = arena.signs.sign(p)
+            sign = place.sign(p)
             unstable |= sign == "negative"
             if p == 0 or sign in ("positive", "nonnegative", "zero", "negative"):
                 continue
             condition = arena.signs.condition(p)
             if any(place.vanishes(f) for f in condition.nonzero):
                 continue  # p is zero on the branch
-            if condition.kind == "inequality":
-                unless = tuple(arena.formula(f) for f in condition.nonzero if not place.never_zero(f))
-                necessary.append(Relation(arena.formula(condition.polynomial), ">=", unless))
-            elif sign == "nonpositive":  # it has to vanish: one of these factors does
+            if sign == "nonpositive":  # it has to vanish: one of these factors does
                 product = arena.ring.one
                 for f in arena.signs.nonzero_condition(p).nonzero:
-                    product = product * f
-                necessary.append(Relation(arena.formula(-product * product), ">="))
+                    product = product if place.never_zero(f) else product * f
+                unstable |= bool(product.is_constant())
+                necessary.append(Relation(arena.formula(product), "="))
+            elif condition.kind == "inequality":
+                unless = tuple(arena.formula(f) for f in condition.nonzero if not place.never_zero(f))
+                necessary.append(Relation(arena.formula(condition.polynomial), ">=", unless))
             else:
                 complete = False
     return FirstApproximation(zeros, tuple(factors), () if unstable else tuple(necessary), unstable, complete, left)

@@ -51,7 +51,7 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
     """Whether parameters were found at which what is necessary holds strictly and what is sufficient does not."""
     if variation is None or first is None or first.unstable or not first.complete:
         return Gap.UNTRIED
-    if variation.outcome not in (Definiteness.CONDITIONAL, Definiteness.STABLE):
+    if variation.outcome is not Definiteness.CONDITIONAL:
         return Gap.UNTRIED
     sieve = _Sieve(place, first.necessary)
     with ctx.workprec(BITS):
@@ -105,6 +105,8 @@ def _hold(relations: Sequence[Relation], point: Mapping[int, arb], strictly: boo
         if any(_value(f.polynomial, point).contains(0) for f in one.unless):
             return False
         value = _value(one.formula.polynomial, point)
+        if one.relation == "=":  # which no ball can prove
+            return False
         if one.relation == "!=":
             if value.contains(0):
                 return False

@@ -17,7 +17,8 @@ while they are built; cyclic coordinates without forces are left out with their 
   along a zero root, too.
   Of two degrees of freedom D_4 and the resonances as formulas in parameters.
 * With applied forces: one pair +-i w of roots, the others to the left: on the centre manifold r' = a r^3 + ... for the
-  amplitude r; a < 0: asymptotically stable (a soft border), a > 0: unstable (hard).  One zero root:
+  amplitude r; a < 0: asymptotically stable (a soft border), a > 0: unstable (hard); where a = 0 exactly (Bautin's
+  point) the term of fifth order.  One zero root:
   u' = a2 u^2 + a3 u^3.  Two zero roots, more pairs: named.
 
 Resonances, resonant terms of third order that cancel, and roots on the axis are decided exactly (rational numbers,

@@ -19,14 +19,13 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq
+from flint import arb
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Space, Truncated, flow
-from mbsym.mechanics.rest import rational_values
-from mbsym.problems.normal_forms.exact import even_part, over_tower, rational_squares
+from mbsym.problems.normal_forms.exact import even_part, exact_values, over_tower, rational_root, rational_squares
 from mbsym.problems.normal_forms.expansion import Expansion
 
 
@@ -171,10 +170,10 @@ def _diagonal(whole: Truncated, linear: Linear) -> Truncated:
 
 def is_zero_exactly(found: Expansion, values: Mapping[str, Any], vector: Sequence[int], omega: Sequence[arb]) -> bool:
     """``vector`` of the absolute frequencies |Omega_k|, ``omega`` with the signs of their energies."""
-    exact = rational_values(values)
-    if len(exact) < len(values):
-        return False
     tower = Tower()
+    exact = exact_values(found, tower, values)
+    if exact is None:
+        return False
     try:
         return of_hamiltonian(tower, over_tower(found, tower, exact).hamiltonian(), vector, omega)
     except (Failure, ZeroDivisionError):
@@ -202,7 +201,7 @@ def of_hamiltonian(tower: Tower, hamiltonian: Truncated, vector: Sequence[int], 
 
 def _in_units_of_one(
     tower: Tower, hamiltonian: Truncated, vector: Sequence[int], sizes: Sequence[arb]
-) -> tuple[Element, list[Fraction]] | None:
+) -> tuple[Element, list[Any]] | None:
     """(w^2, w_j/w for the frequencies in the resonance); None where they are not known so."""
     support = [j for j, k in enumerate(vector) if k]
     even = even_part(matrix_of(hamiltonian), tower.zero, tower.one)
@@ -214,11 +213,5 @@ def _in_units_of_one(
     own = [next((x for x in squares if (sizes[j] * sizes[j]).contains(x)), None) for j in support]
     if any(x is None for x in own):
         return None
-    ratios = [_root(x / own[0]) for x in own if x is not None and own[0] is not None]
+    ratios = [rational_root(x / own[0]) for x in own if x is not None and own[0] is not None]
     return None if None in ratios or own[0] is None else (tower.element(own[0]), [x for x in ratios if x is not None])
-
-
-def _root(x: fmpq) -> Fraction | None:
-    """The rational square root, if there is one."""
-    top, bottom = x.p.isqrt(), x.q.isqrt()
-    return Fraction(int(top), int(bottom)) if top * top == x.p and bottom * bottom == x.q else None

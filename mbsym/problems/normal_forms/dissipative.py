@@ -7,7 +7,7 @@ from roots near the axis.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from flint import Ordering, acb_poly, arb, ctx, fmpq, fmpq_mpoly_ctx, fmpq_poly
@@ -17,11 +17,11 @@ from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.rest import rational_values
 from mbsym.model.system import velocity_name
 from mbsym.problems.normal_forms.exact import (
     Reduced,
     common_factor,
+    exact_values,
     in_ring,
     matrix_of,
     occurring_parameters,
@@ -48,12 +48,12 @@ def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tupl
     return [*velocities, *map(cut, rates)], positions
 
 
-def judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
-    """What is decided at rational values."""
-    exact = rational_values(values)
-    if len(exact) < len(values):
-        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
+def judged_field(found: Expansion, values: Mapping[str, Any], further: Callable[[], Expansion] | None = None) -> Judged:
+    """What is decided at exact values; ``further``: the expansion to order 6, where third order decides nothing."""
     tower = Tower()
+    exact = exact_values(found, tower, values)
+    if exact is None:
+        return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     field, positions = state_field(over_tower(found, tower, exact))
     whole_ones = faddeev(matrix_of(field), tower.zero, tower.one)[1]
     coefficients = [x for one in whole_ones if (x := tower.rational(one)) is not None]
@@ -70,7 +70,8 @@ def judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
     if not pairs and not zeros:
         return Judged(Outcome.ASYMPTOTIC, Theorem.FIRST)
     if pairs == 1 and not zeros:
-        return _pair(tower, field, positions, tower.element(square[0] / square[1]))
+        longer = None if further is None else lambda: state_field(over_tower(further(), tower, exact), 5)[0]
+        return _pair(tower, field, positions, tower.element(square[0] / square[1]), longer)
     if zeros == 1 and not pairs:
         return _zero(tower, field)
     why = Why.MIXED_ROOTS if pairs and zeros else Why.MORE_PAIRS if pairs else Why.TWO_ZERO_ROOTS
@@ -109,13 +110,23 @@ def _size(x: Element) -> float:
     return float(not x.is_zero())
 
 
-def _pair(tower: Tower, field: Sequence[Truncated], positions: Sequence[str], square: Element) -> Judged:
+def _pair(
+    tower: Tower,
+    field: Sequence[Truncated],
+    positions: Sequence[str],
+    square: Element,
+    further: Callable[[], Sequence[Truncated]] | None,
+) -> Judged:
     coefficient, amplitude_of = _coefficient(tower, field, positions, square)
+    degree = None
+    if coefficient.is_zero() and further is not None:  # Bautin's point
+        coefficient, amplitude_of = _coefficient(tower, further(), positions, square)
+        degree = 5
     number = tower.rational(coefficient)
     w = arb(tower.rational(square)).sqrt()
     value: Any = tower.enclosed(coefficient, {}).real if number is None else number
     outcome, theorem, why = _sign(value)
-    return Judged(outcome, theorem, why, frequencies=(w,), coefficient=value, amplitude_of=amplitude_of)
+    return Judged(outcome, theorem, why, frequencies=(w,), coefficient=value, amplitude_of=amplitude_of, degree=degree)
 
 
 def _sign(value: Any) -> tuple[Outcome, Theorem, Why]:
@@ -129,12 +140,13 @@ def _sign(value: Any) -> tuple[Outcome, Theorem, Why]:
 def _coefficient(
     tower: Tower, field: Sequence[Truncated], positions: Sequence[str], square: Element
 ) -> tuple[Element, str]:
-    """a of r' = a r^3, and the coordinate whose amplitude r is."""
+    """a of r' = a r^3, or of r' = a r^5 where the field goes so far; and the coordinate whose amplitude r is."""
     root = tower.square_root(-square)
     found: Reduced = on_pair(field, root, tower.reciprocal, _size)
     j = next(j for j in range(len(positions)) if not found.lengths[j].is_zero())
-    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
-    return real / (found.lengths[j] * 4), positions[j]
+    whole, scale = (found.cubic, 4) if found.quintic is None else (found.quintic, found.lengths[j] * 16)
+    real = (whole + tower.conjugate(whole, tower.place(root))) / 2
+    return real / (found.lengths[j] * scale), positions[j]
 
 
 def _zero(tower: Tower, field: Sequence[Truncated]) -> Judged:

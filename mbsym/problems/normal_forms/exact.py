@@ -5,25 +5,59 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd, lcm
+from functools import lru_cache, reduce
+from itertools import chain, combinations, count, product
+from math import gcd, lcm, prod
 from typing import Any
 
-from flint import arb, fmpq, fmpq_poly
+from flint import Ordering, arb, arb_poly, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra import rationals
+from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint, message_of
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import Element, Tower, angle_in
-from mbsym.algebra.truncated import Space, Truncated
+from mbsym.algebra.truncated import Coefficients, Space, Truncated
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
-def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Fraction]) -> Numbers:
+def exact_values(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> dict[str, Element] | None:
+    """Values in the tower: rational ones, and those that the description writes with square roots of numbers.
+
+    None where there are others, or roots that are not independent (sqrt(2) beside sqrt(8)): what is zero would not be
+    told then.
+    """
+    written = {one.name: one.value for one in found.scene.system.parameters}
+    exact: dict[str, Element] = {}
+    for name, value in values.items():
+        if isinstance(value, Fraction):
+            exact[name] = tower.number(value)
+            continue
+        expression = written.get(name)
+        if expression is None:
+            return None
+        try:
+            exact[name] = Lowering(tower, {})(expression)
+        except (Failure, ZeroDivisionError):
+            return None
+        if not tower.enclosed(exact[name], {}).real.overlaps(value):
+            return None  # it is another number than that of the description
+    squares = [tower.rational(tower.made(x, tower.one.bottom)) for x in tower.squares]
+    for some in chain.from_iterable(combinations(squares, k) for k in range(1, len(squares) + 1)):
+        whole = fmpq(1)
+        for x in some:
+            whole = fmpq(0) if x is None else whole * x
+        if whole <= 0 or rational_root(whole) is not None:
+            return None
+    return exact
+
+
+def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> Numbers:
     """The expansion with ``values`` put in; what has none is a parameter of the tower."""
-    environment: dict[str, Any] = {name: tower.number(value) for name, value in values.items()}
+    environment: dict[str, Any] = {name: tower.element(value) for name, value in values.items()}
     environment |= {name: tower.parameter(name) for name in tower.parameters}
     carry = Carrier(found.scene.ring, tower, environment)
     return Numbers(found, carry, tower.reciprocal, tower.zero, tower.one)
@@ -64,7 +98,7 @@ class Resonant:
 
     def __init__(self, tower: Tower | None, coefficients: Sequence[Element] | None) -> None:
         self.tower, self.coefficients = tower, coefficients
-        self._squares = None if coefficients is None else rational_squares(tower, coefficients)
+        self._roots = None if coefficients is None or tower is None else _signed_roots(tower, coefficients)
 
     @property
     def zero(self) -> bool:
@@ -89,24 +123,80 @@ class Resonant:
             return True if resonance(self.tower, self.coefficients, vector).is_zero() else None
         if len(frequencies) == 3 and all(abs(k) == 1 for k in vector):
             return True if sum_of_others(self.coefficients).is_zero() else None
-        return self._by_square_roots(vector, frequencies)
+        return self._by_counting(vector, frequencies)
 
-    def _by_square_roots(self, vector: tuple[int, ...], frequencies: Sequence[arb]) -> bool | None:
-        """Square roots of different square-free numbers are independent over the rationals."""
-        if self._squares is None:
+    def _by_counting(self, vector: tuple[int, ...], frequencies: Sequence[arb]) -> bool | None:
+        """Sums  k_1 w_1 + ... over all roots and signs: where as many vanish as enclosures cannot tell from zero."""
+        if self._roots is None:
             return None
-        totals: dict[int, fmpq] = {}
-        for k, w in zip(vector, frequencies, strict=True):
-            square = next((x for x in self._squares if (w * w).contains(x)), None)
-            if square is None:
-                return None
-            number, factor = square.p * square.q, fmpq(1, square.q)
-            free = 1
-            for prime, exponent in number.factor():
-                factor *= fmpq(prime) ** (exponent // 2)
-                free *= int(prime) ** (exponent % 2)
-            totals[free] = totals.get(free, fmpq(0)) + k * factor
-        return not any(totals.values())
+        factors = [factor for factor, _ in self._roots.factor()[1]]
+        own = {sign * j: _only(factors, sign * w) for j, w in enumerate(frequencies, 1) for sign in (1, -1)}
+        chosen = [(k, own[j]) for j, k in enumerate(vector, 1) if k]
+        degrees = prod(0 if factor is None else factor.degree() for _, factor in chosen)
+        if not 0 < degrees <= MOST_SUMMED:
+            return None
+        *others, last = (factor(fmpq_poly([0, fmpq(1, k)])) for k, factor in chosen if factor is not None)
+        whole = reduce(composed_sum, others)
+        shared = whole.gcd(last(fmpq_poly([0, -1]))).factor()[1]
+        vanishing = sum(f.degree() * _power(f, whole) * _power(f, last(fmpq_poly([0, -1]))) for f, _ in shared)
+        places = [[j for j, x in own.items() if x is factor] for _, factor in chosen]
+        if any(len(some) < factor.degree() for some, (_, factor) in zip(places, chosen, strict=True) if factor):
+            return None
+        roots = [
+            [k * (1 if j > 0 else -1) * frequencies[abs(j) - 1] for j in some]
+            for some, (k, _) in zip(places, chosen, strict=True)
+        ]
+        near = sum(bool(sum(some, arb(0)).contains(0)) for some in product(*roots))
+        return True if vanishing == near else None
+
+
+#: Sums of roots that are formed for one resonance.
+MOST_SUMMED = 256
+
+
+def _only(factors: Sequence[fmpq_poly], root: arb) -> fmpq_poly | None:
+    """The only one of the factors that may vanish at the enclosed root."""
+    found = [factor for factor in factors if arb_poly(factor)(root).contains(0)]
+    return found[0] if len(found) == 1 else None
+
+
+def _power(factor: fmpq_poly, whole: fmpq_poly) -> int:
+    """How often the factor divides."""
+    return next(n for n in count() if whole % factor ** (n + 1) != 0)
+
+
+def _signed_roots(tower: Tower, coefficients: Sequence[Element]) -> fmpq_poly | None:
+    """The polynomial with the roots +-w, z = -w^2 the roots of q; None where its coefficients are not rational."""
+    numbers = [x for one in coefficients if (x := tower.rational(one)) is not None]
+    if len(numbers) < len(coefficients):
+        return None
+    return fmpq_poly([y for k, x in enumerate(numbers) for y in (x * (-1) ** k, fmpq(0))][:-1])
+
+
+@lru_cache(16)
+def _composed_sum(p: tuple[fmpq, ...], q: tuple[fmpq, ...]) -> fmpq_poly:
+    context = fmpq_mpoly_ctx.get(["x", "y"], Ordering.lex)
+    x, y = context.gens()
+    one, other = (
+        sum((c * z**k for k, c in enumerate(coefficients)), context.constant(0))
+        for coefficients, z in ((p, y), (q, x - y))
+    )
+    terms = one.resultant(other, "y").to_dict()
+    found = [fmpq(0)] * (1 + max(int(m[0]) for m in terms))
+    for monomial, c in terms.items():
+        found[int(monomial[0])] = c
+    return fmpq_poly(found)
+
+
+def composed_sum(p: fmpq_poly, q: fmpq_poly) -> fmpq_poly:
+    """The polynomial whose roots are the sums of a root of p and one of q: Res_y(p(y), q(x - y))."""
+    return _composed_sum(tuple(p.coeffs()), tuple(q.coeffs()))
+
+
+def rational_root(x: fmpq) -> fmpq | None:
+    """The square root, if that is rational."""
+    top, bottom = x.p.isqrt(), x.q.isqrt()
+    return fmpq(top, bottom) if x >= 0 and top * top == x.p and bottom * bottom == x.q else None
 
 
 def rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:
@@ -248,11 +338,15 @@ def primitive(tower: Tower, x: Element) -> Element:
 
 @dataclass(frozen=True)
 class Reduced:
-    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state."""
+    """``cubic`` is c (of a zero root a3), ``quadratic`` a2 (0 for a pair); ``lengths`` are q_j q_j* (q_j) by state.
+
+    ``quintic`` is c' of z' = lambda z + c z^2 z* + c' z^3 z*^2 of a pair, where the field goes so far.
+    """
 
     quadratic: Any
     cubic: Any
     lengths: tuple[Any, ...]
+    quintic: Any = None
 
 
 def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
@@ -264,15 +358,66 @@ def matrix_of(field: Sequence[Truncated]) -> list[list[Any]]:
 def on_pair(
     field: Sequence[Truncated], root: Any, inverse: Callable[[Any], Any], size: Callable[[Any], float]
 ) -> Reduced:
-    """The pair ``root``, -root, simple.  Raises what ``inverse`` raises where the root is not simple, or 0 or 2 root is
-    one."""
+    """The pair ``root``, -root, simple.
+
+    Raises what ``inverse`` raises where the root is not simple, or 0 or a multiple of root is one.
+    """
     source = field[0].space
     zero, one = source.zero, source.one
     matrix = matrix_of(field)
     q, p, column = _eigenvectors(matrix, root, zero, one, inverse, size)
-    conjugate = [row[column] for row in adjugate_at(matrix, -root, zero, one)]
-    third = _third(field, root, q, conjugate, matrix, inverse)
-    return Reduced(zero, dot(p, third), tuple(a * b for a, b in zip(q, conjugate, strict=True)))
+    whole = adjugate_at(matrix, -root, zero, one)
+    conjugate = [row[column] for row in whole]
+    row = max(whole, key=lambda row: size(row[column]))
+    dual = [x * inverse(dot(row, conjugate)) for x in row] if source.order > 3 else []
+    lower, last = _on_centre(field, root, (q, conjugate), (p, dual), inverse)
+    found = [*lower, dot(p, last)]
+    return Reduced(zero, found[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), *found[1:])
+
+
+def _on_centre(
+    field: Sequence[Truncated],
+    root: Any,
+    vectors: tuple[Sequence[Any], Sequence[Any]],
+    duals: tuple[Sequence[Any], Sequence[Any]],
+    inverse: Callable[[Any], Any],
+) -> tuple[list[Any], list[Any]]:
+    """c_1, c_2, ... below the order 2 n + 1 of the field (3, or 5), and the right side N of z^(n + 1) z*^n.
+
+    By  x = H(z, z*) = q z + q* z* + sum h_jk z^j z*^k  and  DH (z', z*') = A H + N(H):
+
+        ((j - k) lambda - A) h_jk = N_jk - sum_l (c_l (j - l) + c_l* (k - l)) h_(j-l)(k-l),
+
+    where for j = k + 1 a multiple of q makes the right side one of those with p h = 0, c_k, and so for its conjugate.
+    """
+    source = field[0].space
+    m, zero, one, most = len(field), source.zero, source.one, source.order // 2
+    matrix, space = matrix_of(field), Space(2, 2 * most + 1, zero, one)
+    state = [space.linear((a, b)) for a, b in zip(*vectors, strict=True)]
+    rates: dict[int, list[Any]] = {}
+    for order in range(2, 2 * most + 2):
+        forced = [row.beyond(1).composed(state) for row in field]
+        added: list[Coefficients] = [{} for _ in field]
+        for j in range(max(0, order - most), min(order, most + 1) + 1):  # others do not reach z^(n + 1) z*^n
+            k = order - j
+            right = [x[j, k] for x in forced]
+            for back, (c, other) in rates.items():
+                if min(j, k) >= back and order - 2 * back > 1:
+                    factor = c * (j - back) + other * (k - back)
+                    right = [x - factor * h[j - back, k - back] for x, h in zip(right, state, strict=True)]
+            if k == most and j > most:
+                return [rates[n][0] for n in sorted(rates)], right
+            moved = [[(root * (j - k) if r == s else zero) - matrix[r][s] for s in range(m)] for r in range(m)]
+            for which, (own, left, ahead) in enumerate(zip(vectors, duals, (j - k, k - j), strict=True)):
+                if ahead == 1:
+                    share = dot(left, right)
+                    right = [x - share * y for x, y in zip(right, own, strict=True)]
+                    moved = [[moved[r][s] + own[r] * left[s] for s in range(m)] for r in range(m)]
+                    rates.setdefault(min(j, k), [zero, zero])[which] = share
+            for row, x in zip(added, _applied(inverted(moved, inverse, zero, one), right), strict=True):
+                row[j, k] = x
+        state = [x + Truncated(space, extra) for x, extra in zip(state, added, strict=True)]
+    raise AssertionError("the last order ends it")
 
 
 def on_double_pair(
@@ -293,29 +438,8 @@ def on_double_pair(
     conjugate = [row[j] for row in adjugate_at(matrix, -root, zero, one)]
     generalised = [row[j] for row in adjugate_slope_at(matrix, root, zero, one)]
     factor = inverse(dot(p, generalised))
-    third = _third(field, root, q, conjugate, matrix, inverse)
+    _, third = _on_centre(field, root, (q, conjugate), ((), ()), inverse)
     return dot(p, third) * factor * inverse(dot(q, conjugate))
-
-
-def _third(
-    field: Sequence[Truncated],
-    root: Any,
-    q: Sequence[Any],
-    conjugate: Sequence[Any],
-    matrix: Sequence[Sequence[Any]],
-    inverse: Callable[[Any], Any],
-) -> list[Any]:
-    """The coefficients of z^2 z* in the field on x = q z + q* z* + h20 z^2/2 + h11 z z* + ..."""
-    source = field[0].space
-    m, zero, one = len(field), source.zero, source.one
-    space = Space(2, 3, zero, one)
-    plane = [space.linear((q[i], conjugate[i])) for i in range(m)]
-    second = [row.beyond(1).composed(plane) for row in field]
-    doubled = [[(root * 2 if i == j else zero) - matrix[i][j] for j in range(m)] for i in range(m)]
-    h20 = _applied(inverted(doubled, inverse, zero, one), [x[2, 0] for x in second])
-    h11 = [-x for x in _applied(inverted(matrix, inverse, zero, one), [x[1, 1] for x in second])]
-    bent = [row + Truncated(space, {(2, 0): a, (1, 1): b}) for row, a, b in zip(plane, h20, h11, strict=True)]
-    return [row.beyond(1).composed(bent)[2, 1] for row in field]
 
 
 def on_zero(field: Sequence[Truncated], inverse: Callable[[Any], Any], size: Callable[[Any], float]) -> Reduced:

@@ -23,6 +23,7 @@ from mbsym.problems.normal_forms.equal import equal_frequencies
 from mbsym.problems.normal_forms.exact import (
     Resonant,
     even_part,
+    exact_values,
     in_ring,
     known,
     occurring_parameters,
@@ -60,7 +61,7 @@ class _Expanded:
     def at(self, values: Mapping[str, Any]) -> Judged:
         """What is decided at values of all parameters."""
         with ctx.workprec(PRECISION):
-            return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to(4), values)
+            return at_numbers(self.to, values, None) if self.conservative else _judged_field(self.to, values)
 
 
 def judge(
@@ -104,10 +105,10 @@ def normal_forms(
     )
 
 
-def _judged_field(found: Expansion, values: Mapping[str, Any]) -> Judged:
+def _judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
     """With applied forces, at numbers: undecided where coefficients are no exact numbers (sines, exponentials)."""
     try:
-        return judged_field(found, values)
+        return judged_field(to(4), values, lambda: to(ORDER))
     except SingularMass:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
     except (NoClosedForm, NoValue):  # the tower has square roots of numbers, but no pi
@@ -143,15 +144,15 @@ def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], res
 
 def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:
     tower = Tower()
-    matrix = matrix_of(over_tower(found, tower, rational_values(values)).hamiltonian())
+    matrix = matrix_of(over_tower(found, tower, exact_values(found, tower, values) or {}).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
     return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
 def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
-    """A root is zero exactly, at rational values."""
+    """A root is zero exactly, at exact values."""
     tower = Tower()
-    numbers = over_tower(found, tower, rational_values(values))
+    numbers = over_tower(found, tower, exact_values(found, tower, values) or {})
     balls = enclosed(found, values).hamiltonian()
 
     def ball_of(x: Element) -> arb:
@@ -191,11 +192,11 @@ def ball(value: Any) -> arb:
 
 
 def _exactly(found: Expansion, values: Mapping[str, Any]) -> Resonant:
-    """Exact resonances, where all values are rational and the coefficients hold nothing but square roots."""
-    exact = rational_values(values)
-    if len(exact) < len(values):
-        return Resonant(None, None)
+    """Exact resonances, where values and coefficients hold nothing but square roots."""
     tower = Tower()
+    exact = exact_values(found, tower, values)
+    if exact is None:
+        return Resonant(None, None)
 
     def coefficients() -> list[Element]:
         quadratic = over_tower(found, tower, exact).hamiltonian()

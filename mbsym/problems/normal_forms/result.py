@@ -98,7 +98,8 @@ class Judged(Shown):
     ``quadratic`` are the coefficients of I_j I_k (j <= k) of the normal form of order 4, where it was formed.
     ``determinants`` are D_4 and D_6 as far as they were needed; ``resonances`` those that hold exactly up to the order
     that was looked at.  Of one pair of imaginary roots: ``coefficient`` a of r' = d r + a r^3, r the amplitude of
-    ``amplitude_of`` in first approximation, ``frequencies`` its w.  Of equal frequencies with one eigenvector:
+    ``amplitude_of`` in first approximation, ``frequencies`` its w; a of  a r^5  where ``degree`` is 5.  Of equal
+    frequencies with one eigenvector:
     ``coefficient`` delta A of Sokolskii's normal form.  Of a zero root of a Hamiltonian system: ``coefficient`` a of
     the energy a x^M + ... along its kernel, M ``degree``, x the variable ``along``.
     """

@@ -87,23 +87,28 @@ class Independence:
         return [source.randrange(1, self.there.prime) for _ in self.there.field.variables]
 
     def _on_the_relations(self) -> list[int] | None:
-        """A state that keeps relations  x^2 + ... = 0  in which each x stands alone; None where it is not so."""
+        """A state that keeps relations each of which has a variable of its own, alone or as a square; else None."""
         prime, source = self.there.prime, random.Random(f"states {self.there.prime}")
-        rules = self.there.rules
-        places = [leading.index(2) if sorted(leading)[-1] == 2 == sum(leading) else None for leading, _ in rules]
-        fixed = [k for k in places if k is not None]
-        if (
-            len(set(fixed)) < len(rules)
-            or any(m[k] for _, tail in rules for m in tail for k in fixed)
-            or prime % 4 != 3
-        ):
+        relations = [self.there.terms(relation) for relation in self.there.field.relations]
+        held = [{k for m in f for k, power in enumerate(m) if power} for f in relations]
+        own = []
+        for f, names in zip(relations, held, strict=True):
+            free = [k for k in sorted(names) if sum(k in others for others in held) == 1]
+            powers = {k: {m[k] for m in f} for k in free}
+            fitting = [k for k in free if powers[k] in ({0, 1}, {0, 2})]
+            if not fitting:
+                return None
+            own.append((fitting[0], max(powers[fitting[0]])))
+        if prime % 4 != 3:
             return None
         for _ in range(200):
             state = [source.randrange(1, prime) for _ in self.there.field.variables]
-            for k, (_, tail) in zip(fixed, rules, strict=True):
-                square = value(tail, state, prime)
-                state[k] = pow(square, (prime + 1) // 4, prime)
-                if state[k] * state[k] % prime != square:
+            for f, (k, power) in zip(relations, own, strict=True):
+                slope = value({m: c for m, c in f.items() if m[k]}, [*state[:k], 1, *state[k + 1 :]], prime)
+                rest = value({m: c for m, c in f.items() if not m[k]}, state, prime)
+                image = -rest * pow(slope, -1, prime) % prime if slope else 0
+                state[k] = image if power == 1 else pow(image, (prime + 1) // 4, prime)
+                if not slope or pow(state[k], power, prime) != image:
                     break
             else:
                 return state

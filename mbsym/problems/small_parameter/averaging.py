@@ -1,21 +1,22 @@
-"""Averaging over a fast prescribed phase: the effective potential of systems that are shaken or driven fast.
+"""Averaging over fast prescribed phases: the effective potential of systems that are shaken or driven fast.
 
-With a phase phi' = nu prescribed, nu = O(1/eps), every parameter that sets how strongly the phase acts has an order
-eps^k of its own: lengths h that are shaken k = 1, amplitudes v of forces of zero mean k = -1 (the force is as large as
-nu; v nu^2 has k = 1).  All else is O(1).  The Lagrangian is
+With a phase phi' = nu prescribed, nu = O(1/eps), or several, whose rates and those of their combinations that occur are
+O(1/eps), every parameter that sets how strongly phases act has an order eps^k of its own: lengths h that are shaken
+k = 1, amplitudes v of forces of zero mean k = -1 (the force is as large as nu; v nu^2 has k = 1).  All else is O(1).
+The Lagrangian is
 
     L = 1/2 q'.M q' + A1.q' + A0 + U_0 + U_1,      U_0 = O(1),  U_1 = O(1/eps),  <U_1> = 0
 
 and Q_1 = O(1/eps), <Q_1> = 0, are applied forces without a force function, which hold no velocities.  By parts,
-U_1 = d/dt W - (dW/dq).q' + O(1) of zero mean, W = (1/nu) integral U_1 dphi, so that with
+U_1 = d/dt W - (dW/dq).q' + O(1) of zero mean, W = integral U_1 dt at constant q, so that with
 
-    g = dW/dq + (1/nu) integral Q_1 dphi,      a = A1 - <A1> - g,      P = p - g
+    g = dW/dq + integral Q_1 dt,      a = A1 - <A1> - g,      P = p - g
 
 the motion is within O(eps), over times of order 1, of that of the same M with the potential energy
 
     V(q) = 1/2 <a.M^-1 a> - <A0> - <U_0>      (only terms of order eps^0 count)
 
-in the velocities  Q' = M^-1 (P - <A1>);  the motion about it is  q = Q - (1/nu) M^-1 integral a dphi + ...  M of order
+in the velocities  Q' = M^-1 (P - <A1>);  the motion about it is  q = Q - M^-1 integral a dt + ...  M of order
 eps^0 must not hold the phase.  Where Q_1 is no gradient the mean force  sum_j <(dg_i/dq_j - dg_j/dq_i) (M^-1 a)_j>
 is left; it has to be of a potential, like the means of forces of order 1, and is taken into V.  What the shaking adds
 to <A1>.q' must be a total derivative (as in one coordinate it always is).  What A1, A0 and U are without the amplitudes
@@ -65,23 +66,25 @@ from mbsym.problems.energy import Energy
 
 @dataclass(frozen=True, repr=False)
 class Averaged(Shown):
-    """V = ``potential``, but for constants; ``vibrational``: what of it the phase adds.
+    """V = ``potential``, but for constants; ``vibrational``: what of it the phases add.
 
-    ``rate`` is of order eps^-1; ``orders``: the powers of eps of the amplitudes; all else is of order 1.
+    ``rates`` of ``phases`` are of order eps^-1; ``orders``: the powers of eps of the amplitudes; all else is O(1).
+    ``apart``: sums of several rates that are of order eps^-1, too, as their harmonics meet.
 
     ``beside``: coordinates on which forces act that have no place in V and do what they did (damping, generalised
     forces): V alone is not the whole motion then.
 
-    ``swings`` are M^-1 a by coordinate, in q and the phase: the velocities of the oscillation about Q are -M^-1 a.
+    ``swings`` are M^-1 a by coordinate, in q and the phases: the velocities of the oscillation about Q are -M^-1 a.
     """
 
-    phase: str
-    rate: str
+    phases: tuple[str, ...]
+    rates: tuple[str, ...]
     orders: tuple[tuple[str, int], ...]
     vibrational: Formula
     potential: Formula
     swings: tuple[Formula, ...]
     beside: tuple[str, ...] = ()
+    apart: tuple[Formula, ...] = ()
 
     @property
     def small(self) -> tuple[str, ...]:
@@ -91,18 +94,28 @@ class Averaged(Shown):
     @property
     def scaling(self) -> str:
         """Of which order everything is taken: the result holds for that only."""
-        every = ((self.rate, -1), *self.orders)
+        every = (*((rate, -1) for rate in self.rates), *self.orders)
         return ", ".join(f"{name} of order eps^{power}" for name, power in every) + ", all else of order 1"
 
 
 @dataclass(frozen=True)
 class Order:
-    """Powers of eps in terms of the ring: ``amplitudes`` by their places, and -1 for the rate."""
+    """Powers of eps in terms of the ring: ``amplitudes`` by their places, and -1 for every rate."""
 
     ring: Ring
     amplitudes: Mapping[int, int]
-    rate: int
-    phase: tuple[int, ...]  # its sine, its cosine and itself
+    rates: tuple[int, ...]
+    phases: tuple[tuple[int, int, int], ...]  # of each its sine, its cosine and itself
+
+    @property
+    def told(self) -> str:
+        """The names of the phases."""
+        return ", ".join(self.ring.generators[itself].name for *_, itself in self.phases)
+
+    @property
+    def places(self) -> set[int]:
+        """Where the phases stand in the ring."""
+        return {k for one in self.phases for k in one}
 
     def leading(self, p: Polynomial, what: str) -> Polynomial:
         """The terms of order eps^0.  Raises NoClosedForm where p grows as eps tends to 0, or hides what matters."""
@@ -118,7 +131,8 @@ class Order:
         self.refuse_hidden(p, what)
         found: tuple[dict[Any, Any], dict[Any, Any]] = {}, {}
         for monomial, c in p.to_dict().items():
-            power = sum(k * monomial[at] for at, k in self.amplitudes.items()) - monomial[self.rate]
+            power = sum(k * monomial[at] for at, k in self.amplitudes.items())
+            power -= sum(monomial[at] for at in self.rates)
             if power < -1:
                 raise NoClosedForm(
                     Message(
@@ -134,7 +148,8 @@ class Order:
 
     def unshaken(self, p: Polynomial) -> Polynomial:
         """The terms in which neither the rate nor an amplitude stands."""
-        kept = {m: c for m, c in p.to_dict().items() if not (m[self.rate] or any(m[k] for k in self.amplitudes))}
+        scaled = (*self.rates, *self.amplitudes)
+        kept = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in scaled)}
         return self.ring.context.from_dict(kept)
 
     def unscaled(self, p: Polynomial) -> Polynomial:
@@ -144,48 +159,96 @@ class Order:
 
     def holds_phase(self, p: Polynomial) -> bool:
         degrees = p.degrees()
-        return any(degrees[k] > 0 for k in self.phase)
+        return any(degrees[k] > 0 for k in self.places)
 
     def mean(self, p: Polynomial, what: str) -> Polynomial:
-        """The average over the phase.  Raises NoClosedForm where it stands outside of sines and cosines."""
-        sine, cosine, itself = self.phase
+        """The average over the phases.  Raises NoClosedForm where one stands outside of sines and cosines."""
+        turning = {k for sine, cosine, _ in self.phases for k in (sine, cosine)}
         total: dict[tuple[int, ...], Any] = {}
         for monomial, c in p.to_dict().items():
-            if monomial[itself]:
-                raise NoClosedForm(
-                    Message(
-                        "[[what]] holds [[name]] outside of sines and cosines",
-                        what=what,
-                        name=self.ring.generators[itself].name,
+            for *_, itself in self.phases:
+                if monomial[itself]:
+                    raise NoClosedForm(
+                        Message(
+                            "[[what]] holds [[name]] outside of sines and cosines",
+                            what=what,
+                            name=self.ring.generators[itself].name,
+                        )
                     )
-                )
-            a, b = monomial[sine], monomial[cosine]
-            if a % 2 or b % 2:
+            powers = [(monomial[sine], monomial[cosine]) for sine, cosine, _ in self.phases]
+            if any(a % 2 or b % 2 for a, b in powers):
                 continue
-            key = tuple(0 if k in (sine, cosine) else e for k, e in enumerate(monomial))
-            total[key] = total.get(key, fmpq(0)) + c * fmpq(_odd(a) * _odd(b), _even(a + b))
+            for a, b in powers:
+                c = c * fmpq(_odd(a) * _odd(b), _even(a + b))
+            key = tuple(0 if k in turning else e for k, e in enumerate(monomial))
+            total[key] = total.get(key, fmpq(0)) + c
         return self.ring.context.from_dict({key: c for key, c in total.items() if c})
 
-    def integral(self, p: Polynomial) -> Polynomial:
-        """The antiderivative of zero mean of p, whose own mean over the phase is zero."""
-        ring = self.ring
-        sine, cosine, itself = self.phase
-        s, c = (ring.context.gen(k) for k in (sine, cosine))
-        ((unit, factor),) = ring.derivative(s, ring.generators[itself].name).to_dict().items()  # sin(factor phi)
-        assert unit[cosine] == 1
-        total = ring.zero
+    def waves(self, p: Polynomial) -> dict[tuple[fmpq, ...], tuple[Polynomial, Polynomial]]:
+        """p = sum over k of  P_k cos(k.phi) + Q_k sin(k.phi),  the first k_j that is not zero positive."""
+        ring, found = self.ring, dict[tuple[fmpq, ...], tuple[Polynomial, Polynomial]]()
+        turning = {k for sine, cosine, _ in self.phases for k in (sine, cosine)}
         for monomial, coefficient in p.to_dict().items():
-            a, b = monomial[sine], monomial[cosine]
-            rest = tuple(0 if k in (sine, cosine) else e for k, e in enumerate(monomial))
-            for n, weight in _harmonics(a, b):
-                multiple_sine, multiple_cosine = ring.multiple_angle(s, c, n)
-                wave = -multiple_cosine if a % 2 else multiple_sine
-                total += ring.times(ring.context.from_dict({rest: coefficient * weight / (n * factor)}), wave)
+            rest = ring.context.from_dict(
+                {tuple(0 if k in turning else e for k, e in enumerate(monomial)): coefficient}
+            )
+            # exp(i k.phi) by k: even parts are real, odd ones imaginary, so that cosines and sines come out by symmetry
+            terms = {(fmpq(0),) * len(self.phases): (fmpq(1), fmpq(0))}
+            for place, (sine, cosine, itself) in enumerate(self.phases):
+                unit = self._unit(sine, itself)
+                powers = _exponentials(monomial[sine], monomial[cosine])
+                further: dict[tuple[fmpq, ...], tuple[fmpq, fmpq]] = {}
+                for k, (x, y) in terms.items():
+                    for n, (u, v) in powers.items():
+                        key = (*k[:place], k[place] + n * unit, *k[place + 1 :])
+                        x0, y0 = further.get(key, (fmpq(0), fmpq(0)))
+                        further[key] = x0 + x * u - y * v, y0 + x * v + y * u
+                terms = further
+            for k, (x, y) in terms.items():
+                first = next((n for n in k if n), fmpq(0))
+                if first < 0 or not (x or y):
+                    continue
+                double = 2 if first else 1  # exp(i k.phi) and its conjugate
+                old = found.get(k, (ring.zero, ring.zero))
+                found[k] = old[0] + rest * (double * x), old[1] - rest * (double * y)
+        return found
+
+    def _unit(self, sine: int, itself: int) -> fmpq:
+        """1/n of  sin(phi/n)."""
+        own = self.ring.generators[itself].name
+        ((_, factor),) = self.ring.derivative(self.ring.context.gen(sine), own).to_dict().items()
+        return factor
+
+    def speed(self, k: tuple[fmpq, ...]) -> Polynomial:
+        """The rate of k.phi."""
+        gens = (self.ring.context.gen(at) * n for n, at in zip(k, self.rates, strict=True))
+        return sum(gens, self.ring.zero)
+
+    def integral(self, p: Polynomial) -> Polynomial:
+        """The antiderivative of zero mean in time of p, whose own mean over the phases is zero."""
+        ring = self.ring
+        total = ring.zero
+        for k, (even, odd) in self.waves(p).items():
+            if any(k):
+                s, c = self._turned(k)
+                whole = ring.times(even, s) - ring.times(odd, c)
+                total += ring.times(whole, ring.reciprocal(self.speed(k)))
         return ring.reduce(total)
+
+    def _turned(self, k: tuple[fmpq, ...]) -> tuple[Polynomial, Polynomial]:
+        """Sine and cosine of k.phi."""
+        ring = self.ring
+        s, c = ring.zero, ring.one
+        for n, (sine, cosine, itself) in zip(k, self.phases, strict=True):
+            times = int(n / self._unit(sine, itself))
+            one, other = ring.multiple_angle(ring.context.gen(sine), ring.context.gen(cosine), abs(times))
+            one = one if times >= 0 else -one
+            s, c = ring.times(s, other) + ring.times(c, one), ring.times(c, other) - ring.times(s, one)
+        return s, c
 
     def refuse_hidden(self, p: Polynomial, what: str) -> None:
         """Raises NoClosedForm where what is scaled or averaged stands in a denominator, root or function."""
-        watched = {*self.amplitudes, self.rate, *self.phase}
+        watched = {*self.amplitudes, *self.rates, *self.places}
         inside = [k for k in occurring([p]) if k not in watched]
         seen: set[int] = set()
         while inside:
@@ -223,22 +286,28 @@ def _even(n: int) -> int:
     return found
 
 
-def _harmonics(a: int, b: int) -> Iterator[tuple[int, fmpq]]:
-    """s^a c^b = constant + sum of weight cos(n u), of weight sin(n u) where a is odd: (n, weight), n > 0.
-
-    By (z - 1/z)^a (z + 1/z)^b = (2i)^a 2^b s^a c^b.
-    """
-    for n in range((a + b) % 2 or 2, a + b + 1, 2):
+def _exponentials(a: int, b: int) -> dict[int, tuple[fmpq, fmpq]]:
+    """s^a c^b = sum of (x + i y) exp(i n u), by n: (z - 1/z)^a (z + 1/z)^b = (2i)^a 2^b s^a c^b."""
+    found = {}
+    for n in range(-a - b, a + b + 1, 2):
         drop = (a + b - n) // 2  # so many factors give 1/z
         count = sum((-1) ** j * comb(a, j) * comb(b, drop - j) for j in range(min(a, drop) + 1))
         if count:
-            yield n, fmpq((-1) ** (a // 2) * 2 * count, 2 ** (a + b))
+            x = fmpq(count, 2 ** (a + b))
+            found[n] = ((x, fmpq(0)), (fmpq(0), -x), (-x, fmpq(0)), (fmpq(0), x))[a % 4]  # times i^-a
+    return found
 
 
-def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, orders: Mapping[str, int]) -> Averaged:
-    """V, exactly.  Raises NoClosedForm where the system is none of those described above; the reason says why."""
+def averaged(
+    scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str], orders: Mapping[str, int]
+) -> Averaged:
+    """V, exactly; ``phases`` with their rates.
+
+    Raises NoClosedForm where the system is none of those described above; the reason says why.
+    """
     ring, names = scene.ring, scene.system.coordinates
-    order = _order(ring, phase, rate, orders)
+    order = _order(ring, phases, orders)
+    phase = order.told
     moving = without_constants(ring, names)
     mass = [[order.leading(x, Message("the mass matrix")) for x in row] for row in energy.A2.polynomials]
     if any(order.holds_phase(x) for row in mass for x in row):
@@ -263,10 +332,9 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
         for j, b in enumerate(names[:i]):
             if not ring.is_zero(ring.derivative(added[i], b) - ring.derivative(added[j], a)):
                 raise NoClosedForm("gyroscopic terms are left: what the shaking adds to <A1> is no gradient")
-    slow = ring.reciprocal(ring.generator("parameter", rate))
     wave = order.integral(moving(grown))
-    driven = {name: ring.times(order.integral(push), slow) for name, push in pushes.items()}
-    kicks = [ring.times(ring.derivative(wave, name), slow) + driven[name] for name in names]
+    driven = {name: order.integral(push) for name, push in pushes.items()}
+    kicks = [ring.derivative(wave, name) + driven[name] for name in names]
     swings = [ring.reduce(x - mean - g) for x, mean, g in zip(linear, means, kicks, strict=True)]
     adjoint = adjugate(mass, partial(determinant, ring))
     vibrational = ring.number(0)
@@ -286,28 +354,44 @@ def averaged(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str, or
     mean_force = ring.reduce(order.mean(force, "U"))
     vibrational_alone = whole + order.unshaken(rest) - mean_force + order.unshaken(force)
     return Averaged(
-        phase,
-        rate,
+        tuple(phases),
+        tuple(phases.values()),
         tuple(orders.items()),
         Formula(ring, moving(ring.reduce(vibrational_alone))),
         Formula(ring, moving(ring.reduce(whole - mean_force))),
         tuple(Formula(ring, x) for x in turned),
         beside,
+        tuple(Formula(ring, x) for x in _mixed(order, swings, [*swings, grown, force, rest])),
     )
+
+
+def _mixed(order: Order, factors: Sequence[Polynomial], formulas: Sequence[Polynomial]) -> list[Polynomial]:
+    """The rates of several phases at which formulas, and products of two ``factors``, oscillate."""
+    if len(order.phases) < 2:
+        return []
+    own = {k for x in factors for k in order.waves(x)}
+    pairs = {tuple(x + sign * y for x, y in zip(a, b, strict=True)) for a in own for b in own for sign in (1, -1)}
+    mixed = {
+        k for k in pairs.union(*map(order.waves, formulas)) if sum(map(bool, k)) > 1 and next(n for n in k if n) > 0
+    }
+    return [order.speed(k) for k in sorted(mixed, key=lambda k: (sum(map(abs, k)), [-n for n in k]))]
 
 
 _REMEDY = "give the amplitude of what the phase does a parameter of its own, or name its order: mbsym average --order"
 
 
-def _order(ring: Ring, phase: str, rate: str, orders: Mapping[str, int]) -> Order:
-    """Raises NoClosedForm where no sine or cosine of the phase occurs: nothing oscillates with it."""
-    if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
-        raise NoClosedForm(Message("no sine or cosine of [[phase]] occurs: nothing oscillates with it", phase=phase))
+def _order(ring: Ring, phases: Mapping[str, str], orders: Mapping[str, int]) -> Order:
+    """Raises NoClosedForm where no sine or cosine of a phase occurs: nothing oscillates with it."""
+    for phase in phases:
+        if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
+            raise NoClosedForm(
+                Message("no sine or cosine of [[phase]] occurs: nothing oscillates with it", phase=phase)
+            )
     return Order(
         ring,
         {ring.index("parameter", name): power for name, power in orders.items()},
-        ring.index("parameter", rate),
-        (ring.index("sine", phase), ring.index("cosine", phase), ring.index("prescribed", phase)),
+        tuple(ring.index("parameter", rate) for rate in phases.values()),
+        tuple((ring.index("sine", x), ring.index("cosine", x), ring.index("prescribed", x)) for x in phases),
     )
 
 
@@ -357,7 +441,7 @@ def _other_loads(
     averages in another way.
     """
     ring, system = scene.ring, scene.system
-    phase = ring.generators[order.phase[2]].name
+    phase = order.told
     pushes, steady, beside = {}, {}, []
     for name, found in generalized_forces(scene).items():
         what = Message("the force on [[name]]", name=name)
@@ -391,15 +475,17 @@ def _other_loads(
     return pushes, steady, tuple(beside)
 
 
-def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -> dict[str, int]:
+def orders_of(scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str]) -> dict[str, int]:
     """The powers of eps of the amplitudes, where they are plain.  Raises NoClosedForm where they have to be told.
 
-    Order 1 has the only parameter without which T does not depend on the phase and there is a mass matrix still.
+    Order 1 has the only parameter without which T does not depend on the phases and there is a mass matrix still, or
+    have the fewest that do so together (the axes of an ellipse).
     The loads that are left depend on the phase by parameters of their own, each term by one: where the mean of what
     holds one vanishes, its order makes that O(1/eps), as large as it can be with a mean motion; else O(1).
     """
     ring, names = scene.ring, scene.system.coordinates
-    order = _order(ring, phase, rate, {})
+    order = _order(ring, phases, {})
+    phase = order.told
     kinetic = [energy.A0.polynomial, *(x.polynomial for x in energy.A1)]
     kinetic += [x for row in energy.A2.polynomials for x in row]
     moving = without_constants(ring, names)
@@ -407,19 +493,27 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
     loads |= {Message("the force on [[name]]", name=name): x for name, x in generalized_forces(scene).items()}
     for what, p in (*(("T", x) for x in kinetic), *loads.items()):
         order.refuse_hidden(p, what)
-    parameters = {x.name: ring.index("parameter", x.name) for x in scene.system.parameters if x.name != rate}
-    orders = {}
-    waves = [m for p in kinetic for m in p.to_dict() if any(m[k] for k in order.phase)]
+    parameters = {x.name: ring.index("parameter", x.name) for x in scene.system.parameters}
+    parameters = {name: k for name, k in parameters.items() if k not in order.rates}
+    orders: dict[str, int] = {}
+    waves = [m for p in kinetic for m in p.to_dict() if any(m[k] for k in order.places)]
     if waves:
         mass = [x for row in energy.A2.polynomials for x in row]
         killing = {name: k for name, k in parameters.items() if all(m[k] for m in waves)}
         found = [name for name, k in killing.items() if not any(p.degrees()[k] > 0 for p in mass)]
         found = found or [name for name, k in killing.items() if _has_mass_without(ring, energy, k)]
-        if len(found) != 1:
+        if not found:
+            beside = [name for name, k in parameters.items() if not any(p.degrees()[k] > 0 for p in mass)]
+            every = [few for few in _choices(beside) if all(any(m[parameters[n]] for n in few) for m in waves)]
+            least = [few for few in every if len(few) == min(map(len, every))]
+            found = list(least[0]) if len(least) == 1 else []
+        elif len(found) > 1:
+            found = []
+        if not found:
             raise NoClosedForm(
                 Message("which parameters are small is not plain: name what [[phase]] shakes", phase=phase)
             )
-        orders[found[0]] = 1
+        orders |= dict.fromkeys(found, 1)
     shaken = [parameters[name] for name in orders]
     means = {what: order.mean(p, what) for what, p in loads.items()}
     left = [
@@ -439,7 +533,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phase: str, rate: str) -
     for few in sorted(_choices(own), key=lambda some: (not pure.issuperset(some), len(some))):
         if not all(sum(m[free[n]] > 0 for n in few) == 1 for m, _ in left):
             continue
-        powers = [_power(free[n], order.rate, [m for m, _ in left], n in pure, slow) for n in few]
+        powers = [_power(free[n], order.rates, [m for m, _ in left], n in pure, slow) for n in few]
         if None not in powers:
             return orders | {n: power for n, power in zip(few, powers, strict=True) if power is not None}
     raise NoClosedForm(
@@ -465,14 +559,15 @@ def _choices(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _power(
-    at: int, rate: int, waves: Sequence[tuple[int, ...]], pure: bool, slow: Sequence[tuple[int, ...]]
+    at: int, rates: Sequence[int], waves: Sequence[tuple[int, ...]], pure: bool, slow: Sequence[tuple[int, ...]]
 ) -> int | None:
     """Of eps, for the amplitude in the place ``at``; None where no power fits."""
     mine = [m for m in waves if m[at]] if pure else [m for m in slow if m[at]]
-    exponents, rates = {int(m[at]) for m in mine}, max(int(m[rate]) for m in mine)
+    exponents = {int(m[at]) for m in mine}
+    grown = max(sum(int(m[k]) for k in rates) for m in mine)
     if pure:
-        return rates - 1 if exponents == {1} else None
-    return 0 if not rates else rates if exponents == {1} else None
+        return grown - 1 if exponents == {1} else None
+    return 0 if not grown else grown if exponents == {1} else None
 
 
 def _hidden(ring: Ring, formulas: Sequence[Polynomial]) -> set[int]:

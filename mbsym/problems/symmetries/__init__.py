@@ -31,6 +31,14 @@ Example:
     [('psi', 'momentum of psi'), ('time', 'generalised energy')]
 """
 
-from mbsym.problems.symmetries.search import Blocks, Symmetries, Symmetry, in_coordinates, in_speeds, symmetries
+from mbsym.problems.symmetries.search import (
+    Blocks,
+    Gradients,
+    Symmetries,
+    Symmetry,
+    in_coordinates,
+    in_speeds,
+    symmetries,
+)
 
-__all__ = ["Blocks", "Symmetries", "Symmetry", "in_coordinates", "in_speeds", "symmetries"]
+__all__ = ["Blocks", "Gradients", "Symmetries", "Symmetry", "in_coordinates", "in_speeds", "symmetries"]

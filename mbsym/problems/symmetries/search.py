@@ -424,7 +424,7 @@ def _told_apart(
 ) -> list[Symmetry]:
     """Without those whose integral is a constant; which are known, and how that is."""
     listed = [(one.name, put_in(blocks.ring, one.formula.polynomial, blocks.images)) for one in known or ()]
-    of_known, of_all = _Gradients(system, blocks), _Gradients(system, blocks)
+    of_known, of_all = Gradients(system, blocks), Gradients(system, blocks)
     for _, x in listed:
         of_known.add(x)
         of_all.add(x)
@@ -448,7 +448,7 @@ def _told_apart(
     return judged
 
 
-class _Gradients:
+class Gradients:
     """Gradients at one exact state, and their rank; after what has no value there nothing is known any more."""
 
     def __init__(self, system: System, blocks: Blocks) -> None:

@@ -26,7 +26,8 @@ Frequencies = Annotated[list[Annotated[str, NUMBER]], "of Hamiltonian systems wi
 Determinants = Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
 Coefficient = Annotated[
     str | None,
-    "a of r' = a r^3 on the centre manifold of one pair of imaginary roots; of a zero root the first coefficient that "
+    "a of r' = a r^3, or a r^degree, on the centre manifold of one pair of imaginary roots; of a zero root the first "
+    "coefficient that "
     "is not zero; of equal frequencies delta A of Sokolskii's normal form; of a zero root of a Hamiltonian system a of "
     "the energy a x^M along its direction",
 ]
@@ -34,7 +35,7 @@ AmplitudeOf = Annotated[str, "the coordinate whose amplitude r is; empty without
 Kernel = Annotated[
     str, "of a zero root of a Hamiltonian system the coordinate x of the energy a x^M along its direction; else empty"
 ]
-Degree = Annotated[int | None, "M of that energy"]
+Degree = Annotated[int | None, "M of that energy, or the power of the amplitude, where it is not the third"]
 
 
 class ExceptionalValue(Part, frozen=True):

@@ -23,6 +23,10 @@ from matplotlib.ticker import LogFormatterMathtext, ScalarFormatter
 from matplotlib.transforms import Bbox
 from PIL import Image
 
+from mbsym.expressions.message import Message
+from mbsym.model.system import System
+from mbsym.report.language import Language
+
 #: A list of fonts that another installation left behind is no news to whoever asked for a figure.
 logging.getLogger("matplotlib.font_manager").setLevel(logging.ERROR)
 
@@ -72,6 +76,18 @@ def thinned(times: Any, values: Any) -> tuple[Any, Any]:
         kept |= {start + int(np.argmin(values[start:end])), start + int(np.argmax(values[start:end]))}
     places = np.array(sorted(kept))
     return times[places], values[places]
+
+
+def spoken(system: System) -> Callable[[str], str]:
+    """Words of a figure in the language of the description."""
+    return Language(system.language).say
+
+
+def title_of(system: System, number: int = 1, count: int = 1) -> str:
+    """The system's name, and which page of how many this is."""
+    name = system.name if len(system.name) <= 70 else system.name[:67] + "..."
+    page = Message("page [[number]] of [[count]]", number=number, count=count)
+    return f"{name}, {spoken(system)(page)}" if count > 1 else name
 
 
 @contextmanager

@@ -9,10 +9,11 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from mbsym.expressions.message import Message
 from mbsym.numerics.extremes.extremes import Extremes
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.trade.digits import FEW, FULL
-from mbsym.report.figures.drawing import GREY, pictures
+from mbsym.report.figures.drawing import GREY, pictures, spoken
 
 _COLOURS = {
     "mass matrix": "#444444",
@@ -35,6 +36,7 @@ def extremes_figure(found: Extremes, formats: Sequence[str]) -> dict[str, bytes]
 
 
 def _drawn(found: Extremes) -> Figure:
+    say = spoken(found.system)
     chosen = sorted(found.ladders, key=lambda ladder: _least(found, ladder))[:MOST_PANELS]
     chosen = [ladder for ladder in found.ladders if ladder in chosen]
     columns = min(3, max(1, len(chosen)))
@@ -65,12 +67,16 @@ def _drawn(found: Extremes) -> Figure:
             axes.invert_xaxis()
         axes.set_ylim(-0.5, FULL[FLOAT64] + 0.8)
         axes.axhline(FEW, color=GREY, linewidth=0.8, linestyle="--")
-        axes.set_title(f"{subject} times" if kind == "ratio" else subject, loc="left", fontsize=9.5)
+        title = Message("[[parameter]] times", parameter=subject) if kind == "ratio" else subject
+        axes.set_title(say(title), loc="left", fontsize=9.5)
         if place % columns == 0:
-            axes.set_ylabel("digits kept")
-    figure.suptitle(f"{found.system.name}: digits kept in float64 (solid) and float32 (dotted)", x=0.01, ha="left")
+            axes.set_ylabel(say("digits kept"))
+    title = Message("[[name]]: digits kept in float64 (solid) and float32 (dotted)", name=found.system.name)
+    figure.suptitle(say(title), x=0.01, ha="left")
     if seen:
-        figure.legend(list(seen.values()), list(seen), loc="outside lower center", ncols=8, frameon=False, fontsize=9)
+        figure.legend(
+            list(seen.values()), list(map(say, seen)), loc="outside lower center", ncols=8, frameon=False, fontsize=9
+        )
     return figure
 
 

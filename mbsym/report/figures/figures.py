@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from matplotlib.transforms import ScaledTranslation
 
+from mbsym.expressions.message import Message
 from mbsym.formulas.latex import LatexNames
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.quantities import energy_unit, time_unit, unit_of
@@ -25,7 +26,7 @@ from mbsym.model.system import System
 from mbsym.numerics.between import between
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.simulate import Trajectory
-from mbsym.report.figures.drawing import BLUE, GREY, RED, pictures, saved, styled, thinned
+from mbsym.report.figures.drawing import BLUE, GREY, RED, pictures, saved, spoken, styled, thinned, title_of
 from mbsym.report.unit_text import labelled
 
 #: Rows of time histories, and rows and columns of phase planes, on one page.
@@ -110,16 +111,12 @@ def _page(width: float, height: float, title: str, note: str) -> Figure:
     return figure
 
 
-def _pages(stem: str, items: Sequence[str], size: int) -> Iterator[tuple[str, list[str], str]]:
-    """(file name, items, what to add to the title) of each page; pages are filled evenly."""
+def _pages(stem: str, items: Sequence[str], size: int, system: System) -> Iterator[tuple[str, list[str], str]]:
+    """(file name, items, title) of each page; pages are filled evenly."""
     count = -(-len(items) // size)
     for page in range(count):
         part = list(items[page * len(items) // count : (page + 1) * len(items) // count])
-        yield stem + (f"-{page + 1}" if page else ""), part, f", page {page + 1} of {count}" if count > 1 else ""
-
-
-def _title(system: System) -> str:
-    return system.name if len(system.name) <= 70 else system.name[:67] + "..."
+        yield stem + (f"-{page + 1}" if page else ""), part, title_of(system, page + 1, count)
 
 
 def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str], dict[str, str]]:
@@ -143,8 +140,8 @@ def _histories(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
     system = drawn[0].found.system
     positions, velocities = coordinate_labels(system, "\n")
     place = {name: i for i, name in enumerate(system.coordinates)}
-    for file, names, page in _pages("histories", system.coordinates, HISTORY_ROWS):
-        figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), _title(system) + page, note)
+    for file, names, title in _pages("histories", system.coordinates, HISTORY_ROWS, system):
+        figure = _page(10, 1.0 + 1.75 * len(names) + (0.3 if note else 0), title, note)
         axes = figure.subplots(len(names), 2, squeeze=False, sharex=True)
         left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
         for row, name in zip(axes, names, strict=True):
@@ -163,9 +160,9 @@ def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
     system = drawn[0].found.system
     states = (*system.coordinates, *system.velocities)
     labels, place = _labels(states), {name: i for i, name in enumerate(states)}
-    for file, shown, page in _pages("histories", states, 2 * HISTORY_ROWS):
+    for file, shown, title in _pages("histories", states, 2 * HISTORY_ROWS, system):
         rows = -(-len(shown) // 2)
-        figure = _page(10, 1.0 + 1.75 * rows + (0.3 if note else 0), _title(system) + page, note)
+        figure = _page(10, 1.0 + 1.75 * rows + (0.3 if note else 0), title, note)
         axes = figure.subplots(rows, 2, squeeze=False, sharex=True)
         left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
         for axis, name in zip(axes.T.ravel(), shown, strict=False):
@@ -221,13 +218,11 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
         states, turning = system.coordinates, angle_denominators(system)
         positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
     place = {name: i for i, name in enumerate(states)}
-    for file, names, page in _pages("phase-planes", states, PLANE_ROWS * PLANE_COLUMNS):
+    for file, names, title in _pages("phase-planes", states, PLANE_ROWS * PLANE_COLUMNS, system):
         columns = min(PLANE_COLUMNS, len(names))
         rows = -(-len(names) // columns)
         size = 4.6 if columns == 1 else 3.6
-        figure = _page(
-            max(5.4, size * columns), 0.7 + 0.85 * size * rows + (0.3 if note else 0), _title(system) + page, note
-        )
+        figure = _page(max(5.4, size * columns), 0.7 + 0.85 * size * rows + (0.3 if note else 0), title, note)
         axes = figure.subplots(rows, columns, squeeze=False).ravel()
         for axis in axes[len(names) :]:
             axis.set_visible(False)
@@ -236,7 +231,7 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
             label = positions[name]
             if turning.get(name) == 1 and any(np.ptp(q) > 3 * np.pi for q, _ in both):
                 both = [_wrapped(q, v) for q, v in both]
-                label += r"  modulo $2\pi$"
+                label += f"  {spoken(system)('modulo')} $2\\pi$"
                 axis.set_xlim(-np.pi, np.pi)
                 axis.set_xticks(
                     np.array([-1, -0.5, 0, 0.5, 1]) * np.pi,
@@ -247,7 +242,7 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
                 axis.plot(q[:1], v[:1], "o", color=RED if len(drawn) == 1 else colour, markersize=4)
             axis.set_xlabel(label, fontsize=12)
             _label(axis, velocities[name])
-            if "modulo" not in label:
+            if label == positions[name]:
                 axis.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10], min_n_ticks=3))
         yield file, _page_of(drawn, axes[0], figure)
 
@@ -283,13 +278,14 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
 
     h is the generalised energy, which is the energy where nothing is prescribed.
     """
-    figure = _page(10, 3.4 + (0.3 if note else 0), _title(found.system), note)
+    figure = _page(10, 3.4 + (0.3 if note else 0), title_of(found.system), note)
+    say = spoken(found.system)
     axis = figure.subplots(1, 1)
     axis.set_xlabel(labelled("$t$", time_unit(found.system)))
     energy = "energy" if found.generalized_energy is found.energy else "generalised energy"
     if not conserved:
         axis.plot(*thinned(found.times, found.generalized_energy), color=BLUE)
-        axis.set_title(energy)
+        axis.set_title(say(energy))
         _label(axis, labelled("$h$", energy_unit(found.system)).replace(" ", "\n", 1))
         _span(axis, found.times)
         return figure
@@ -300,7 +296,7 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     axis.set_ylim(FLOOR, max(float(np.max(drift)), ROUNDING) * 5)
     axis.axhline(ROUNDING, color=GREY, linewidth=0.8, linestyle="--")
     axis.annotate(
-        "rounding of one double",
+        say("rounding of one double"),
         (1, ROUNDING),
         xycoords=("axes fraction", "data"),
         xytext=(-4, -3),
@@ -313,7 +309,7 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     axis.yaxis.set_major_locator(LogLocator(numticks=8))
     axis.yaxis.set_minor_locator(NullLocator())
     axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(found.kinetic) else "$|h-h_0|$")
-    axis.set_title(f"relative drift of the {energy}")
+    axis.set_title(say(Message("relative drift of the [[energy]]", energy=Message(energy))))
     _span(axis, found.times)
     return figure
 
@@ -339,9 +335,11 @@ def _ensemble_figure_page(found: Ensemble, part: range) -> Figure:
     positions, velocities = coordinate_labels(system, "\n")
     figure = Figure(figsize=(10, 1.4 + 1.9 * len(part)), layout="constrained")
     axes = figure.subplots(len(part), 2, squeeze=False, sharex=True)
-    lost = f", {len(found.fates)} ended early" if found.fates else ""
-    varied = ", ".join(found.members.names)
-    title = f"{system.name}: {found.count} members{lost}, {varied} varied"
+    say = spoken(system)
+    what = {"name": system.name, "count": found.count, "varied": ", ".join(found.members.names)}
+    text = "[[name]]: members: [[count]], ended early: [[lost]], varied: [[varied]]"
+    whole = Message("[[name]]: members: [[count]], varied: [[varied]]", **what)
+    title = say(Message(text, **what, lost=len(found.fates)) if found.fates else whole)
     figure.suptitle(title if len(title) <= 100 else title[:97] + "...", fontsize=12, parse_math=False)
     drawn: dict[str, Any] = {}
     left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
@@ -355,7 +353,9 @@ def _ensemble_figure_page(found: Ensemble, part: range) -> Figure:
         axis.set_xlabel(labelled("$t$", time_unit(system)))
         if found.times[-1] > 0:
             axis.set_xlim(0, found.times[-1])
-    figure.legend(list(drawn.values()), list(drawn), loc="outside lower center", ncols=5, frameon=False, fontsize=9)
+    figure.legend(
+        list(drawn.values()), list(map(say, drawn)), loc="outside lower center", ncols=5, frameon=False, fontsize=9
+    )
     return figure
 
 

@@ -17,12 +17,13 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from mbsym.expressions.message import Message
 from mbsym.model.quantities import length_unit, time_unit, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
 from mbsym.picture.looking import projection
 from mbsym.report.figures.animation import view
-from mbsym.report.figures.drawing import pictures, thinned
+from mbsym.report.figures.drawing import pictures, spoken, thinned, title_of
 from mbsym.report.outlines import Outline
 from mbsym.report.unit_text import labelled, pretty
 
@@ -55,8 +56,8 @@ def motion_figures(
     pages = _pages(found)
     for number, page in enumerate(pages):
         name = "mass-centres" + (f"-{number + 1}" if number else "")
-        part = f", page {number + 1} of {len(pages)}" if len(pages) > 1 else ""
-        drawings[name] = lambda page=page, part=part: _histories(found, page, part, note)  # type: ignore[misc]
+        title = title_of(found.system, number + 1, len(pages))
+        drawings[name] = lambda page=page, title=title: _histories(found, page, title, note)  # type: ignore[misc]
     return pictures(drawings, formats)
 
 
@@ -79,7 +80,7 @@ class _View:
 
 
 def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
-    view = _View(found)
+    view, say = _View(found), spoken(found.system)
     flat = view(found.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
     for one in shapes:
@@ -123,27 +124,24 @@ def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] =
             ncols=min(columns, len(handles)),
             frameon=False,
             fontsize=9,
-            title=None if found.tips else "paths of the mass centres",
+            title=None if found.tips else say("paths of the mass centres"),
             title_fontsize=9,
         )
-    lines = [_title(found), *_caption(found, step, end), note]
+    lines = [title_of(found.system), *_caption(found, step, end), note]
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure
 
 
-def _title(found: Positions) -> str:
-    name = found.system.name
-    return name if len(name) <= 70 else name[:67] + "..."
-
-
 def _caption(found: Positions, step: float, end: float) -> list[str]:
-    last = float(found.times[-1])
-    unit = pretty(time_unit(found.system))
-    said = f"t = 0 to {with_unit(_rounded(last), unit)}"
-    said += "" if last == end else f" (of {with_unit(_rounded(end), unit)})"
+    last, unit = float(found.times[-1]), pretty(time_unit(found.system))
+    say = spoken(found.system)
+    reached, whole, every = (with_unit(_rounded(x), unit) for x in (last, end, step))
+    span = Message("t = 0 to [[last]] (of [[end]])", last=reached, end=whole)
+    shown = [say(Message("t = 0 to [[last]]", last=reached) if last == end else span)]
     if found.bodied:
-        said += f", a snapshot every {with_unit(_rounded(step), unit)}"
-    return [said] if found.frame == INERTIAL else [said, f"seen in the frame '{found.frame}'"]
+        shown.append(say(Message("a snapshot every [[step]]", step=every)))
+    frame = [] if found.frame == INERTIAL else [say(Message("seen in the frame '[[frame]]'", frame=found.frame))]
+    return [", ".join(shown), *frame]
 
 
 def _rounded(value: float) -> str:
@@ -172,11 +170,11 @@ def _snapshots(times: Any, step: float) -> list[int]:
 
 def _paths(axis: Any, found: Positions, view: _View, flat: Any) -> None:
     """The paths of the mass centres, one colour a body; where two coincide the first is drawn."""
-    moving = found.moving(found.centres.values())
+    moving, say = found.moving(found.centres.values()), spoken(found.system)
     for place, (body, i) in enumerate(found.centres.items()):
         if i in moving:
             colour = _PATHS[place % len(_PATHS)]
-            label = f"mass centre of {body}" if found.tips else body
+            label = say(Message("mass centre of [[body]]", body=body)) if found.tips else body
             axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=label, zorder=2)
 
 
@@ -223,7 +221,7 @@ def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:
 def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[int], time: Normalize) -> None:
     """Paths of the tips of the axes, dimmed behind the sphere; the axes themselves at the start and at the end."""
     joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
-    around = np.linspace(0, 2 * np.pi, 361)
+    around, say = np.linspace(0, 2 * np.pi, 361), spoken(found.system)
     for centre, radius in _spheres(found, flat):
         circle = centre[:, None] + radius * np.array([np.cos(around), np.sin(around)])
         axis.plot(*circle, color="#bbbbbb", linewidth=0.8, zorder=1)
@@ -236,8 +234,10 @@ def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[i
             behind = view.depth(found.places[i] - found.places[joint]) < 0
             front = np.where(behind, np.nan, flat[i])
             back = np.where(behind, flat[i], np.nan)
-            whose = f" of {body}" if found.extended or len(joints) > 1 else " of the body"
-            axis.plot(*front, color=colour, linewidth=1.1, label=f"axis {number}{whose}", zorder=3)
+            several = found.extended or len(joints) > 1
+            text = Message("axis [[number]] of the body", number=number)
+            label = say(Message("axis [[number]] of [[body]]", number=number, body=body) if several else text)
+            axis.plot(*front, color=colour, linewidth=1.1, label=label, zorder=3)
             axis.plot(*back, color=colour, linewidth=0.8, alpha=0.35, zorder=2)
             for k in (shown[0], shown[-1]):
                 ends = np.array([flat[joint, :, k], flat[i, :, k]]).T
@@ -256,8 +256,8 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
     if view.plane is not None:
         for label, direction in ((axis.set_xlabel, view.right), (axis.set_ylabel, view.up)):
             number = int(np.argmax(np.abs(direction))) + 1
-            name = f"axis {number}" if direction[number - 1] > 0 else f"against axis {number}"
-            label(labelled(name, _length(found)))
+            text = "axis [[number]]" if direction[number - 1] > 0 else "against axis [[number]]"
+            label(labelled(spoken(found.system)(Message(text, number=number)), _length(found)))
         axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         return
@@ -309,11 +309,11 @@ def _pages(found: Positions) -> list[list[tuple[str, int]]]:
     return [rows[k * len(rows) // count : (k + 1) * len(rows) // count] for k in range(count)]
 
 
-def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, note: str) -> Figure:
+def _histories(found: Positions, rows: Sequence[tuple[str, int]], title: str, note: str) -> Figure:
     """The coordinates of each mass centre over time, in the axes of the frame, a row a body."""
     figure = Figure(figsize=(8, 0.9 + 1.75 * len(rows) + (0.3 if note else 0)), layout="constrained")
     grid = figure.subplots(len(rows), 1, squeeze=False, sharex=True)[:, 0]
-    drawn = [number for number in (1, 2, 3) if number != found.plane]
+    drawn, say = [number for number in (1, 2, 3) if number != found.plane], spoken(found.system)
     for axis, (body, i) in zip(grid, rows, strict=True):
         for number in drawn:
             style = ("-", (0, (5, 2)), (0, (1.5, 1.5)))[number - 1]
@@ -321,15 +321,17 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], part: str, not
                 *thinned(found.times, found.places[i, number - 1]),
                 color=_PATHS[number - 1],
                 linestyle=style,
-                label=f"axis {number}",
+                label=say(Message("axis [[number]]", number=number)),
             )
         axis.set_title(body, loc="left", fontsize=10, parse_math=False)
         axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)
     grid[-1].set_xlabel(labelled("$t$", time_unit(found.system)))
     grid[-1].set_xlim(0, float(found.times[-1]))
-    where = "" if found.frame == INERTIAL else f" in the frame '{found.frame}'"
-    what = labelled(f"places of the mass centres{where}", length_unit(found.system))
-    lines = (_title(found) + part, what, note)
+    text = "places of the mass centres"
+    if found.frame != INERTIAL:
+        text = Message("places of the mass centres in the frame '[[frame]]'", frame=found.frame)
+    what = labelled(say(text), length_unit(found.system))
+    lines = (title, what, note)
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure

@@ -7,11 +7,12 @@ from itertools import pairwise
 
 from matplotlib.figure import Figure
 
+from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
-from mbsym.report.figures.drawing import BLUE, pictures
+from mbsym.report.figures.drawing import BLUE, pictures, spoken
 from mbsym.report.unit_text import labelled
 from mbsym.simulation.watching import Axis, SectionPoints
 
@@ -33,7 +34,8 @@ def _drawn(found: SectionPoints, system: System, note: str) -> Figure:
     planes = list(pairwise(range(len(found.section.axes))))
     figure = Figure(figsize=(1.4 + 5.4 * len(planes), 5.6), layout="constrained")
     count = len(found.times)
-    title = f"{system.name[:60]}: {found.section.condition.text[:60]}, {count} points"
+    text, condition = "[[name]]: [[condition]], points: [[count]]", found.section.condition.text[:60]
+    title = spoken(system)(Message(text, name=system.name[:60], condition=condition, count=count))
     figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
     size = max(SMALL, LARGE * min(1.0, (300 / count) ** 0.5))
     for axes, (across, up) in zip(figure.subplots(1, len(planes), squeeze=False)[0], planes, strict=True):

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from mbsym.model.system import System
-from mbsym.report.figures.drawing import BLUE, GREY, pictures
+from mbsym.report.figures.drawing import BLUE, GREY, pictures, spoken
 from mbsym.report.maps.frame import colour_of
 from mbsym.sweeps.judged import WORDS
 from mbsym.sweeps.points import Column, Points
@@ -40,8 +40,8 @@ def sweep_figure(
         elif len(points.grids) == 1:
             _line(axes, system, points, column, values)
         else:
-            _spread(axes, column, values)
-        figure.suptitle(f"{system.name}: {_title(column)}", fontsize=11, parse_math=False)
+            _spread(axes, system, column, values)
+        figure.suptitle(f"{system.name}: {_title(system, column)}", fontsize=11, parse_math=False)
         return figure
 
     if len(points.grids) > 2:
@@ -49,12 +49,12 @@ def sweep_figure(
     return pictures({"sweep": drawn}, formats)
 
 
-def _title(column: Column) -> str:
-    return "verdict of problem 6" if column.words else column.name.replace("_", " ")
+def _title(system: System, column: Column) -> str:
+    return spoken(system)(column.title)
 
 
 def _plane(figure: Figure, axes: Axes, system: System, points: Points, column: Column, values: Any) -> None:
-    first, second = points.grids
+    (first, second), say = points.grids, spoken(system)
     table = np.reshape(values, (first.count, second.count))
     steps = [-(-count // MOST_CELLS) for count in table.shape]
     table = table[:: steps[0], :: steps[1]].T
@@ -65,11 +65,11 @@ def _plane(figure: Figure, axes: Axes, system: System, points: Points, column: C
         ranks = np.searchsorted(codes, table)
         norm = BoundaryNorm(np.arange(len(codes) + 1) - 0.5, len(codes))
         axes.pcolormesh(x, y, ranks, cmap=colours, norm=norm, shading="nearest", rasterized=True)
-        patches = [Patch(facecolor=colour_of(WORDS[code]), edgecolor=GREY, label=WORDS[code]) for code in codes]
+        patches = [Patch(facecolor=colour_of(WORDS[code]), edgecolor=GREY, label=say(WORDS[code])) for code in codes]
         figure.legend(handles=patches, loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     else:
         shown = axes.pcolormesh(x, y, np.ma.masked_invalid(table), cmap="cividis", shading="nearest", rasterized=True)
-        figure.colorbar(shown, ax=axes, label=_title(column))
+        figure.colorbar(shown, ax=axes, label=_title(system, column))
     axes.set_xlabel(first.name)
     axes.set_ylabel(second.name)
 
@@ -80,7 +80,7 @@ def _line(axes: Axes, system: System, points: Points, column: Column, values: An
     axes.set_xlim(*sorted((grid.low, grid.high)))
     if not column.words:
         axes.plot(grid.values, values, color=BLUE)
-        axes.set_ylabel(_title(column))
+        axes.set_ylabel(_title(system, column))
         return
     edges = np.concatenate([[0], np.flatnonzero(np.diff(values)) + 1, [len(values)]])
     x = grid.values
@@ -89,25 +89,26 @@ def _line(axes: Axes, system: System, points: Points, column: Column, values: An
     for start, left, right in zip(edges[:-1], borders[:-1], borders[1:], strict=True):
         word = WORDS[values[start]]
         axes.axvspan(left, right, color=colour_of(word), linewidth=0)
-        seen.setdefault(word, Patch(facecolor=colour_of(word), edgecolor=GREY, label=word))
+        seen.setdefault(word, Patch(facecolor=colour_of(word), edgecolor=GREY, label=spoken(system)(word)))
     axes.set_yticks([])
     axes.legend(handles=list(seen.values()), loc="upper center", bbox_to_anchor=(0.5, -0.25), ncols=2, frameon=False)
 
 
-def _spread(axes: Axes, column: Column, values: Any) -> None:
+def _spread(axes: Axes, system: System, column: Column, values: Any) -> None:
+    say = spoken(system)
     if not column.words:
         sound = values[np.isfinite(values)]
         if len(sound):
             axes.hist(sound, bins=min(80, max(5, int(len(sound) ** 0.5))), color=BLUE)
-        axes.set_xlabel(_title(column))
-        axes.set_ylabel("points")
+        axes.set_xlabel(_title(system, column))
+        axes.set_ylabel(say("points"))
         return
     codes, counts = np.unique(values, return_counts=True)
     order = np.argsort(counts)
     axes.barh(
-        [WORDS[codes[k]] for k in order],
+        [say(WORDS[codes[k]]) for k in order],
         [100 * counts[k] / len(values) for k in order],
         color=[colour_of(WORDS[codes[k]]) for k in order],
         edgecolor=GREY,
     )
-    axes.set_xlabel("% of the points")
+    axes.set_xlabel(say("% of the points"))

@@ -10,9 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from mbsym.expressions.message import Message
+from mbsym.model.quantities import time_unit, with_unit
+from mbsym.model.system import System
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
 from mbsym.numerics.trade.tradeoff import Measured, Tradeoff
-from mbsym.report.figures.drawing import GREY, RED, pictures
+from mbsym.report.figures.drawing import GREY, RED, pictures, spoken
+from mbsym.report.unit_text import pretty
 
 #: Dark and light colours, and markers: what looks alike in the one differs in the other.
 _COLOURS = (
@@ -31,18 +35,19 @@ OLIVE = "#777700"
 
 
 def work_precision(
-    found: Tradeoff, target: float, title: str, models: Sequence[ModelError], formats: Sequence[str]
+    system: System, until: float, found: Tradeoff, target: float, models: Sequence[ModelError], formats: Sequence[str]
 ) -> dict[str, bytes]:
     """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines.
 
-    None where no run came to the end, in time or at all.
+    ``until`` is the last time of the runs.  None where no run came to the end, in time or at all.
     """
     if not any(row.error < WORST for row in found.rows):
         return {}
-    return pictures({"work-precision": lambda: _drawn(found, target, title, models)}, formats)
+    return pictures({"work-precision": lambda: _drawn(system, until, found, target, models)}, formats)
 
 
-def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelError]) -> Figure:
+def _drawn(system: System, until: float, found: Tradeoff, target: float, models: Sequence[ModelError]) -> Figure:
+    say = spoken(system)
     figure = Figure(figsize=(9.6, 6.0), layout="constrained")
     axes = figure.subplots()
     ladders: dict[tuple[str, str], list[Measured]] = {}
@@ -51,7 +56,7 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
             ladders.setdefault((row.candidate.method.traits.name, row.candidate.scalar), []).append(row)
     styles = _styles(dict.fromkeys(name for name, _ in ladders))
     for (name, scalar), rows in ladders.items():
-        label = name if scalar == "float64" else f"{name}, {scalar}"
+        label = name if scalar == "float64" else f"{name}, {say(scalar)}"
         axes.plot(
             [max(row.error, 1e-17) for row in rows],
             [row.seconds for row in rows],
@@ -70,7 +75,7 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
         linewidth=5,
         alpha=0.12,
         solid_capstyle="round",
-        label="front",
+        label=say("front"),
         zorder=1,
     )
     axes.set_xscale("log")
@@ -78,15 +83,16 @@ def _drawn(found: Tradeoff, target: float, title: str, models: Sequence[ModelErr
     axes.invert_xaxis()
     axes.xaxis.set_major_locator(LogLocator(numticks=12))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("error against the reference (smaller to the right)")
-    axes.set_ylabel("seconds of integration")
-    axes.set_title(title, loc="left")
-    _line(axes, target, RED, f"target {target:.0e}")
+    axes.set_xlabel(say("error against the reference (smaller to the right)"))
+    axes.set_ylabel(say("seconds of integration"))
+    last = with_unit(f"{until:g}", pretty(time_unit(system)))
+    axes.set_title(f"{system.name}, {say(Message('t = 0 to [[last]]', last=last))}", loc="left")
+    _line(axes, target, RED, say(Message("target [[error]]", error=f"{target:.0e}")))
     finest = min((row.error for row in found.rows), default=1.0)
     if found.smallest_judged > finest / 100:
-        _line(axes, found.smallest_judged, GREY, "limit of the reference")
+        _line(axes, found.smallest_judged, GREY, say("limit of the reference"))
     for model in _drawable(models):
-        _line(axes, model.error, OLIVE, f"model {model.variant.label}")
+        _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.variant.label)))
     # Patterns of lines need some length to be told apart.
     figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
     return figure

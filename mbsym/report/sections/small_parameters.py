@@ -42,12 +42,12 @@ def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParam
 def _averaging(judged: JudgedAverage, write: Write) -> doc.Averaged:
     one, found = judged.one, judged.one.found
     if found is None:
-        return doc.Averaged(phase=one.phase, reason=one.failure)
+        return doc.Averaged(phase=", ".join(one.phases), reason=one.failure)
     taken: dict[str, Any] = {
-        "phase": one.phase,
-        "rate": found.rate,
+        "phase": ", ".join(one.phases),
+        "rate": ", ".join(found.rates),
         "small": list(found.small),
-        "orders": {found.rate: -1, **dict(found.orders)},
+        "orders": {**dict.fromkeys(found.rates, -1), **dict(found.orders)},
         "measured": measured_data(judged.measured),
     }
     if judged.withdrawn:
@@ -116,6 +116,6 @@ def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Form
             yield f"periodic solution: {one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
     for each in averages(found, system):
         if each.found is not None:
-            over = f"averaged over {each.found.phase} ({each.found.scaling})"
+            over = f"averaged over {', '.join(each.found.phases)} ({each.found.scaling})"
             yield f"effective potential, {over}", each.found.potential
             yield f"what the fast phase adds, {over}", each.found.vibrational

@@ -75,6 +75,12 @@ def _numbers(judged: Judged) -> Iterator[str]:
             f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
             f"{judged.amplitude_of} is without a term of third order, or it is not told from zero"
         )
+    elif judged.degree is not None and judged.amplitude_of:
+        yield (
+            f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
+            f"{judged.amplitude_of} has no term of third order and begins with {decimal(judged.coefficient)} times its "
+            f"power {judged.degree}"
+        )
     elif judged.coefficient is not None and judged.amplitude_of:
         borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
         yield (
@@ -83,7 +89,7 @@ def _numbers(judged: Judged) -> Iterator[str]:
         )
     if judged.theorem is Theorem.EQUAL and judged.coefficient is not None:
         yield f"delta A = {decimal(judged.coefficient)} in Sokolskii's normal form"
-    if judged.degree is not None:
+    if judged.along:
         yield (
             f"the energy along the direction of the zero root begins with {decimal(judged.coefficient)} times the "
             f"power {judged.degree} of the deviation of {judged.along}"

@@ -27,6 +27,8 @@ DIVIDED = "a denominator vanishes at the given numbers"
 SLACK = 0.25
 #: A distance from the averaged motion, as a part of its size, that has to shrink as expected at once.
 FAR = 0.5
+#: One that shrinks faster than expected from so far on was none of an averaged motion.
+GONE = 100
 
 _FLOWS: WeakKeyDictionary[SmallParameters, Measured | str] = WeakKeyDictionary()
 _WAVES: WeakKeyDictionary[SmallParameters, MeasuredOrders | str] = WeakKeyDictionary()
@@ -53,9 +55,13 @@ def contradicts(told: Measured | str) -> bool:
 
     if isinstance(told, str) or not told.orders:
         return False
-    slow = told.distances[-1] > NOISE and told.orders[-1] < told.expected - SLACK
-    far = told.distances[0] >= FAR and abs(told.orders[0] - told.expected) > 2 * SLACK
-    return slow or far
+    first, last = told.orders[0], told.orders[-1]
+    # Where several phases beat the last distance alone scatters; better than expected is no contradiction.
+    short = last < told.expected - SLACK and sum(told.orders) < told.expected * len(told.orders)
+    slow = told.distances[-1] > NOISE and short
+    away = told.distances[0] >= FAR and first < told.expected - 2 * SLACK
+    gone = told.distances[0] >= GONE and first > told.expected + 2 * SLACK
+    return slow or away or gone
 
 
 def flow_measured(found: SmallParameters, system: System) -> Measured | str:

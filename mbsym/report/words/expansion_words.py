@@ -221,16 +221,21 @@ def of_averaging(told: JudgedAverage) -> Iterator[Said]:
     Of one that the measurement contradicts nothing is said but that.
     """
     one = told.one
-    phase = Name(one.phase)
+    phase = named(one.phases)
     if one.found is None:
         yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=worded(one.failure))
         return
     yield say(
         "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order $1/\\epsilon$, and what is not "
-        "named here as of order 1.",
+        "named here as of order 1."
+        if len(one.phases) == 1
+        else "Averaged over the phases [[phase]]. Their rates [[rate]] are taken as of order $1/\\epsilon$, and what "
+        "is not named here as of order 1.",
         phase=phase,
-        rate=Name(one.found.rate),
+        rate=named(one.found.rates),
     )
+    if one.found.apart:
+        yield say("Taken as of order $1/\\epsilon$, too, as phases meet: [[rates]].", rates=one.found.apart)
     for power in sorted({power for _, power in one.found.orders}):
         names = [name for name, k in one.found.orders if k == power]
         yield say(
@@ -246,7 +251,10 @@ def of_averaging(told: JudgedAverage) -> Iterator[Said]:
         "For times of order 1 the motion stays within order $\\epsilon$ of one in the effective potential below "
         "(averaging theorem)."
     )
-    yield say("What the fast phase adds: [[formula]].", formula=one.found.vibrational)
+    yield say(
+        "What the fast phase adds: [[formula]]." if len(one.phases) == 1 else "What the fast phases add: [[formula]].",
+        formula=one.found.vibrational,
+    )
     yield say("Effective potential: [[formula]].", formula=one.found.potential)
     if one.found.beside:
         yield say(

@@ -125,8 +125,10 @@ def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]
     told = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
     if told:
         yield say("Multipliers: [[told]].", told=told)
-    if one.motion:
-        yield say("On it: [[motion]].", motion=_values(one.motion, ring, 1))
+    rates = dict(one.solved)
+    motion = [(name, x) for name, x in one.motion if str(x) not in (f"{name}_dot", str(rates.get(f"{name}_dot")))]
+    if motion:  # that y' is y', or what an equation of the set says, is told already
+        yield say("On it: [[motion]].", motion=_values(motion, ring, 1))
     yield Said(_INVARIANT[one.invariant])
     if not one.real:
         yield Said("No real point was found at the parameters that were tried: whether it has any is open.")

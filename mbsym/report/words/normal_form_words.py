@@ -115,7 +115,7 @@ def sentences(found: NormalForms) -> Iterator[Said]:
     if isinstance(found.in_symbols, InSymbols):
         yield from _in_symbols(found.in_symbols, found.everywhere)
     elif isinstance(found.in_symbols, Focus):
-        yield from _focus(found.in_symbols)
+        yield from _focus(found.in_symbols, found.everywhere)
     elif found.no_symbols:
         yield say("There is no formula in parameters: [[why]].", why=worded(found.no_symbols))
     elif found.at_values is None:
@@ -183,6 +183,21 @@ def _centre(found: Judged) -> Iterator[Said]:
         )
         return
     soft = found.outcome is Outcome.ASYMPTOTIC
+    if found.degree is not None:
+        yield say(
+            "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
+            "the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times its "
+            "power [[degree]]: asymptotically stable."
+            if soft
+            else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre "
+            "manifold the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times "
+            "its power [[degree]]: unstable.",
+            w=_number(found.frequencies[0]),
+            a=_number(found.coefficient),
+            name=named((found.amplitude_of,)),
+            degree=str(found.degree),
+        )
+        return
     yield say(
         "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold the "
         "amplitude of [[name]] grows at the rate [[a]] times its cube: asymptotically stable, a soft border."
@@ -231,7 +246,12 @@ def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
     )
 
 
-def _focus(found: Focus) -> Iterator[Said]:
+def _focus(found: Focus, everywhere: Word | None) -> Iterator[Said]:
+    if found.coefficient.is_zero and everywhere is not None:
+        text = "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]."
+        yield say(text, square=found.square)
+        yield say("For all parameters problem 6 has decided already: [[word]].", word=worded(everywhere.value))
+        return
     if found.coefficient.is_zero:
         yield say(
             "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the "

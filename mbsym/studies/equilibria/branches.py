@@ -40,7 +40,7 @@ def followed(system: System, axis: Axis, values: Mapping[str, Fraction], watch: 
 def answer(system: System, request: Request, found: Branches) -> Answer:
     from mbsym.studies.map.answer import files_of
 
-    lines, files = _lines(found), files_of(system, found, request.files, request.language or "en")
+    lines, files = _lines(found), files_of(system, found, request.files, request.language or system.language)
     if found.interrupted:
         told = Message("interrupted; what was proved before that is written")
         return Answer(lines, files, (told,), Exit.INTERRUPTED)

@@ -35,7 +35,7 @@ def answer(system: System, request: Request, found: Map) -> Answer:
     from mbsym.studies.map import MOST_TOLD
 
     lines = _lines(system, found)
-    files = files_of(system, found, request.format, request.language, request.located[0])
+    files = files_of(system, found, request.format, request.language or system.language, request.located[0])
     doubts = list(_doubts(found))
     if doubts:
         return Answer(lines, files, doubts[:MOST_TOLD], Exit.FAILED)

@@ -247,3 +247,22 @@ def test_a_free_particle_is_not_called_stable_for_lack_of_coordinates():
     told = told_of(text)
     assert "nothing is left that could be judged" in told
     assert "stable" not in told
+
+
+def test_of_a_linear_system_it_is_not_said_that_higher_terms_may_decide():
+    """x'' + c x' + x = 0, y'' + y = 0: the pair of y is on the axis, and there are no other terms."""
+    text = """
+mbsym: 1
+name: two oscillators
+parameters: {c: positive}
+motion: {x: 0, y: 0}
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 0}
+  - {name: b, attached to: a, connection point: [0, y, 0], coordinates: [y], mass: 1}
+loads:
+  - potential: (x**2 + y**2)/2
+  - damper: {coordinate: x, coefficient: c}
+"""
+    said = " ".join(told(mbsym.loads(text), 11))
+    assert "may decide" not in said
+    assert "For all parameters problem 6 has decided already: stable." in said

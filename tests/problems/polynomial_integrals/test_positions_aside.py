@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import jsonschema
 import pytest
@@ -10,6 +11,9 @@ from click.testing import CliRunner
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.analysis.found import beyond
+from mbsym.analysis.polynomial import integrals_of, setting
+from mbsym.problems.polynomial_integrals import FUNCTION
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import Writer
 from mbsym.report.schemas import schema
@@ -108,3 +112,45 @@ def test_sentences_about_positions_aside_have_their_translations():
     every += [*integrals_words._NONE_WITHOUT.values(), *integrals_words._NO_OTHER_WITHOUT.values()]
     for text in every:
         assert all(("", text) in messages(language) for language in ("ru", "es"))
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        "",
+        "speeds: {p: omega1, q: omega2, r: omega3}",
+        "speeds: {p: omega1, q: omega2, r: omega3}\n    orientation: {gamma: 3}",
+        "speeds: {p: omega1, q: omega2, r: omega3}\n    orientation: {e: quaternion}",
+    ],
+)
+def test_what_integrals_with_orientations_give_is_no_further_one(told):
+    """|G|^2 = A^2 p^2 + B^2 q^2 + C^2 r^2 is the sum of the squares of G's components in space, which problem 7 has."""
+    loaded = mbsym.loads(FREE_BODY.split("    speeds")[0] + f"    {told}\n")
+    assert sum("momentum" in one.name for one in loaded.integrals) == 3
+    found = loaded.polynomial_integrals.found
+    assert not found.new
+    assert [one.name for one in found.generators if one.independent][-1] == FUNCTION
+    assert not beyond(loaded)
+
+
+def test_of_a_symmetric_body_its_rate_about_the_axis_follows_too():
+    """A = B = 1: |G|^2 - 2 T = C (C - 1) r^2, so that r is a function of what problem 7 has."""
+    there = setting(mbsym.loads(FREE_BODY), {"A": Fraction(1), "B": Fraction(1)})
+    found = integrals_of(there, 2)
+    assert [(one.weight, one.name) for one in found.generators] == [(1, FUNCTION), (2, "generalised energy")]
+
+
+def test_euler_bodys_families_hold_it_all_the_same():
+    """Of K = T + lambda |G|^2: rotations about each axis are steady, with lambda = -1/(2 A) or its like."""
+    found = mbsym.loads(FREE_BODY).invariant_sets
+    steady = {one.free for family in found.families for one in family.sets if one.union == 1}
+    assert steady == {("p",), ("q",), ("r",)}
+
+
+def test_exponentials_and_angles_are_told_apart_as_functions():
+    """cosh(x - y) + cos z: energy, x' + y' and z'^2/2 + cos z are independent, though exp(x - y) exp(y - x) = 1."""
+    one = "  - {name: NAME, attached to: 0, connection point: [NAME, 0, 0], mass: 1, coordinates: [NAME]}\n"
+    text = "mbsym: 1\nname: walls\nbodies:\n" + "".join(one.replace("NAME", x) for x in "xyz")
+    found = mbsym.loads(text + "loads:\n  - potential: cosh(x - y) + cos(z)\n").polynomial_integrals.found
+    assert found.independent == 3
+    assert all(one.independent and one.certainty.value == "proved" for one in found.generators)

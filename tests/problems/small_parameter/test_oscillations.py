@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import operator
 from fractions import Fraction
+from math import comb
 
 import pytest
 from conftest import SHIPPED, reference
@@ -440,3 +441,46 @@ def test_of_families_nothing_is_said(tmp_path):
     told = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2)
     assert told.found.exponent is None
     assert not any("Poincare" in Writer().said(said) for said in sentences(told))
+
+
+def inverted(series):
+    """1/(1 + c_1 t + c_2 t^2 + ...)."""
+    found = [Fraction(1)]
+    for n in range(1, len(series)):
+        found.append(-sum((series[k] * found[n - k] for k in range(1, n + 1)), Fraction(0)))
+    return found
+
+
+def test_duffings_frequency_to_the_sixth_order(tmp_path):
+    """w T/4 = integral of dt/sqrt(1 + e (1 + sin^2 t)/2) over a quarter, e = eps a^2/w^2, by energy: x = a sin t.
+
+    <sin^(2 j)> = (2 j choose j)/4^j;  (1 + z)^(-1/2) = sum of (2 n choose n) (-z/4)^n.
+    """
+    period = [
+        Fraction((-1) ** n * comb(2 * n, n), 8**n)
+        * sum(comb(n, j) * Fraction(comb(2 * j, j), 4**j) for j in range(n + 1))
+        for n in range(7)
+    ]
+    told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 6)
+    for n, by_hand in enumerate(inverted(period)[1:], start=1):
+        at = told.formula(told.found.corrections[n - 1]).subs({"amplitude": 1, "w": 1})
+        assert Fraction(str(at)) == by_hand
+
+
+def test_a_pendulums_period_to_the_eighth_order(tmp_path):
+    """w T = 2 pi sum of ((2 n choose n)/4^n)^2 sin^(2 n)(a/2): 1 + a^2/16 + 11 a^4/3072 + 173 a^6/737280 + ..."""
+    sine = [Fraction(0), Fraction(1, 2), Fraction(0), Fraction(-1, 48), Fraction(0), Fraction(1, 3840)]
+    sine += [Fraction(0), Fraction(-1, 645120), Fraction(0)]
+
+    def times(p, q):
+        return [sum((p[j] * q[n - j] for j in range(n + 1)), Fraction(0)) for n in range(9)]
+
+    square, power = times(sine, sine), [Fraction(int(n == 0)) for n in range(9)]
+    period = [Fraction(0)] * 9
+    for n in range(5):
+        period = [x + Fraction(comb(2 * n, n), 4**n) ** 2 * y for x, y in zip(period, power, strict=True)]
+        power = times(power, square)
+    assert period[::2] == [1, Fraction(1, 16), Fraction(11, 3072), Fraction(173, 737280), Fraction(22931, 1321205760)]
+    told = oscillating(point(tmp_path, ["potential: -w**2*cos(x)"], small="", more="motion: {x: 0}\n"), 8)
+    for n, by_hand in enumerate(inverted(period)[1:], start=1):
+        assert Fraction(str(told.formula(told.found.corrections[n - 1]).subs({"amplitude": 1}))) == by_hand

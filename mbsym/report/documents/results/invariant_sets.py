@@ -21,7 +21,7 @@ class SignCondition(Part, frozen=True):
     """a condition"""
 
     formula: Annotated[str, "what is compared with zero"]
-    relation: Annotated[str, words(">", ">=", "!="), "the relation to zero"]
+    relation: Annotated[str, words(">", ">=", "!=", "="), "the relation to zero"]
     unless_zero: Annotated[list[str], "where one of these vanishes the condition is not needed"]
 
 

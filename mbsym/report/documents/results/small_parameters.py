@@ -13,15 +13,15 @@ from mbsym.report.documents.parts import Formula
 
 
 class Averaged(Part, frozen=True):
-    phase: Annotated[str, "the prescribed quantity"]
+    phase: Annotated[str, "the prescribed quantity, or several with commas"]
     reason: Annotated[
         str | UnsetType, "why there is no effective potential, or why it is withdrawn: by what is measured"
     ] = UNSET
     orders: Annotated[
         dict[str, int] | UnsetType,
-        "the powers of eps of its rate and of the amplitudes; all else is taken as of order 1",
+        "the powers of eps of the rates and of the amplitudes; all else is taken as of order 1",
     ] = UNSET
-    rate: Annotated[str | UnsetType, "its rate, taken as large"] = UNSET
+    rate: Annotated[str | UnsetType, "its rate, or theirs, taken as large"] = UNSET
     small: Annotated[list[str] | UnsetType, "parameters that are taken as small"] = UNSET
     vibrational: Annotated[Formula | UnsetType, "what the fast phase adds to the potential energy"] = UNSET
     potential: Annotated[
