@@ -137,7 +137,7 @@ def _tabulated(curve: Curve, x: arb) -> arb:
     """The union of what the pieces are that a ball touches, each on its part of the ball."""
     if not x.is_finite():
         return arb("nan")
-    lower, upper = (_fraction(end) for end in (x.lower(), x.upper()))
+    lower, upper = (rationals.fraction(rationals.middle(end)) for end in (x.lower(), x.upper()))
     found = arb("nan")
     for piece in range(curve.pieces_at(lower)[0], curve.pieces_at(upper)[-1] + 1):
         u = x if lower == upper else _part(curve, piece, x, lower, upper)
@@ -161,12 +161,6 @@ def _part(curve: Curve, piece: int, x: arb, lower: Fraction, upper: Fraction) ->
     if (low, high) == (lower, upper):
         return x
     return rationals.ball(low).union(rationals.ball(high))
-
-
-def _fraction(x: arb) -> Fraction:
-    """The number that a ball without radius is."""
-    mantissa, exponent = x.man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 class BallsAtRationals(Balls):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
+from typing import Any
 
-from flint import arb, fmpq
+from flint import arb, fmpq, fmpq_mpoly
 
 
 def fraction(x: fmpq) -> Fraction:
@@ -27,6 +29,18 @@ def middle(value: arb) -> fmpq:
     """Of a ball, exactly."""
     mantissa, exponent = value.mid().man_exp()
     return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
+
+
+def value_at(p: fmpq_mpoly, point: Sequence[Any], kind: type) -> Any:
+    """A polynomial at numbers in balls, real or complex (``kind``: arb, acb)."""
+    total = kind(0)
+    for monomial, coefficient in p.terms():
+        term = kind(coefficient)
+        for x, exponent in zip(point, monomial, strict=True):
+            if exponent:
+                term *= x ** int(exponent)
+        total += term
+    return total
 
 
 def rounded(x: float, digits: int) -> fmpq:

@@ -21,6 +21,7 @@ from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
+from mbsym.algebra.rationals import value_at
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message
 
@@ -242,8 +243,10 @@ class Tower(Algebra[Element]):
         for k, square in enumerate(self.squares):
             angle, share = self._sines.get(k, ("", 1))
             known = angle in values
-            point[MOST_ROOTS - 1 - k] = (acb(values[angle]) / share).sin() if known else _at(square, point).sqrt()
-        return _at(x.top, point) / _at(x.bottom, point)
+            point[MOST_ROOTS - 1 - k] = (
+                (acb(values[angle]) / share).sin() if known else value_at(square, point, acb).sqrt()
+            )
+        return value_at(x.top, point, acb) / value_at(x.bottom, point, acb)
 
 
 def _angle(name: str, denominator: int) -> str:
@@ -263,14 +266,3 @@ def _value(name: str, values: Mapping[str, Any]) -> acb:
     if name in values or inside is None:
         return acb(values[name])
     return (acb(values[inside[1]]) / inside[2]).cos()
-
-
-def _at(x: fmpq_mpoly, point: Sequence[acb]) -> acb:
-    total = acb(0)
-    for monomial, coefficient in x.terms():
-        term = acb(coefficient)
-        for value, exponent in zip(point, monomial, strict=True):
-            if exponent:
-                term *= value ** int(exponent)
-        total += term
-    return total

@@ -25,6 +25,7 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
 from mbsym.algebra.arrangements import Arrangement
 from mbsym.algebra.arrangements.arrangement import Arc, Piece, sample_of
 from mbsym.algebra.factors import irreducible_factors
@@ -162,7 +163,7 @@ class SoftBorders:
 
         def carry(p: Any) -> acb:
             top, bottom = images(p)
-            return acb(top_at(top, point)) / acb(top_at(bottom, point))
+            return acb(rationals.value_at(top, point, arb)) / acb(rationals.value_at(bottom, point, arb))
 
         try:
             field = state_field(Numbers(found, carry, lambda x: 1 / x, acb(0), acb(1)))
@@ -228,18 +229,6 @@ class SoftBorders:
             return None
 
 
-def top_at(p: Any, point: Sequence[Any]) -> Any:
-    """A polynomial of a section at enclosed numbers."""
-    total = arb(0)
-    for powers, value in p.terms():
-        term = arb(value)
-        for x, power in zip(point, powers, strict=True):
-            if power:
-                term *= x ** int(power)
-        total += term
-    return total
-
-
 def _told(judged: Higher) -> SoftOrHard:
     """What problem 11 says, in the words of borders."""
     onset = Onset.OPEN
@@ -301,7 +290,7 @@ class _Along:
 
     def sign(self, x: Any, y: Any) -> int:
         """Of a at enclosed numbers; 0 where it is not told."""
-        value = top_at(self.top, (x, y)) * top_at(self.bottom, (x, y))
+        value = rationals.value_at(self.top, (x, y), arb) * rationals.value_at(self.bottom, (x, y), arb)
         return 1 if value > 0 else -1 if value < 0 else 0
 
 

@@ -144,16 +144,21 @@ def scenario(
             missing.append(f"{name} (its initial position)")
         positions.append(numbers.value(name, entry.position))
         velocities.append(numbers.value(velocity_name(name), entry.velocity))
-    prescribed = {}
-    for item in system.prescribed:
-        initial = numbers.value(item.name, item.initial)
-        prescribed[item.name] = initial, numbers.value(f"the rate of {item.name}", item.rate)
+    prescribed = _prescribed(system, numbers)
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     typed = {name: entry.position for name, entry in given.items() if entry.position is not None}
     became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
     unstated = tuple(velocity_name(name) for name in system.coordinates if given[name].velocity is None)
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
+
+
+def _prescribed(system: System, numbers: _Numbers) -> dict[str, tuple[Fraction, Fraction]]:
+    """(value at t = 0, rate) of what moves as prescribed."""
+    return {
+        item.name: (numbers.value(item.name, item.initial), numbers.value(f"the rate of {item.name}", item.rate))
+        for item in system.prescribed
+    }
 
 
 def contradictions_of(system: System, overrides: Mapping[str, Expression]) -> tuple[Contradiction, ...]:
@@ -190,10 +195,7 @@ def _with_own(
 
     positions = {name: told(name, given[name].position) for name in system.coordinates}
     velocities = {name: told(velocity_name(name), given[name].velocity) for name in system.coordinates}
-    prescribed = {}
-    for item in system.prescribed:
-        initial = numbers.value(item.name, item.initial)
-        prescribed[item.name] = initial, numbers.value(f"the rate of {item.name}", item.rate)
+    prescribed = _prescribed(system, numbers)
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     known = numbers.known | {name: initial for name, (initial, _) in prescribed.items()}

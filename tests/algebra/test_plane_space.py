@@ -2,18 +2,42 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.arrangements import critical_levels, decompose, decompose_space
+from mbsym.algebra.arrangements import Arrangement, critical_levels, decompose
 from mbsym.algebra.arrangements.arrangement import breaches
+from mbsym.algebra.arrangements.space import alike, flattened, levels_of
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, Budget
 
 X, Y, Z = fmpq_mpoly_ctx.get(["x", "y", "z"]).gens()
 BOX = Box(-2, 2, -2, 2)
+
+
+class Slice(NamedTuple):
+    """No arrangement at an irrational z; ``alike``: it is that of the last value before that is not critical."""
+
+    z: Any
+    critical: bool
+    arrangement: Arrangement | None
+    alike: bool
+
+
+def sliced(factors: list[Any], low: Any, high: Any) -> list[Slice]:
+    """At all critical values of z, and at one value between any two."""
+    plane = fmpq_mpoly_ctx.get(("x", "y"))
+    slices, last = [], None
+    for z, critical in levels_of(critical_levels(factors, BOX, low, high)):
+        found = None
+        if isinstance(z, fmpq):
+            flat = [flattened(p, z, plane) for p in factors]
+            found = decompose([p if p != 0 else plane.constant(1) for p in flat], BOX)
+        slices.append(Slice(z, critical, found, found is not None and last is not None and alike(found, last)))
+        last = last if critical else found
+    return slices
 
 
 @pytest.mark.parametrize(
@@ -31,7 +55,7 @@ BOX = Box(-2, 2, -2, 2)
     ids=["sphere", "oval", "hyperbola", "turning line", "moving line", "two lines", "a level"],
 )
 def test_levels(factors: list[Any], ends: tuple[Any, Any], values: list[Any], regions: list[int] | None) -> None:
-    slices = decompose_space(factors, BOX, *ends)
+    slices = sliced(factors, *ends)
     critical = [one.z for one in slices if one.critical]
     for value in values:
         assert fmpq(value) in critical
@@ -46,12 +70,12 @@ def test_levels(factors: list[Any], ends: tuple[Any, Any], values: list[Any], re
 
 
 def test_slices_at_critical_values_show_the_degenerate_picture() -> None:
-    slices = decompose_space([X**2 + Y**2 + Z**2 - 1], BOX, -2, 2)
+    slices = sliced([X**2 + Y**2 + Z**2 - 1], -2, 2)
     at = next(one for one in slices if one.z == 1)
     assert at.arrangement is not None
     assert [corner.kind for corner in at.arrangement.corners] == ["isolated"]
     assert not at.alike
-    irrational = decompose_space([X**2 + Y**2 + Z**2 - 2], BOX, 0, 2)
+    irrational = sliced([X**2 + Y**2 + Z**2 - 2], 0, 2)
     assert [one.arrangement is None for one in irrational if one.critical] == [True]
 
 
@@ -83,9 +107,9 @@ def test_between_critical_values_the_picture_stays() -> None:
 
 def test_levels_at_which_nothing_is_seen() -> None:
     """One of two circles apart moves past the other: the picture stays.  A line that passes a circle: it does not."""
-    slices = decompose_space([(X - 1) ** 2 + (Y - Z) ** 2 - fmpq(1, 4), (X + 1) ** 2 + Y**2 - fmpq(1, 4)], BOX, -1, 1)
+    slices = sliced([(X - 1) ** 2 + (Y - Z) ** 2 - fmpq(1, 4), (X + 1) ** 2 + Y**2 - fmpq(1, 4)], -1, 1)
     assert all(one.alike for one in slices[1:] if one.arrangement is not None)
-    moving = decompose_space([X**2 + Y**2 - 1, Y - Z], BOX, fmpq(-3, 2), fmpq(3, 2))
+    moving = sliced([X**2 + Y**2 - 1, Y - Z], fmpq(-3, 2), fmpq(3, 2))
     seen = [one for one in moving if not one.critical and not one.alike]
     assert [len(one.arrangement.regions) for one in seen if one.arrangement is not None] == [3, 4, 3]
 
@@ -95,4 +119,4 @@ def test_what_cannot_be_is_refused() -> None:
         critical_levels([Y**5 + X**7 * Z - 1, Y**4 * Z**3 - X**5], BOX, 0, 1, Budget(degree=20))
     with pytest.raises(ValueError, match="zero"):
         critical_levels([X - X], BOX, 0, 1)
-    assert len(decompose_space([], BOX, 0, 1)) == 1
+    assert len(sliced([], 0, 1)) == 1

@@ -2,7 +2,7 @@
 
 from mbsym.algebra.arrangements.arrangement import Arc, Arrangement, Corner, CornerKind, Region, areas, polyline
 from mbsym.algebra.arrangements.decomposition import decompose
-from mbsym.algebra.arrangements.space import Slice, critical_levels, decompose_space
+from mbsym.algebra.arrangements.space import critical_levels
 
 __all__ = [
     "Arc",
@@ -10,10 +10,8 @@ __all__ = [
     "Corner",
     "CornerKind",
     "Region",
-    "Slice",
     "areas",
     "critical_levels",
     "decompose",
-    "decompose_space",
     "polyline",
 ]

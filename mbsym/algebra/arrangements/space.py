@@ -20,10 +20,9 @@ from functools import cached_property
 from itertools import combinations
 from typing import Any
 
-from flint import fmpq, fmpq_mpoly_ctx
+from flint import fmpq_mpoly_ctx
 
 from mbsym.algebra.arrangements.arrangement import Arrangement
-from mbsym.algebra.arrangements.decomposition import decompose
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.line import Line, decompose_line
@@ -153,44 +152,6 @@ def _keeps_edges(graphs: Sequence[Graph], colours: Sequence[Sequence[int]]) -> b
 _X, _Y, _Z = range(3)
 
 
-@dataclass(frozen=True)
-class Slice:
-    """The arrangement at one value of z.
-
-    ``critical``: the picture may be another one on its two sides; the arrangement is None at an irrational such value.
-    ``alike``: it corresponds (``likeness``) to the slice at the last value before that is not critical.
-    """
-
-    z: Number
-    critical: bool
-    arrangement: Arrangement | None
-    alike: bool = False
-
-
-def decompose_space(
-    factors: Sequence[Polynomial],
-    box: Box,
-    low: Rational,
-    high: Rational,
-    budget: Budget | None = None,
-    progress: Progress = nothing,
-) -> tuple[Slice, ...]:
-    """Exact slices at all critical values of the third variable that are rational, and at one value between any two.
-
-    Raises ValueError for a polynomial that is zero, TooLargeError where the budget does not suffice.
-    """
-    levels = levels_of(critical_levels(factors, box, low, high, budget, progress))
-    slices = []
-    last: Arrangement | None = None
-    for at, (z, critical) in enumerate(levels):
-        progress("slices", at, len(levels))
-        found = _slice(factors, box, z, budget) if isinstance(z, fmpq) else None
-        slices.append(Slice(z, critical, found, found is not None and last is not None and alike(found, last)))
-        last = last if critical else found
-    progress("slices", len(levels), len(levels))
-    return tuple(slices)
-
-
 def levels_of(line: Line) -> list[tuple[Number, bool]]:
     """The zeros and samples of a line in their order, with whether each is a zero."""
     found: list[tuple[Number, bool]] = []
@@ -207,14 +168,6 @@ def flattened(p: Polynomial, z: Any, plane: Any) -> Polynomial:
     """p(x, y, z) in the context ``plane`` of the first two variables; z is a number or a polynomial of that context."""
     x, y = plane.gens()[:2]
     return p.compose(x, y, z if isinstance(z, type(x)) else plane.constant(z), ctx=plane)
-
-
-def _slice(factors: Sequence[Polynomial], box: Box, z: Rational, budget: Budget | None) -> Arrangement:
-    """Polynomials that vanish on the whole slice bound nothing in it; in their places stands 1."""
-    names = factors[0].context().names() if factors else ("x", "y", "z")
-    plane = fmpq_mpoly_ctx.get(names[:2])
-    flat = [flattened(p, z, plane) for p in factors]
-    return decompose([p if p != 0 else plane.constant(1) for p in flat], box, budget)
 
 
 def critical_levels(

@@ -15,8 +15,9 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz, fmpz_mod_ctx, fmpz_mod_poly_ctx
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Rational, between, sign
+from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Isolated, Rational
 from mbsym.expressions.message import Message
 
 # Greatest common divisors over QQ(alpha) by way of finite rings, where Euclid's numbers would grow without bound.
@@ -402,7 +403,7 @@ class Extension:
 
 
 @dataclass(eq=False)
-class Over:
+class Over(Isolated):
     """The only root in [low, high] of a polynomial over QQ(alpha), a simple one; low = high where it is rational.
 
     The polynomial need not be monic.  ``shared``: further polynomials with this root.
@@ -415,28 +416,8 @@ class Over:
     _rising: int = field(default=0, repr=False)
     shared: list[OverField] = field(default_factory=list, repr=False)
 
-    @property
-    def exact(self) -> Rational | None:
-        """The number, where it is known to be rational."""
-        return self.low if self.low == self.high else None
-
-    def halve(self) -> None:
-        """Halves the interval."""
-        if self.low == self.high:
-            return
-        if not self._rising:
-            self._rising = self.over.sign(self.over.at(self.polynomial, self.high))
-            if self._rising == 0:
-                self.low = self.high
-                return
-        middle = (self.low + self.high) / 2
-        value = self.over.sign(self.over.at(self.polynomial, middle))
-        if value == 0:
-            self.low = self.high = middle
-        elif value == self._rising:
-            self.high = middle
-        else:
-            self.low = middle
+    def sign_at(self, x: Rational) -> int:
+        return self.over.sign(self.over.at(self.polynomial, x))
 
     def narrow(self, width: Rational) -> None:
         """Shrinks the interval until it is at most this wide: by Newton's method, by halves where that fails."""
@@ -455,26 +436,11 @@ class Over:
             low, high = ends(ball.real)
         if not (self.low <= low < high <= self.high and high - low <= (self.high - self.low) / 4):
             return False
-        signs = [self.over.sign(self.over.at(self.polynomial, x)) for x in (low, high)]
+        signs = [self.sign_at(x) for x in (low, high)]
         if signs[0] * signs[1] >= 0:
             return False
         self.low, self.high = low, high
         return True
-
-    def compare(self, value: Rational) -> int:
-        """The sign of (this number - value)."""
-        if self.low <= value <= self.high and self.low != self.high:
-            if self.over.at(self.polynomial, value) % self.over.modulus == 0:
-                self.low = self.high = value
-            while self.low <= value <= self.high and self.low != self.high:
-                self.halve()
-        return sign(self.low - value) if self.low == self.high else 1 if self.low > value else -1
-
-    def enclosure(self, bits: int) -> Ball:
-        """A ball around it whose radius is about 2^-bits times its size, or 2^-bits near 0."""
-        size = max(abs(self.low), abs(self.high), fmpq(1, 1 << 40))
-        self.narrow(size / (1 << bits))
-        return between(self.low, self.high, bits + 30)
 
     def sign(self, g: OverField) -> int:
         """The sign of g, a polynomial over the same field, at this root."""
@@ -527,12 +493,7 @@ def _one_parity(p: OverField) -> bool:
 
 def ends(ball: Ball) -> tuple[Rational, Rational]:
     """Rational numbers that enclose a ball."""
-
-    def rational(x: Any) -> Rational:
-        mantissa, exponent = x.man_exp()
-        return fmpq(int(mantissa)) * fmpq(2) ** int(exponent)
-
-    return rational(arb(ball).lower()), rational(arb(ball).upper())
+    return rationals.middle(arb(ball).lower()), rationals.middle(arb(ball).upper())
 
 
 def sharpened(p: Any, slope: Any, ball: Any) -> Any:

@@ -23,17 +23,23 @@ Ball = Any  # a flint.arb
 _SHIFT = fmpz_poly([1, 1])
 
 
-@dataclass(eq=False)
-class Root:
-    """The only root of the square-free ``polynomial`` in [low, high]; low = high where it is known to be rational.
+class Isolated:
+    """The only root of a polynomial in [low, high]; low = high where it is known to be rational.
 
-    Otherwise the polynomial vanishes at neither end.  The interval shrinks where a question needs that.
+    The interval shrinks where a question needs that.
     """
 
-    polynomial: Integer
     low: Rational
     high: Rational
-    _rising: int = field(default=0, repr=False)
+    _rising: int
+
+    def sign_at(self, x: Rational) -> int:
+        """The sign of the polynomial there."""
+        raise NotImplementedError
+
+    def narrow(self, width: Rational) -> None:
+        """Shrinks the interval until it is at most this wide."""
+        raise NotImplementedError
 
     @property
     def exact(self) -> Rational | None:
@@ -45,15 +51,46 @@ class Root:
         if self.low == self.high:
             return
         if not self._rising:
-            self._rising = 1 if self.polynomial(self.high) > 0 else -1
+            self._rising = self.sign_at(self.high)
+            if self._rising == 0:
+                self.low = self.high
+                return
         middle = (self.low + self.high) / 2
-        value = self.polynomial(middle)
+        value = self.sign_at(middle)
         if value == 0:
             self.low = self.high = middle
-        elif (value > 0) == (self._rising > 0):
+        elif value == self._rising:
             self.high = middle
         else:
             self.low = middle
+
+    def compare(self, value: Rational) -> int:
+        """The sign of (this number - value)."""
+        if self.low <= value <= self.high and self.low != self.high:
+            if self.sign_at(value) == 0:
+                self.low = self.high = value
+            while self.low <= value <= self.high and self.low != self.high:
+                self.halve()
+        return sign(self.low - value) if self.low == self.high else 1 if self.low > value else -1
+
+    def enclosure(self, bits: int) -> Ball:
+        """A ball around it whose radius is about 2^-bits times its size, or 2^-bits near 0."""
+        size = max(abs(self.low), abs(self.high), fmpq(1, 1 << 40))
+        self.narrow(size / (1 << bits))
+        return between(self.low, self.high, bits + 30)
+
+
+@dataclass(eq=False)
+class Root(Isolated):
+    """A root of the square-free ``polynomial``, which vanishes at neither end unless low = high."""
+
+    polynomial: Integer
+    low: Rational
+    high: Rational
+    _rising: int = field(default=0, repr=False)
+
+    def sign_at(self, x: Rational) -> int:
+        return sign(self.polynomial(x))
 
     def narrow(self, width: Rational) -> None:
         """Shrinks the interval until it is at most this wide.
@@ -84,21 +121,6 @@ class Root:
         else:
             self.low, self.high = low, high
         return True
-
-    def compare(self, value: Rational) -> int:
-        """The sign of (this number - value)."""
-        while self.low <= value <= self.high and self.low != self.high:
-            if self.polynomial(value) == 0:
-                self.low = self.high = value
-            else:
-                self.halve()
-        return (self.low > value) - (self.low < value) if self.low == self.high else 1 if self.low > value else -1
-
-    def enclosure(self, bits: int) -> Ball:
-        """A ball around it whose radius is about 2^-bits times its size, or 2^-bits near 0."""
-        size = max(abs(self.low), abs(self.high), fmpq(1, 1 << 40))
-        self.narrow(size / (1 << bits))
-        return between(self.low, self.high, bits + 30)
 
     def __float__(self) -> float:
         ball = self.enclosure(60)

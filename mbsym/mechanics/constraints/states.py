@@ -26,7 +26,7 @@ from typing import Any
 
 from flint import arb, fmpq
 
-from mbsym.algebra import krawczyk
+from mbsym.algebra import krawczyk, rationals
 from mbsym.algebra.base import Algebra, Lowering
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import NOT_THERE, NotRational
@@ -492,14 +492,9 @@ _SHORT = 10_000
 
 def _rational_in(x: arb) -> fmpq | None:
     """The number with a short denominator that an enclosure holds; None where none does."""
-    short = _fraction(x).limit_denominator(_SHORT)
+    short = rationals.fraction(rationals.middle(x)).limit_denominator(_SHORT)
     near = arb(fmpq(short.numerator, short.denominator))
     return fmpq(short.numerator, short.denominator) if bool(abs(x - near) < arb(2) ** ALMOST) else None
-
-
-def _fraction(x: arb) -> Fraction:
-    mantissa, exponent = x.mid().man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
 
 
 def _whole(x: fmpq) -> int:

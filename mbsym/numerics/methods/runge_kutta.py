@@ -125,16 +125,21 @@ def _prepare_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     return f.text()
 
 
-def _prepare_fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
-    """The same for steps of one length; the slopes at the end, found here, begin the next step."""
+def _slope_at_the_end(tableau: Tableau, size: int, scalar: Scalar) -> tuple[Function, Stages, Value]:
+    """The same as far as the slopes at the end of a step of one length, and h."""
     f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
     s = Stages(f, size, scalar, apart=True)
-    k, stages, half = f["k"], len(tableau.stages), size // 2
     step = f.load(s.clock, f["clock"], LAST)
     s.state_argument(f["x"])
-    s.evaluate(f.load(s.clock, f["clock"], TIME), s.slope(k, stages))
+    s.evaluate(f.load(s.clock, f["clock"], TIME), s.slope(f["k"], len(tableau.stages)))
     f.store(1, INTEGER, f["count"], FRESH)
-    h = step.converted(s.kind)
+    return f, s, step.converted(s.kind)
+
+
+def _prepare_fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
+    """The same for steps of one length; the slopes at the end, found here, begin the next step."""
+    f, s, h = _slope_at_the_end(tableau, size, scalar)
+    k, stages, half = f["k"], len(tableau.stages), size // 2
     for i in f.each(half):
         place, speed = i, i + half
 
@@ -159,14 +164,8 @@ def _prepare_fixed_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
 
 def _prepare_cubic_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     """The same for states that are no pairs."""
-    f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
-    s = Stages(f, size, scalar, apart=True)
+    f, s, h = _slope_at_the_end(tableau, size, scalar)
     k, stages = f["k"], len(tableau.stages)
-    step = f.load(s.clock, f["clock"], LAST)
-    s.state_argument(f["x"])
-    s.evaluate(f.load(s.clock, f["clock"], TIME), s.slope(k, stages))
-    f.store(1, INTEGER, f["count"], FRESH)
-    h = step.converted(s.kind)
     for i in f.each(size):
         begin, end = h * f.load(s.kind, k, i), h * f.load(s.kind, k, i + stages * size)
         change = f.load(s.kind, k, i + (stages + 1) * size)
