@@ -713,3 +713,18 @@ def test_coordinates_may_be_called_as_the_joints() -> None:
     plain, _ = read(converted(robot, symbols=True).yaml, "r.yaml")
     assert plain is not None
     assert plain.coordinates == ("q1", "q2", "q3", "q4", "q5")
+
+
+def test_limits_that_a_description_has_no_place_for_are_listed() -> None:
+    """How fast a joint may turn says nothing of its dynamics; limits upside down exclude every position."""
+    limits = '<axis xyz="0 1 0"/><limit lower="{}" upper="{}" effort="1" velocity="{}"/>'
+    robot = (
+        '<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+        '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>LIMITS</joint></robot>'
+    )
+    fast, upside_down = (
+        converted(robot.replace("LIMITS", limits.format(*x))).left_out for x in ((-1, 1, 3), (1, -1, 0))
+    )
+    assert fast == ("limit of the velocity of a joint",)
+    assert upside_down == ("limits of a joint that exclude every position, or all but one",)

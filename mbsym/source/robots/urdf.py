@@ -172,11 +172,16 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
     limits = None
     if limit is not None and element.get("type") in ("revolute", "prismatic"):
         limits = (reader.number(limit, "lower"), reader.number(limit, "upper"))
-        limits = limits if float(limits[0]) < float(limits[1]) else None
+        if float(limits[0]) >= float(limits[1]):
+            if any(map(float, limits)):
+                reader.leave_out("limits of a joint that exclude every position, or all but one")
+            limits = None
     led = _led(element, named, reader) if kind != "free" else None
     if led is not None and limits is not None:
         reader.leave_out("limits of a joint that mimics another")
     effort = "0" if limit is None else reader.number(limit, "effort")
+    if limit is not None and float(reader.number(limit, "velocity")) > 0:
+        reader.leave_out("limit of the velocity of a joint")
     return (
         Joint(
             element.get("name"),
