@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure, NotInstalled, message_of
+from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import constrained, forms
 from mbsym.analysis.stages import later
 from mbsym.formulas.formula import Column
@@ -153,7 +154,9 @@ def _perturbed(analysis: Analysis) -> Check | None:
     if linear.constrained is not None:
         from mbsym.problems.reduction_check import check_reduced_perturbation
 
-        return check_reduced_perturbation(analysis.system, analysis.ring, linear, dependent(analysis))
+        # a motion that breaks the constraints' rows has no first approximation: the routes leave the rows differently
+        existing = equilibrium.on_a_branch(analysis.parameters_scene, analysis.equilibrium)
+        return check_reduced_perturbation(analysis.system, analysis.ring, linear, dependent(analysis, existing))
     return perturbation.check_perturbed_motion(analysis.system, analysis.ring, linear, dependent(analysis))
 
 
@@ -212,10 +215,10 @@ SECOND_ROUTES: dict[str, Callable[[Analysis], Check | None]] = {
 }
 
 
-def dependent(analysis: Analysis) -> perturbation.Dependent:
-    """What the matrices of problem 5 have already been freed of, and what their notation stands for."""
+def dependent(analysis: Analysis, determined: Mapping[int, Polynomial] | None = None) -> perturbation.Dependent:
+    """What the matrices of problem 5 have already been freed of (or ``determined``), and what their notation means."""
     scene = analysis.parameters_scene
-    values = motion.dependent(scene, analysis.equilibrium.determined(scene))
+    values = motion.dependent(scene, analysis.equilibrium.determined(scene) if determined is None else determined)
     names = [item.name for item in analysis.system.notation]
     return perturbation.Dependent(values, {name: knowledge.definition_in_parameters(scene, name) for name in names})
 

@@ -17,7 +17,7 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.factors import occurring
@@ -77,7 +77,7 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
             impossible.append(condition)
             continue
         conditions.append(condition)
-        solution = _solve(scene, condition, signs)
+        solution = _solve(scene, condition, signs.never_zero)
         if solution is not None:
             index, value = solution
             solved = {k: ring.substitute(image, {index: value}) for k, image in solved.items()} | {index: value}
@@ -118,7 +118,26 @@ def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
     return numerator if kept.is_constant() else ring.reduce(kept)
 
 
-def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Polynomial] | None:
+def on_a_branch(scene: Scene, found: Equilibrium) -> dict[int, Polynomial]:
+    """As ``determined``, on one branch of the conditions that were not solved: s = 0 of s sin(a) = 0, sin(a) != 0.
+
+    What holds only where the motion exists is to be tried there.  A condition that is linear in no parameter is left.
+    """
+    ring, solved = scene.ring, [(name, value.polynomial) for name, value in found.solved]
+    pending = unsolved(scene, found)
+    while pending:
+        solution = _solve(scene, pending.pop(), lambda slope: ring.is_zero(slope) is not True)
+        if solution is not None:
+            index, value = solution
+            solved = [(name, ring.substitute(image, {index: value})) for name, image in solved]
+            solved.append((ring.generators[index].name, value))
+            pending = [x for x in (ring.substitute(x, {index: value}) for x in pending) if ring.is_zero(x) is not True]
+    return determined(scene, solved)
+
+
+def _solve(
+    scene: Scene, condition: Polynomial, never_zero: Callable[[Polynomial], bool]
+) -> tuple[int, Polynomial] | None:
     """(generator, value) for a parameter that enters linearly with a coefficient that cannot vanish."""
     ring = scene.ring
     hidden = {
@@ -133,7 +152,7 @@ def _solve(scene: Scene, condition: Polynomial, signs: Signs) -> tuple[int, Poly
         if condition.degrees()[index] != 1 or index in hidden or name in ring.angles:
             continue
         slope = condition.derivative(index)
-        if signs.never_zero(slope):
+        if never_zero(slope):
             options.append((len(slope), order, index, slope))
     if not options:
         return None

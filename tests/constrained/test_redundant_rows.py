@@ -340,6 +340,14 @@ def test_ranks_are_those_of_the_branch(name: str, rank: int) -> None:
     assert [len(one.rows) - one.rank for one in found.dependent_sets] == [1]
 
 
+def test_whole_turns_do_not_change_a_rank() -> None:
+    """Bricard's linkage has one freedom wherever its first angle is counted from; near 10^6 rad, too."""
+    text = case("bricard")
+    begun_there = text.replace("q1: 0", "q1: 1000000")
+    assert begun_there.count("q1: 1000000") == 1
+    assert mbsym.loads(begun_there).constraints.velocity_rank == 4
+
+
 @pytest.mark.parametrize(
     ("name", "rank"),
     [

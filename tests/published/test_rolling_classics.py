@@ -17,6 +17,7 @@ import mbsym
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.source import read
 from tests.published.test_constrained_systems import AtState
@@ -132,6 +133,26 @@ def test_first_approximation_in_the_dish() -> None:
     wanted = [[moment, zero, zero, turned, weight, zero], [zero, moment, -turned, zero, zero, weight]]
     assert proportional(found, pencil(found, ("x", "y")), wanted)
     assert found.equilibrium.satisfied
+
+
+@pytest.mark.parametrize("tilt", ["1/3", "b0"])
+def test_a_tilted_sphere_does_not_spin_at_the_lowest_place(tilt: str) -> None:
+    """alpha = 0, beta = b, gamma' = s: omega = s (sin b, 0, cos b), r omega_x is a slip at the contact: s sin b = 0.
+
+    The dish turns beneath its centre.  The first approximation is compared where the motion exists.
+    """
+    named = ("  s: {sign: real, value: 1,", "  b0: {sign: real, value: 1/3}\n  s: {sign: real, value: 1,")
+    found = changed("dish-sphere", ("beta: 0, gamma: {rate: s}", f"beta: {tilt}, gamma: {{rate: s}}"), named)
+    (condition,) = found.equilibrium.conditions
+    assert not found.equilibrium.solved
+    assert condition.polynomial.degrees()[found.ring.index("parameter", "s")] == 1
+    check = found.check("perturbed motion")
+    assert check is not None
+    assert check.outcome == NUMERICAL
+    verdict = found.stability.numerical
+    assert verdict is not None
+    assert verdict.word is Word.UNDECIDED
+    assert verdict.because(Because.MOTION_NOT_THERE)
 
 
 def test_nothing_is_claimed_of_the_dish_that_roots_on_the_axis_do_not_show() -> None:

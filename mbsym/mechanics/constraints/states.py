@@ -15,13 +15,13 @@ length): then parameters stay as they are, and ``at_values`` says so.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
 from typing import Any
 
 from flint import arb, fmpq
@@ -204,10 +204,14 @@ class Manifold:
         """A root not far from a place.  Raises as ``_root`` does."""
         found = self._root(dict(values), self.system.coordinates)
         for name in self.system.coordinates:
-            size = 1 + abs(float(values[name].mid()))
-            if not abs(float(found[name].mid()) - float(values[name].mid())) <= NEAR * size:
+            if not abs(float(found[name].mid()) - float(values[name].mid())) <= NEAR * self._size(name, values[name]):
                 return None
         return found
+
+    def _size(self, name: str, value: arb) -> float:
+        """What a distance from a coordinate's value is measured by: 1 + |value|, of an angle without whole turns."""
+        x = float(value.mid())
+        return 1 + abs(math.remainder(x, math.tau) if name in self.ring.angles else x)
 
     def _beside(self, source: random.Random) -> OnManifold:
         """A state on the branch of the description's position."""
@@ -233,7 +237,7 @@ class Manifold:
             step[column] = -sum((done.rows[i][k] * step[k] for k in free), arb(0))
         largest = max(float(abs(x).upper()) for x in step.values())
         for k, name in enumerate(names):
-            moved = values[name] + step[k] * arb(APART * (1 + abs(float(values[name].mid()))) / max(largest, 1.0))
+            moved = values[name] + step[k] * arb(APART * self._size(name, values[name]) / max(largest, 1.0))
             values[name] = arb(moved.mid())
         return values
 
@@ -283,7 +287,7 @@ class Manifold:
         constant = _common_number(constants)
         if constant is None:
             return None
-        bottom = lcm(*(int(w.q) for w in (*weights, constant)))
+        bottom = math.lcm(*(int(w.q) for w in (*weights, constant)))
         whole = self.ring.number(-_whole(constant * bottom))
         for name, w in zip(self.system.parameter_names, weights, strict=True):
             whole = whole + self.ring.times(self.ring.number(_whole(w * bottom)), self._parameter(name))
@@ -299,7 +303,7 @@ class Manifold:
         powers = _common_ratios([[w * x for w, x in zip(row, own, strict=True)] for row, own in pairs])
         if powers is None:
             return None
-        bottom = lcm(*(int(w.q) for w in powers))
+        bottom = math.lcm(*(int(w.q) for w in powers))
         whole = [_whole(w * bottom) for w in powers]
         products = []
         for own in values:
