@@ -69,6 +69,7 @@ def command(
       mbsym convert systems/simple-pendulum.yaml --to yaml --scale "t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=m*l**2*w*d"
     """
     asked = Options()
+    asked.say = speaking(file)
     if out is not None and _same(out, file):
         asked.complain(
             "--out",
@@ -186,9 +187,16 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
     )
     if made is not None:
         _, doubts = read(made.yaml, f"{file.stem}.yaml")
+        ways: dict[str, str] = {}
+        if not choices.floating:
+            ways["no-coordinates"] = Message("--floating: its first link moves freely")
+        if choices.symbols:
+            ways["too-large"] = Message("without --symbols its numbers stand in the description")
         for doubt in doubts.sorted():  # of the description that was made: its lines are not the file's
-            said = f"the description that it gives: {doubt.message}"
-            (complaints.error if doubt.severity == "error" else complaints.warning)(doubt.code, said, None, doubt.hint)
+            said = Message("the description that it gives: [[what]]", what=doubt.message)
+            (complaints.error if doubt.severity == "error" else complaints.warning)(
+                doubt.code, said, None, ways.get(doubt.code, doubt.hint)
+            )
     for complaint in complaints.sorted():
         diagnose(render(complaint, text, str(file)))
     errors = len(complaints.errors)

@@ -206,7 +206,7 @@ def _is_description(path: Path) -> bool:
 #: So many changes of one system are printed; a text longer than so many characters is cut.
 MOST_CHANGES, LONGEST = 40, 120
 
-#: Properties whose names say less than these words; what is empty is not said.
+#: Properties of results.json in words; what is empty is not said, and the others are called as they are there.
 WORDS = {
     "kinematics": "", "bodies": "", "energy": "", "equations": "", "rotation": Message("direction cosines"),
     "A2": Message("A2 of T"), "A1": Message("A1 of T"), "A0": Message("A0 of T"),
@@ -215,7 +215,11 @@ WORDS = {
     "parameters": Message("parameter"), "checks": Message("self-check"), "subsystems": Message("subsystem"),
     "claims": Message("claim"), "initial": Message("initial state"), "motion": Message("unperturbed motion"),
     "integrals": Message("first integral"), "unavailable": Message("without a result"),
-    "conditions": Message("conditions"),
+    "conditions": Message("conditions"), "mass_matrix": Message("mass matrix"), "forcing": Message("forcing"),
+    "kinetic_energy": Message("kinetic energy"), "force_function": Message("force function"),
+    "stability": Message("stability"), "verdict": Message("verdict"), "roots": Message("roots"),
+    "characteristic_polynomial": Message("characteristic polynomial"), "real": Message("real"),
+    "imaginary": Message("imaginary"), "eigenvalues_at_values": Message("eigenvalues at values"),
 }  # fmt: skip
 
 _SIGN = {"added": ("+", "green"), "removed": ("-", "red"), "undecided": ("?", "yellow")}

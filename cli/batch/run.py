@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import sys
@@ -23,7 +24,6 @@ from mbsym.batch.transport import BatchOptions, Budget
 from mbsym.expressions.message import Message, joined
 from mbsym.report.language import Language
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
-from mbsym_cli.batch.appendix import SUMMARY
 from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
 from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
@@ -34,6 +34,12 @@ from mbsym_cli.options import DESCRIPTIONS_HAVE, nothing_here
 
 if TYPE_CHECKING:
     from mbsym.batch.coordinator import Executor
+
+#: The appendices of a folder's systems as one file.
+APPENDIX = "appendix.tex"
+
+#: Whose files those about a whole batch are, in the manifest of its folder.
+SUMMARY = "batch summary"
 
 
 @dataclass(frozen=True)
@@ -181,9 +187,6 @@ def write_files(request: Request, summary: Summary, say: Callable[[str], str]) -
         for name, text in summary_files(request, summary).items()
     }
     if request.appendix:
-        from mbsym_cli.batch.appendix import FILENAME as APPENDIX
-        from mbsym_cli.batch.appendix import write_appendix
-
         name = _of_part(request, APPENDIX)
         writers[name] = partial(write_appendix, request.out, name, summary)
     whole = True
@@ -206,6 +209,37 @@ def write_files(request: Request, summary: Summary, say: Callable[[str], str]) -
                 with suppress(OSError):
                     (request.out / name).unlink(missing_ok=True)
     return whole
+
+
+def write_appendix(out: Path, name: str, summary: Summary) -> None:
+    """Joins the appendices of those descriptions that have one, in the order of the summary, into ``out/name``.
+
+    Labels differ from system to system; what has none, as a description with errors, is named at the head.  Raises
+    OSError where the file cannot be written.
+    """
+    from mbsym.report.latex import appendix
+
+    texts = [(row.file, _text(out, row)) for row in summary.rows]
+    without = [file for file, text in texts if not text]
+    head = [f"% Appendices of {len(texts) - len(without)} systems, joined by mbsym {summary.version}."]
+    head += [f"% Left out, without an appendix: {_plain(file)}" for file in without]
+    whole = "\n".join(head) + "\n\n" + appendix.joined([text for _, text in texts if text])
+    deliver(out, {name: whole}, SUMMARY, gone=())
+
+
+def _text(out: Path, row: Row) -> str:
+    """A system's appendix, as it was written for this row; "" where it is not there."""
+    digest = next((file.sha256 for file in row.files if file.name == APPENDIX), "")
+    try:
+        data = (out / row.folder / APPENDIX).read_bytes() if digest else b""
+    except OSError:
+        return ""
+    return data.decode() if hashlib.sha256(data).hexdigest() == digest else ""
+
+
+def _plain(words: str) -> str:
+    """A path in a comment of TeX."""
+    return "".join(c if c.isascii() and c.isprintable() else "?" for c in words)
 
 
 def _unreadable(folder: str, reason: str) -> Row:

@@ -76,7 +76,7 @@ def spread(
         complain(file, Message("interrupted; kept up to t = [[time]]", time=f"{found.times[-1]:.9g}"))
         return INTERRUPTED
     if found.fates:
-        told = "members that ended early: [[ended]] of [[count]]"
+        told = "[[ended]] of [[count]] members ended early."
         complain(file, Message(told, ended=len(found.fates), count=found.count))
         return BROKEN_DOWN
     return OK

@@ -1,0 +1,125 @@
+"""What ``check``, ``batch``, ``convert``, ``diff``, ``new`` and ``--continue`` say in Russian: no English word."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from conftest import SHIPPED
+
+from mbsym.report.language import LANGUAGES
+from mbsym_cli.console import speaking
+from mbsym_cli.main import main
+
+#: Names in the description, what is typed, words of files.
+TYPED = {"simple", "pendulum", "theta", "yaml", "build", "summary", "json", "error", "mbsym", "run", "watch", "edit",
+         "unknown", "key", "mas", "mass", "unfit", "continue", "simulation", "results", "reports", "csv", "format",
+         "version", "urdf", "mjcf", "floating", "symbols", "damping", "inputs", "joint", "names", "angles", "all",
+         "text", "moved", "nowhere", "crane", "missing", "filter", "torque", "trajectory", "bad", "good", "language",
+         "out", "dot", "cos", "sin"}  # fmt: skip
+
+
+def description(language: str) -> str:
+    text = (SHIPPED / "simple-pendulum.yaml").read_text(encoding="utf-8")
+    return re.sub(r"^name:", f"language: {language}\nname:", text, count=1, flags=re.M)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A sound description, a wrong one, results and a run."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in" / "good.yaml").write_text(description("ru"), encoding="utf-8")
+    (tmp_path / "in" / "bad.yaml").write_text(description("ru").replace("mass: m", "mas: m"), encoding="utf-8")
+    (tmp_path / "moved.yaml").write_text(description("ru").replace("[0, -l, 0]", "[0, -2*l, 0]"), encoding="utf-8")
+    return tmp_path
+
+
+def said(*words: str) -> str:
+    done = CliRunner().invoke(main, list(words))
+    assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+    return done.output
+
+
+def strange(text: str) -> set[str]:
+    """Latin words of three letters and more that are neither names nor typed; what is quoted is not said."""
+    lines = [line for line in text.splitlines() if not re.match(r" *\d* \|", line)]
+    return {
+        word.lower() for line in lines for word in re.findall(r"[A-Za-z]{3,}", re.sub(r"error\[[a-z-]+\]", "", line))
+    } - TYPED
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("check", "in"),
+        ("batch", "in", "--format", "json"),
+        ("convert", "in/good.yaml", "--floating"),
+        ("convert", "in/good.yaml", "--out", "in/good.yaml"),
+        ("new", "crane", "--like", "pendulum", "--language", "ru"),
+        ("diff", "in/good.yaml", "moved.yaml"),
+        ("diff", "in/good.yaml", "in/good.yaml"),
+        ("simulate", "in/good.yaml", "--time", "1", "--continue", "moved.yaml"),
+    ],
+)
+def test_no_english_word(words: tuple[str, ...], folder: Path) -> None:
+    text = said(*words)
+    assert re.search("[а-я]{3}", text), text
+    assert not strange(text), text
+
+
+def test_english_is_found(folder: Path) -> None:
+    """Negative control."""
+    assert "bodies" in strange(said("check", str(SHIPPED / "simple-pendulum.yaml")))
+
+
+def test_programs_read_complaints_in_the_language_of_the_description(folder: Path) -> None:
+    (row,) = (json.loads(line) for line in said("check", "in/bad.yaml", "--output-format", "json").splitlines())
+    assert row["code"] == "unknown-key"
+    assert not strange(row["message"] + row["hint"])
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_new_description_is_in_its_language(language: str, folder: Path) -> None:
+    said("new", "crane", "--like", "pendulum", "--language", language)
+    text = (folder / "crane.yaml").read_text(encoding="utf-8")
+    assert f"\nlanguage: {language}\n" in text
+    assert CliRunner().invoke(main, ["check", "crane.yaml"]).exit_code == 0
+
+
+def test_which_language_several_files_speak(folder: Path) -> None:
+    """That of all; English where they differ, and of what is no file."""
+    (folder / "es.yaml").write_text(description("es"), encoding="utf-8")
+    russian, spanish, sentence = folder / "in" / "good.yaml", folder / "es.yaml", "nothing to do"
+    assert speaking(russian, russian)(sentence) == "делать нечего"
+    assert speaking(spanish)(sentence) == "nada que hacer"
+    assert speaking(russian, spanish)(sentence) == speaking()(sentence) == speaking(folder / "nowhere")(sentence)
+    assert speaking(folder)(sentence) == speaking("a\0b")(sentence) == sentence
+
+
+def test_a_robot_without_joints_is_told_what_helps(folder: Path) -> None:
+    inertia = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    text = f'<robot name="quad"><link name="base"><inertial><mass value="1"/>{inertia}</inertial></link></robot>'
+    Path("quad.urdf").write_text(text, encoding="utf-8")
+    assert "hint: --floating" in said("convert", "quad.urdf")
+    assert CliRunner().invoke(main, ["convert", "quad.urdf", "--floating"]).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [
+        (("simulate", "in/good.yaml", "--time", "1", "--format", "csv"), "simulation.json"),
+        (("simulate", "in/good.yaml", "--time", "1", "--vary", "theta=0:1:3", "--format", "csv"), "ensemble.json"),
+        (("lyapunov", "in/good.yaml", "--time", "20"), "lyapunov.json"),
+        (("regressor", "in/good.yaml"), "regressor.json"),
+        (("map", "in/good.yaml", "--x", "b=0:1", "--format", "json"), "map.json"),
+    ],
+)
+def test_json_prints_what_the_file_says(words: tuple[str, ...], file: str, folder: Path) -> None:
+    done = CliRunner().invoke(main, [*words, "--json", "--out", "out"])
+    assert done.exit_code == 0, done.output
+    assert done.stdout == (folder / "out" / file).read_text(encoding="utf-8")
+    assert json.loads(done.stdout)
