@@ -17,22 +17,26 @@ from flint import acb
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
+from mbsym.expressions.tree import Call, Expression, Negative, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import letters_as
 from mbsym.mechanics.motion import relations
+from mbsym.mechanics.variables import ring_environment
 from mbsym.model.oscillation_names import names_in, oscillation_names
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import SmallParameter, System, velocity_name
+from mbsym.problems.claims.oscillations import series_of
 from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.generating import graded_rows
+from mbsym.problems.small_parameter.lindstedt import integrated
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
@@ -266,6 +270,71 @@ def oscillating(
         None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
         () if system.speeds else system.velocities,
     )
+
+
+class NoRate(NoClosedForm):
+    """A formula that is not the rate of the coordinate after which its integral is called."""
+
+    code = "no-rate"
+
+
+def with_integrals(told: Oscillating, analysis: Analysis, rates: Mapping[str, Expression]) -> Oscillating:
+    """The integrals over the time of ``rates``, formulas in variables and parameters, beside the solution.
+
+    Powers of eps stand in them as they are: nothing is taken out.  An integral that has the name of a coordinate is
+    that coordinate but for its initial value: its rate is held against the description exactly, but for the sign of
+    square roots.  Raises NoRate where it is another, NoClosedForm where a formula has no series.
+    """
+    system, found = analysis.system, told.found
+    drifts = list(found.drifts)
+    for name, rate in rates.items():
+        if name in system.coordinates:
+            _is_rate(analysis, name, rate)
+        power, slopes = series_of(system, told, rate)
+        if power < 0:
+            raise NoClosedForm(
+                Message("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
+            )
+        nothing = [Harmonics(found.tower, {})] * power
+        drifts.append(integrated(name, [*nothing, *slopes], found.frequency, found.corrections))
+    return replace(told, found=replace(found, drifts=tuple(drifts)))
+
+
+def _is_rate(analysis: Analysis, name: str, rate: Expression) -> None:
+    """Whether a formula in speeds and positions is the velocity of a coordinate that they replace.
+
+    Square roots are taken with either sign:  (f - q')(f_- - q') = 0.
+    """
+    form = analysis.speed_form
+    refusal = NoRate(
+        Message("[[name]] is a coordinate, and its rate was not found to be this", name=name),
+        remedy="give the integral a name that the description does not have",
+    )
+    if form is None or form.by_quaternion:
+        raise refusal
+    ring = form.ring
+    known = ring_environment(analysis.system, ring) | form.plainly
+    velocity = ring.generator("velocity", name)
+    try:
+        values = [Lowering(ring, known)(x) for x in (rate, _other_roots(rate))]
+        product = ring.times(*(x - velocity for x in values))
+        if ring.is_zero(product):
+            return
+    except Failure:
+        pass
+    raise refusal
+
+
+def _other_roots(x: Expression) -> Expression:
+    """With minus before every square root."""
+    match x:
+        case Call("sqrt"):
+            return Negative(x)
+        case Negative(operand):
+            return Negative(_other_roots(operand))
+        case Operation(operator, left, right):
+            return Operation(operator, _other_roots(left), _other_roots(right))
+    return x
 
 
 def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscillating:

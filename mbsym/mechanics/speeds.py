@@ -130,7 +130,7 @@ class SpeedForm:
         return [forms.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
 
     @cached_property
-    def _plainly(self) -> dict[str, Polynomial]:
+    def plainly(self) -> dict[str, Polynomial]:
         """Every speed and every position but the components of quaternions, by name, in (q, q', t)."""
         found = {x.name: self.in_angles(self.ring.context.gen(x.index)) for x in self.positions}
         return found | dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
@@ -156,7 +156,7 @@ class SpeedForm:
             for body in self.by_quaternion
             for name, node in self.quaternion_of_angles(body, program, inputs).items()
         }
-        return {name: halves[name] if name in halves else carry(x) for name, x in self._plainly.items()}
+        return {name: halves[name] if name in halves else carry(x) for name, x in self.plainly.items()}
 
     def quaternion_of_angles(self, body: Body, algebra: Algebra, values: Mapping[str, Scalar]) -> dict[str, Scalar]:
         """The components of a body's quaternion by name: one of the two, smooth in its angles."""

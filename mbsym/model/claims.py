@@ -111,8 +111,8 @@ CLAIMS: dict[str, ClaimKind] = {
     ),
     "condition": ClaimKind("an inequality among the stability conditions", state=False, inequality=True),
     "oscillation": ClaimKind(
-        "of a variable, or a polynomial in variables: what stands before eps^order in the periodic solution of problem "
-        "12, in its phase, amplitude and constants (amplitude, phase, r_0)",
+        "of a variable, or an expression in variables: what stands before eps^order in the periodic solution of "
+        "problem 12, in its phase, amplitude and constants (amplitude, phase, r_0)",
         EXPRESSION, state=False, order=True, oscillates=True,
     ),
     "oscillation frequency": ClaimKind(

@@ -24,10 +24,18 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
+    from mbsym.expressions.place import Complaints
     from mbsym.model.system import System
+    from mbsym.report.content import Paragraph
     from mbsym.simulation.oscillating import MeasuredOrders
+    from mbsym.source.scaling import Item
 
 FORMATS = ("svg", "pdf", "png")
+
+_ROOTED = (
+    "The rates that were given for [[names]] are those of these coordinates with one sign of their square roots "
+    "(proved); here roots of squares of the amplitude are the amplitude."
+)
 
 #: Said of options of figures where there are none.
 UNWRITTEN = ("wrong-use", "nothing is written without --format", "add --format png")
@@ -51,6 +59,9 @@ class Request:
     small, of order eps.  Coefficients hold the parameters, the amplitude and the values that stay constant without
     eps; resonances that were divided by are listed, and what is left out.
 
+    With --integral formulas in variables are integrated over the time, too: angles that the equations do not need, from
+    their rates.  Under the name of a coordinate its rate is checked.
+
     With --scale they are written in variables of yours, as 'mbsym convert --scale' has them, with powers of the small
     parameter before them; symbols of the solution, such as r_0, may stand in factors.
 
@@ -68,6 +79,7 @@ class Request:
       mbsym oscillations systems/gyrostat-fast.yaml --order 2
       mbsym oscillations systems/gyrostat-fast.yaml --set lx=0 --json
       mbsym oscillations systems/gyrostat-fast.yaml --order 1 --scale "p=r_0*p1,q=r_0*q1,A=a*C,B=b*C,lx=y1*C*r_0"
+      mbsym oscillations systems/gyrostat-fast.yaml --order 1 --integral "psi=(p*gamma1+q*gamma2)/(gamma1**2+gamma2**2)"
       mbsym oscillations systems/gyrostat-fast.yaml --format png --out figures
     """
 
@@ -82,6 +94,7 @@ class Request:
     scale: Annotated[str | None, Text("LIST", "Dimensionless variables and parameters: p=r_0*p1,t=tau/r_0,A=a*C.")] = (
         None
     )
+    integral: Annotated[str | None, Text("LIST", "Integrals over the time, by their rates: psi=q*gamma1,s=x*y.")] = None
     format: Annotated[tuple[str, ...], formats("Draw figures: svg, pdf, png.", FORMATS)] = ()
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
@@ -104,6 +117,8 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
             )
     if request.scale is not None:
         yield from _unscaled(request.scale, system)
+    if request.integral is not None:
+        yield from _no_rates(request.integral, system)
     if "language" in typed and "format" not in typed:
         yield Unfit("--language", *UNWRITTEN)
 
@@ -124,6 +139,42 @@ def _unscaled(text: str, system: System) -> Iterator[Unfit]:
         )
 
 
+def _rates(text: str, complaints: Complaints) -> dict[str, Item]:
+    """Formulas by the names of their integrals."""
+    from mbsym.source.scaling import assignments
+
+    return {one.name: one for one in assignments(text, complaints)}
+
+
+def _no_rates(text: str, system: System) -> Iterator[Unfit]:
+    """What is wrong with integrals that are asked for."""
+    from mbsym.expressions.parser import ascii_safe
+    from mbsym.expressions.place import Complaints
+    from mbsym.expressions.tree import names
+    from mbsym.source.scope import did_you_mean, listed, why_no_name
+
+    complaints = Complaints()
+    rates = _rates(text, complaints)
+    for one in complaints.sorted():
+        yield Unfit("--integral", one.code, one.message, one.hint)
+    variables = (*system.coordinates, *system.velocities, *system.variables)
+    known = (*variables, *system.parameter_names)
+    for name, item in rates.items():
+        if item.bare:
+            hint = Message("for example [[example]]", example="s=x*y")
+            yield Unfit("--integral", "no-rate", Message("[[name]] has no rate", name=ascii_safe(name)), hint)
+            continue
+        reason = None if name in system.coordinates else why_no_name(name)
+        if reason is None and name in {*known, *symbols(system)} - {*system.coordinates}:
+            reason = "the description has it", "what is put in holds parameters and new names"
+        if reason is not None:
+            told = Message("[[name]] cannot be a new name: [[reason]]", name=ascii_safe(name), reason=reason[0])
+            yield Unfit("--integral", "bad-name", told, reason[1])
+        for unknown in sorted(names(item.value) - {*known}):
+            told = Message("there is no variable called [[name]]", name=repr(unknown[:60]))
+            yield Unfit("--integral", "unknown-name", told, did_you_mean(unknown, known) or listed("there are", known))
+
+
 @dataclass(frozen=True)
 class Found:
     """The solution, and the order of its error; why that was not measured where it was not.
@@ -138,19 +189,21 @@ class Found:
 
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
-    from mbsym.analysis.oscillating import oscillating
-    from mbsym.report.words.expansion_measured import orders_or_why
-
-    watch("oscillations")
-    found = oscillating(Analysis(asked.system), request.order, request.values, request.of or "", request.frequency)
-    watch("measuring")
-    measured = orders_or_why(asked.system, found, request.values)
-    if request.scale is None:
-        return Found(found, measured, found)
-    from mbsym.analysis.oscillating import in_variables
+    from mbsym.analysis.oscillating import in_variables, oscillating, with_integrals
     from mbsym.expressions.place import Complaints
+    from mbsym.report.words.expansion_measured import orders_or_why
     from mbsym.source.scaling import read_scaling
 
+    watch("oscillations")
+    analysis = Analysis(asked.system)
+    found = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
+    watch("measuring")
+    measured = orders_or_why(asked.system, found, request.values)
+    if request.integral is not None:
+        rates = {name: item.value for name, item in _rates(request.integral, Complaints()).items()}
+        found = with_integrals(found, analysis, rates)
+    if request.scale is None:
+        return Found(found, measured, found)
     scaling = read_scaling(request.scale, asked.system, Complaints())
     assert scaling is not None  # ``unfit`` has seen it
     return Found(found, measured, in_variables(found, asked.system, scaling))
@@ -161,8 +214,28 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
 
     files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
     complaints = (f"no figures: {reason}",) if reason else ()
-    lines = of_wave(found.told, found.measured)
+    lines = [*of_wave(found.told, found.measured), *_checked(asked.system, request)]
     return Answer(lines, files, complaints, Exit.FAILED if reason else Exit.OK)
+
+
+def _checked(system: System, request: Request) -> Iterator[Paragraph]:
+    """What is known of the rates of coordinates."""
+    from mbsym.expressions.place import Complaints
+    from mbsym.expressions.tree import Call, walk
+    from mbsym.report.content import named, ragged, say
+
+    plain: list[str] = []
+    rooted: list[str] = []
+    for name, item in _rates(request.integral or "", Complaints()).items():
+        if name in system.coordinates:
+            roots = any(isinstance(x, Call) and x.function == "sqrt" for x in walk(item.value))
+            (rooted if roots else plain).append(name)
+    if plain:
+        yield ragged(
+            say("The rates that were given for [[names]] are those of these coordinates (proved).", names=named(plain))
+        )
+    if rooted:
+        yield ragged(say(_ROOTED, names=named(rooted)))
 
 
 def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict[str, str | bytes], str]:

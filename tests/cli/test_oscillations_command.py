@@ -192,3 +192,31 @@ def test_frequencies_that_variables_share_are_told_once_with_the_option() -> Non
     text = " ".join(done.output.split())
     assert "of: theta1, theta2, theta1_dot, theta2_dot (2 of them); say which of the frequencies" in text
     assert "--frequency K" in text
+
+
+@pytest.mark.parametrize(
+    ("integral", "told"),
+    [
+        ("u", "u has no rate"),
+        ("p=q", "cannot be a new name"),
+        ("s=zz*p", "there is no variable called zz"),
+        ("s=(", "ends too early"),
+    ],
+)
+def test_integrals_that_cannot_be_are_complained_about(integral, told):
+    done = run(FAST, "--integral", integral)
+    assert (done.exit_code, done.stdout) == (2, "")
+    assert told in done.stderr.replace("'", "")
+
+
+def test_integrals_stand_beside_the_solution():
+    words = (FAST, "--order", "1", "--set", "lx=0", "--integral", "psi=(p*gamma1+q*gamma2)/(gamma1**2+gamma2**2)")
+    assert "The rates that were given for psi are those of these coordinates (proved)." in run(*words).stdout
+    data = json.loads(run(*words, "--json").stdout)
+    jsonschema.validate(data, schema("oscillations"))
+    (drift,) = data["drifts"]
+    assert (drift["variable"], drift["rates"][:2], drift["rates"][2] != "0") == ("psi", ["0", "0"], True)
+    assert [one["order"] for one in drift["coefficients"]] == [2]  # without lx psi begins with the second order
+    other = run(FAST, "--order", "1", "--integral", "psi=p*gamma1")
+    assert (other.exit_code, other.stdout) == (1, "")
+    assert "its rate was not found to be this" in other.stderr

@@ -1,6 +1,6 @@
 """Claims about periodic solutions in powers of a small parameter, and about slow manifolds.
 
-The coefficient of eps^n of a variable x, or of a polynomial in variables, is compared with what problem 12 derives:
+The coefficient of eps^n of a variable x, or of an expression in variables, is compared with what problem 12 derives:
 
     x = sum_n eps^n x_n(phase),      phase' = sum_n eps^n w_n
 
@@ -29,6 +29,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
+from mbsym.model.system import System
 from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived, in_parameters
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
@@ -227,7 +228,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.kind == MANIFOLD:
         return _on_manifold(derived, claim, about)
     told = derived.claimed_oscillation
-    formulas = _formulas(derived, told)
+    formulas = _formulas(derived.system, told)
     try:
         claimed = formulas(claim.equals)
     except SingularPoint:
@@ -266,8 +267,8 @@ def _where(difference: Harmonics, phase: str, terms: int) -> str:
     return Message("in what stands before [[names]]", names=names)
 
 
-def _formulas(derived: Derived, told: SolutionInRing) -> WaveFormulas:
-    system, tower = derived.system, told.found.tower
+def _formulas(system: System, told: SolutionInRing) -> WaveFormulas:
+    tower = told.found.tower
     known = {name: tower.parameter(name) for name in system.parameter_names if name in tower.parameters}
     constants = {f"#{name}": value for name, value in told.found.constants}
     for internal, shown in told.symbols.items():
@@ -285,20 +286,30 @@ def _frequencies(found: Oscillation) -> list[Harmonics]:
 
 
 def _series(told: SolutionInRing, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
-    """The coefficients of powers of eps of a polynomial in variables."""
+    """The coefficients of powers of eps of an expression in variables."""
     assert of is not None
-    return _Polynomial(told, formulas).series(of)[1]
+    return _InVariables(told, formulas).series(of)[1]
 
 
-class _Polynomial:
-    """Values of polynomials in the variables: the power of eps that is taken out, and the coefficients from it on.
+def series_of(system: System, told: SolutionInRing, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
+    """(m, c) with  expression = eps^m sum_n eps^n c[n],  n <= order, of an expression in variables and parameters.
 
-    Terms of a sum have to have the same power: else nobody can say which coefficient is meant.
+    Divisors and what stands under roots have to be constant and not zero where eps = 0; the root of the square of the
+    amplitude is the amplitude.  Raises NoClosedForm where there is no such series.
+    """
+    return _InVariables(told, _formulas(system, told), mixed=True).series(expression)
+
+
+class _InVariables:
+    """Values of expressions in the variables: the power of eps that is taken out, and the coefficients from it on.
+
+    Terms of a sum have to have the same power: else nobody can say which coefficient is meant.  ``mixed``: they need
+    not, and the least is taken out.
     """
 
-    def __init__(self, told: SolutionInRing, formulas: WaveFormulas) -> None:
+    def __init__(self, told: SolutionInRing, formulas: WaveFormulas, mixed: bool = False) -> None:
         found = told.found
-        self.found, self.formulas = found, formulas
+        self.found, self.formulas, self.mixed = found, formulas, mixed
         self.powers = dict(found.powers)
         self.waves = dict(zip(found.names, found.series, strict=True))
 
@@ -314,11 +325,13 @@ class _Polynomial:
                 return power, [one.scaled(-found.tower.one) for one in inner]
             case Operation("+" | "-" as operator, left, right):
                 (power, one), (other, two) = self.series(left), self.series(right)
-                if power != other:
+                least, zero = min(power, other), Harmonics(found.tower, {})
+                if power != other and not self.mixed:
                     raise NoClosedForm(
                         Message("terms with different powers of [[small]] in one sum: not compared", small=found.small)
                     )
-                return power, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
+                one, two = ([*[zero] * (m - least), *x][: len(x)] for m, x in ((power, one), (other, two)))
+                return least, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
             case Operation("*", left, right):
                 return self._product(self.series(left), self.series(right))
             case Operation("**", base, Number(exponent)) if exponent.denominator == 1 and 0 < exponent < 10:
@@ -327,13 +340,13 @@ class _Polynomial:
                     total = self._product(total, (power, factor))
                 return total
             case Operation("/", left, right):
-                power, inner = self.series(left)
-                inverse = found.tower.reciprocal(self.formulas.constant(right))
-                return power - self._power_of(right), [one.scaled(inverse) for one in inner]
+                return self._quotient(self.series(left), self.series(right))
+            case Call("sqrt", argument):
+                return self._root(self.series(argument))
             case Number() | Name():
                 zero = Harmonics(found.tower, {})
                 return self._power_of(expression), [self.formulas(expression), *([zero] * found.order)]
-        raise NoClosedForm("no polynomial in the variables: not compared with expansions")
+        raise NoClosedForm("an expression that is not compared with expansions")
 
     def _product(
         self, one: tuple[int, Sequence[Harmonics]], other: tuple[int, Sequence[Harmonics]]
@@ -343,6 +356,46 @@ class _Polynomial:
             for j, y in enumerate(other[1][: len(found) - i]):
                 found[i + j] = found[i + j] + x * y
         return one[0] + other[0], found
+
+    def _quotient(
+        self, one: tuple[int, Sequence[Harmonics]], other: tuple[int, Sequence[Harmonics]]
+    ) -> tuple[int, Sequence[Harmonics]]:
+        """q with  d_0 q_n = c_n - sum_(k>0) d_k q_(n-k)."""
+        inverse = self.found.tower.reciprocal(self._first(other[1]))
+        found: list[Harmonics] = []
+        for n, x in enumerate(one[1]):
+            for k in range(1, n + 1):
+                x = x - other[1][k] * found[n - k]
+            found.append(x.scaled(inverse))
+        return one[0] - other[0], found
+
+    def _root(self, one: tuple[int, Sequence[Harmonics]]) -> tuple[int, Sequence[Harmonics]]:
+        """s with  2 s_0 s_n = c_n - sum_(0<k<n) s_k s_(n-k),  s_0^2 = c_0, rather the amplitude than less it."""
+        power, series = one
+        tower = self.found.tower
+        if power % 2:
+            raise NoClosedForm(Message("a root of an odd power of [[small]]", small=self.found.small))
+        first = self._first(series)
+        root = self.found.amplitude if (first - self.found.amplitude * self.found.amplitude).is_zero() else None
+        found = [Harmonics.constant(tower, tower.square_root(first) if root is None else root)]
+        inverse = tower.reciprocal(found[0].mean + found[0].mean)
+        for n in range(1, len(series)):
+            x = series[n]
+            for k in range(1, n):
+                x = x - found[k] * found[n - k]
+            found.append(x.scaled(inverse))
+        return power // 2, found
+
+    def _first(self, series: Sequence[Harmonics]) -> Element:
+        """The value where eps = 0 of what is divided by, or stands under a root."""
+        if any(k for k in series[0].waves):
+            raise NoClosedForm("division by, or a root of, what changes with the phase: not compared")
+        if series[0].is_zero:
+            zero = Message(
+                "what is divided by, or stands under a root, is 0 where [[small]] = 0", small=self.found.small
+            )
+            raise NoClosedForm(zero)
+        return series[0].mean
 
     def _power_of(self, constant: Expression) -> int:
         match constant:

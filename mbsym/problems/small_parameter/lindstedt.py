@@ -280,20 +280,27 @@ class Orders:
             if held & drifting:
                 drifting.add(i)
                 continue
-            rates: list[Element] = []
-            waves: list[Harmonics] = []
-            self.series[i] = waves
-            for n in range(order + 1):
-                slope = self.right_side(i, n)
-                for j, shift in enumerate(self.shifts[:n], start=1):
-                    slope = slope - waves[n - j].slope().scaled(shift * self.frequency)
-                rates.append(slope.mean)
-                rest = slope - Harmonics.constant(self.tower, slope.mean)
-                waves.append(rest.sum_from_zero().scaled(self.tower.reciprocal(self.frequency)))
-            if any(not x.is_zero() for x in rates):
+            slopes = [self.right_side(i, n) for n in range(order + 1)]
+            drift = integrated(self.system.names[i], slopes, self.frequency, self.shifts)
+            self.series[i] = list(drift.waves)
+            if any(not x.is_zero() for x in drift.rates):
                 drifting.add(i)
-            found.append(Drift(self.system.names[i], tuple(rates), tuple(waves)))
+            found.append(drift)
         return found
+
+
+def integrated(name: str, slopes: Sequence[Harmonics], frequency: Element, shifts: Sequence[Element]) -> Drift:
+    """The integral over the time of  sum_n eps^n slopes[n](T),  T' = frequency (1 + sum_n eps^n shifts[n - 1])."""
+    tower = frequency.tower
+    rates: list[Element] = []
+    waves: list[Harmonics] = []
+    for n, slope in enumerate(slopes):
+        for j, shift in enumerate(shifts[:n], start=1):
+            slope = slope - waves[n - j].slope().scaled(shift * frequency)
+        rates.append(slope.mean)
+        rest = slope - Harmonics.constant(tower, slope.mean)
+        waves.append(rest.sum_from_zero().scaled(tower.reciprocal(frequency)))
+    return Drift(name, tuple(rates), tuple(waves))
 
 
 def _driven(names: Sequence[str], k: int, order: int) -> str:

@@ -112,8 +112,8 @@ class Oscillation(Part, frozen=True, kw_only=True):
     ]
     drifts: Annotated[
         list[Drift],
-        "variables that no equation needs: rates times the time and trigonometric polynomials, but for the initial "
-        "value",
+        "variables that no equation needs, and integrals that were asked for: rates times the time and trigonometric "
+        "polynomials, but for the initial value; of integrals all powers of the small parameter",
         told_apart_by("variable"),
     ]
     resonances: Annotated[list[Resonance], "what was divided by"]

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 FIGURE = "[[system]]: series to order [[order]] at [[small]] = [[value]], and the motion"
 NO_ANGLES = "(no angles: [[why]])"
 SERIES_LINE, MOTION_LINE = "series", "motion (simulation)"
-DRIFTS = "Variables that no equation needs follow by integration, but for their initial values ($t$: the time):"
+DRIFTS = "What no equation needs follows by integration, but for its initial value ($t$: the time):"
 
 _SERIES = (
     "Periodic solution up to order [[order]] of [[small]], led by [[leading]]: all variables as functions of "
