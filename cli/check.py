@@ -14,6 +14,7 @@ import mbsym
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import is_description, load
+from mbsym.source.text_lines import language_of
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
 from mbsym_cli.options import Options
 
@@ -73,12 +74,12 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     worst = OK
     for path in paths:
         try:
-            _, complaints, _ = load(path)
+            _, complaints, text = load(path)
         except Exception as error:
             defect(error, path)
             worst = max(worst, FAILED)
             continue
-        findings += findings_of(printable(path.as_posix()), complaints.sorted())
+        findings += findings_of(printable(path.as_posix()), complaints.sorted(), Language(language_of(text)).say)
         worst = max(worst, BAD_INPUT if complaints.errors else OK)
     written = {
         "github": github_annotations,
@@ -93,7 +94,8 @@ def _check(path: Path) -> int:
     system = read_description(path)
     if system is None:
         return BAD_INPUT
-    print(wrapped(f"{printable(path)}: ok: {system.name}; {_size(system)}", asked_width()))
+    sound = Language(system.language).say(Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system)))
+    print(wrapped(f"{printable(path)}: {sound}", asked_width()))
     return OK
 
 

@@ -314,9 +314,31 @@ def printable(path: Path | str) -> str:
     return escaped(os.fsencode(path).decode("utf-8", "backslashreplace"))
 
 
-def complain(path: Path | str, text: str) -> None:
-    """A line about a file on standard error."""
-    print(wrapped(f"{printable(path)}: {text}", asked_width(stderr=True)), file=sys.stderr)
+#: So much of a file is read to see which language it asks for.
+_LOOK = 1_000_000
+
+
+def speaking(*files: Path | str) -> Callable[[str], str]:
+    """Says messages in the language of these descriptions; in English where they differ, or are none."""
+    from mbsym.report.language import Language
+    from mbsym.source.text_lines import language_of
+
+    languages = set()
+    for file in files:
+        try:
+            if not Path(file).is_file():  # a pipe would be emptied
+                raise FileNotFoundError
+            with Path(file).open("rb") as stream:
+                languages.add(language_of(stream.read(_LOOK).decode("utf-8", "replace")))
+        except (OSError, ValueError):
+            languages.add("")
+    return Language(languages.pop() if len(languages) == 1 else "").say
+
+
+def complain(path: Path | str, text: str, say: Callable[[str], str] | None = None) -> None:
+    """A line about a file on standard error, in the language of that description unless another is given."""
+    said = (say or speaking(path))(text)
+    print(wrapped(f"{printable(path)}: {said}", asked_width(stderr=True)), file=sys.stderr, flush=True)
 
 
 def diagnose(text: str) -> None:
@@ -329,13 +351,12 @@ def diagnose(text: str) -> None:
 def defect(error: BaseException, where: Path | str | None = None) -> None:
     """Tells of an exception nobody foresaw, too little memory, a missing part; with ``--debug``, where it came from."""
     DEFECTS.told.add(described(error))
-    before = "" if where is None else f"{printable(where)}: "
+    text = Message("internal error, please report it: [[error]]", error=escaped(described(error)))
     if part := missing(error):
-        print(f"{before}{part} is not installed", file=sys.stderr)
+        text = Message("[[part]] is not installed", part=part)
     elif isinstance(error, MemoryError):
-        print(f"{before}out of memory; lower --terms, or ask for fewer --problems", file=sys.stderr)
-    else:
-        print(f"{before}internal error, please report it: {escaped(described(error))}", file=sys.stderr)
+        text = Message("out of memory; lower --terms, or ask for fewer --problems")
+    print(text if where is None else f"{printable(where)}: {speaking(where)(text)}", file=sys.stderr)
     trace(error)
 
 

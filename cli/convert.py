@@ -10,11 +10,11 @@ from pathlib import Path
 
 import click
 
-from mbsym.expressions.message import Message, counted
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
 from mbsym_cli.assignments import in_scale
-from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description
+from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description, speaking
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -88,8 +88,8 @@ def command(
         system = None if written is None else read(written, f"{file.stem}.yaml")[0]
     else:
         if floating or symbols or no_damping or no_inputs or joint_names or angles:
-            options = "--floating, --symbols, --no-damping, --no-inputs, --joint-names and --angles"
-            complain(file, f"is no URDF or MJCF: {options} mean nothing here")
+            options = "--floating, --symbols, --no-damping, --no-inputs, --joint-names, --angles"
+            complain(file, Message("is no URDF or MJCF: [[options]] mean nothing here", options=options))
             sys.exit(BAD_INPUT)
         written, system = None, read_description(file)
     if system is not None and scale is not None:
@@ -108,7 +108,7 @@ def command(
     try:
         write_whole(out, text)
     except OSError as error:
-        complain(out, f"cannot be written: {error.strerror}")
+        complain(out, Message("cannot be written: [[why]]", why=error.strerror), speaking(file))
         sys.exit(FAILED)
 
 
@@ -193,17 +193,20 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         diagnose(render(complaint, text, str(file)))
     errors = len(complaints.errors)
     if made is None or errors:
-        complain(file, f"{counted(errors, 'error', 'errors')}; nothing was written.")
+        many = "[[count]] errors; nothing was written." if errors > 1 else "[[count]] error; nothing was written."
+        complain(file, Message(many, count=errors))
         return None
     for told in made.left_out:
-        print(f"{printable(file)}: left out: {printable(told)}", file=sys.stderr)
+        complain(file, Message("left out: [[what]]", what=printable(told)))
     if made.snapped:
-        several = len(made.snapped) > 1
-        count = f"{counted(len(made.snapped), 'printed angle')} {'are' if several else 'is'} read as"
-        parts = "parts" if several else "a part"
-        first = ", ".join(map(printable, made.snapped[:SHOWN])) + (", ..." if len(made.snapped) > SHOWN else "")
-        where = " (all are listed in the head of the description)" if len(made.snapped) > SHOWN else ""
-        complain(file, f"{count} {parts} of pi: {first}{where}; --angles exact leaves them as they are")
+        angles = ", ".join(map(printable, made.snapped[:SHOWN])) + (", ..." if len(made.snapped) > SHOWN else "")
+        text = "angles read as parts of pi ([[count]]): [[angles]]; --angles exact leaves them as they are"
+        if len(made.snapped) > SHOWN:
+            text = (
+                "angles read as parts of pi ([[count]]): [[angles]] (all are listed in the head of the description); "
+                "--angles exact leaves them as they are"
+            )
+        complain(file, Message(text, count=len(made.snapped), angles=angles))
     for joint in made.still:
-        print(f"{printable(file)}: held still, because it moves no inertia: {printable(joint)}", file=sys.stderr)
+        complain(file, Message("held still, because it moves no inertia: [[joint]]", joint=printable(joint)))
     return made.yaml

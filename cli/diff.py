@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,10 +12,22 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.report.documents import diff as doc
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, console, defect, printable, read_description, reason_of
+from mbsym.report.language import LANGUAGES, Language
+from mbsym_cli.console import (
+    BAD_INPUT,
+    FAILED,
+    OK,
+    complain,
+    console,
+    defect,
+    printable,
+    read_description,
+    reason_of,
+    speaking,
+)
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -28,9 +40,10 @@ RESULTS = "results.json"
 @click.argument("a", type=click.Path(path_type=Path))
 @click.argument("b", type=click.Path(path_type=Path))
 @click.option("--check", is_flag=True, help="Exit code 1 unless both say the same.")
-@click.option("--format", "form", default="text", show_default=True, help="text or json.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON instead of words.")
 @click.option("--all", "everything", is_flag=True, help="Print every change, however many there are.")
-def command(a: Path, b: Path, check: bool, form: str, everything: bool) -> None:
+@click.option("--language", metavar="NAME", help="en, ru or es.  [default: that of the descriptions]")
+def command(a: Path, b: Path, check: bool, as_json: bool, everything: bool, language: str | None) -> None:
     """Say exactly what changed from A to B.
 
     Each is a results.json, a folder that holds one, a folder of such folders (as run and batch make them), a
@@ -46,11 +59,11 @@ def command(a: Path, b: Path, check: bool, form: str, everything: bool) -> None:
     Examples:
       mbsym diff systems/satellite.yaml reports/satellite --check
       mbsym diff old/results.json new/results.json
-      mbsym diff systems build --check --format json
+      mbsym diff systems build --check --json
     """
     asked = Options()
-    forms = asked.words("--format", form, ("text", "json"), "format")
-    if asked.refused() or len(forms) != 1:
+    tongue = None if language is None else asked.word("--language", language, tuple(LANGUAGES), "language")
+    if asked.refused():
         sys.exit(BAD_INPUT)
     sides = _side(a), _side(b)
     if not all(sides):
@@ -62,15 +75,20 @@ def command(a: Path, b: Path, check: bool, form: str, everything: bool) -> None:
         common = [(name, sides[0][name], sides[1][name]) for name in sides[0] if name in sides[1]]
         lacking = [(name, True) for name in sides[0] if name not in sides[1]]
         lacking += [(name, False) for name in sides[1] if name not in sides[0]]
-    sys.exit(_compare(common, lacking, check, forms[0], everything))
+    sys.exit(_compare(common, lacking, check, as_json, everything, tongue))
 
 
 def _compare(
-    common: list[tuple[str, Source, Source]], lacking: list[tuple[str, bool]], check: bool, form: str, everything: bool
+    common: list[tuple[str, Source, Source]],
+    lacking: list[tuple[str, bool]],
+    check: bool,
+    as_json: bool,
+    everything: bool,
+    language: str | None,
 ) -> int:
     from mbsym.diff import diff
 
-    worst, told = OK, []
+    worst, systems = OK, list[doc.SystemDiff]()
     for name, first, second in common:
         try:
             found = diff(first.content(second), second.content(first))
@@ -83,19 +101,21 @@ def _compare(
             continue
         if not found.same and check:
             worst = max(worst, FAILED)
-        told.append(system_data(name, found))
-        if form == "text":
-            show(name, first.title, second.title, found, everything)
+        systems.append(system_data(name, found))
+        if not as_json:
+            say = speaking(*(one.path for one in (first, second) if one.description))
+            say = say if language is None else Language(language).say
+            show(name, first.title, second.title, found, everything, say)
     for name, first_only in lacking:
         worst = max(worst, FAILED if check else OK)
-        if form == "text":
-            show_lacking(name, first_only)
-    if form == "json":
-        from mbsym.report.documents import diff as doc
+        if not as_json:
+            told = Message("[[name]]: only in [[side]]", name=name, side="A" if first_only else "B")
+            console().print(printable(Language(language or "").say(told)))
+    if as_json:
         from mbsym.report.documents.base import written
 
         only = doc.OnlyIn(*([name for name, first in lacking if first is side] for side in (True, False)))
-        click.echo(written(doc.Diff(systems=told, only_in=only), indent=2), nl=False)
+        click.echo(written(doc.Diff(systems=systems, only_in=only), indent=2), nl=False)
     return worst
 
 
@@ -125,14 +145,15 @@ class Source:
         try:
             found = json.loads(self.path.read_text(encoding="utf-8"))
         except OSError as error:
-            complain(self.path, f"it cannot be read: {reason_of(error)}")
+            complain(self.path, Message("it cannot be read: [[why]]", why=reason_of(error)))
             raise Unreadable from error
         except (ValueError, RecursionError) as error:
-            complain(self.path, f"error[not-json]: this is no JSON: {ascii_safe(str(error)[:200])}")
+            complain(self.path, Message("error[not-json]: this is no JSON: [[why]]", why=ascii_safe(str(error)[:200])))
             raise Unreadable from error
         if not isinstance(found, dict) or found.get("format") != 1 or not isinstance(found.get("coordinates"), list):
             complain(self.path, "error[not-results]: this is no results.json of format 1")
-            print("  hint: mbsym run writes one; those of earlier versions have to be written again", file=sys.stderr)
+            hint = Message("mbsym run writes one; those of earlier versions have to be written again")
+            print(f"  {speaking(self.path)(Message('hint: [[hint]]', hint=hint))}", file=sys.stderr)
             raise Unreadable
         return found
 
@@ -187,26 +208,28 @@ MOST_CHANGES, LONGEST = 40, 120
 
 #: Properties whose names say less than these words; what is empty is not said.
 WORDS = {
-    "kinematics": "", "bodies": "", "energy": "", "equations": "", "rotation": "direction cosines",
-    "A2": "A2 of T", "A1": "A1 of T", "A0": "A0 of T", "at_values": "at the values", "linearisation": "linear form",
-    "velocity_origin": "velocity of the joint", "velocity_mass_centre": "velocity of the mass centre",
-    "parameters": "parameter", "checks": "self-check", "subsystems": "subsystem", "claims": "claim",
-    "initial": "initial state", "motion": "unperturbed motion",
-    "integrals": "first integral", "unavailable": "without a result", "conditions": "conditions",
+    "kinematics": "", "bodies": "", "energy": "", "equations": "", "rotation": Message("direction cosines"),
+    "A2": Message("A2 of T"), "A1": Message("A1 of T"), "A0": Message("A0 of T"),
+    "at_values": Message("at the values"), "linearisation": Message("linear form"),
+    "velocity_origin": Message("velocity of the joint"), "velocity_mass_centre": Message("velocity of the mass centre"),
+    "parameters": Message("parameter"), "checks": Message("self-check"), "subsystems": Message("subsystem"),
+    "claims": Message("claim"), "initial": Message("initial state"), "motion": Message("unperturbed motion"),
+    "integrals": Message("first integral"), "unavailable": Message("without a result"),
+    "conditions": Message("conditions"),
 }  # fmt: skip
 
 _SIGN = {"added": ("+", "green"), "removed": ("-", "red"), "undecided": ("?", "yellow")}
 
+#: What stands in place of nothing.
+NOTHING = Message("nothing")
 
-def place(path: tuple[str, ...]) -> str:
+
+def place(path: tuple[str, ...]) -> Message:
     """``mass matrix [theta, psi]`` for equations, mass_matrix, theta, psi."""
-    words: list[str] = []
     matrix = next((k for k, step in enumerate(path) if step in _INDEXED), None)
     head, indices = (path, ()) if matrix is None else (path[: matrix + 1], path[matrix + 1 :])
-    for step in head:
-        word = WORDS.get(step, step.replace("_", " "))
-        words += [word] if word else []
-    return " ".join(words) + (f" [{', '.join(indices)}]" if indices else "")
+    words = [word for step in head if (word := WORDS.get(step, step.replace("_", " ")))]
+    return joined((*words, *([f"[{', '.join(indices)}]"] if indices else ())))
 
 
 _INDEXED = (
@@ -215,48 +238,57 @@ _INDEXED = (
 )  # fmt: skip
 
 
-def lines(change: Change) -> list[str]:
+def lines(change: Change) -> list[Message]:
     """What changed at a place: the place, then by what."""
     where = place(change.path)
     if change.kind == "added":
-        return [f"{where}: added" + _standing(change.after)]
+        return [joined((where, Message("added"), *_standing(change.after)), ": ")]
     if change.kind == "removed":
-        return [f"{where}: removed" + _standing(change.before)]
+        return [joined((where, Message("removed"), *_standing(change.before)), ": ")]
     if change.kind == "order":
-        return [f"{where}: in another order: {', '.join(change.before)} -> {', '.join(change.after)}"]
+        before, after = ", ".join(change.before), ", ".join(change.after)
+        text = "[[place]]: in another order: [[before]] -> [[after]]"
+        return [Message(text, place=where, before=before, after=after)]
     if change.kind == "formula":
-        if change.difference and len(change.difference) <= 4 * LONGEST:
-            told = change.difference
-        elif change.difference:
-            told = f"{counted(change.terms, 'term')}"
-        else:
-            told = f"{counted(change.terms, 'term')}, the first of them {_cut(change.first)}"
+        difference = Message(
+            "[[count]], the first of them [[first]]", count=_terms(change.terms), first=_cut(change.first)
+        )
+        if change.difference:
+            difference = joined((change.difference,)) if len(change.difference) <= 4 * LONGEST else _terms(change.terms)
         short = _short(change.before) and _short(change.after)
-        return [f"{where}: B - A = {told}", *([f"  {change.before} -> {change.after}"] if short else [])]
+        both = joined((f"  {change.before}", f"{change.after}"), " -> ")
+        return [joined((where, joined(("B - A", difference), " = ")), ": "), *([both] if short else [])]
     if change.kind == "undecided":
-        return [f"{where}: undecided, {_undecided(change)}"]
-    return [f"{where}: {_cut(_text(change.before))} -> {_cut(_text(change.after))}"]
+        return [joined((where, joined((Message("undecided"), _undecided(change)), ", ")), ": ")]
+    return [joined((where, joined((_cut(_text(change.before)), _cut(_text(change.after))), " -> ")), ": ")]
 
 
-def _undecided(change: Change) -> str:
+def _undecided(change: Change) -> Message:
     if not isinstance(change.before, str) or not isinstance(change.after, str):
-        return f"not written out: {_text(change.before)} -> {_text(change.after)}"
-    numerically = "" if not change.points else f"numerically equal at {counted(change.points, 'point')}: "
-    return f"{numerically}{_cut(change.before)} -> {_cut(change.after)}"
+        values = joined((_text(change.before), _text(change.after)), " -> ")
+        return joined((Message("not written out"), values), ": ")
+    both = joined((_cut(change.before), _cut(change.after)), " -> ")
+    if not change.points:
+        return both
+    return joined((Message("numerically equal at [[points]]", points=Counted(change.points, "point")), both), ": ")
 
 
-def _standing(value: Any) -> str:
-    return f": {_cut(_text(value))}" if isinstance(value, (str, int, float)) else ""
+def _standing(value: Any) -> tuple[str, ...]:
+    return (_cut(_text(value)),) if isinstance(value, (str, int, float)) else ()
+
+
+def _terms(count: int) -> Message:
+    return Counted(count, "term")
 
 
 def _text(value: Any) -> str:
     if isinstance(value, dict) and "terms" in value:
-        return counted(value["terms"], "term")
+        return _terms(value["terms"])
     if isinstance(value, list):
-        return ", ".join(map(_text, value)) or "nothing"
+        return joined(map(_text, value), ", ") if value else NOTHING
     if value is None or value == "":
-        return "nothing"
-    return {True: "yes", False: "no"}[value] if isinstance(value, bool) else str(value)
+        return NOTHING
+    return (Message("yes") if value else Message("no")) if isinstance(value, bool) else str(value)
 
 
 def _short(value: Any) -> bool:
@@ -264,47 +296,49 @@ def _short(value: Any) -> bool:
 
 
 def _cut(text: str) -> str:
-    return text if len(text) <= LONGEST else text[:LONGEST] + f"... ({len(text)} characters)"
+    if len(text) <= LONGEST:
+        return text
+    return Message("[[beginning]]... ([[count]] characters)", beginning=text[:LONGEST], count=len(text))
 
 
-def show(name: str, first: str, second: str, found: Diff, everything: bool) -> None:
+def show(name: str, first: str, second: str, found: Diff, everything: bool, say: Callable[[str], str]) -> None:
     """One system on the terminal."""
     from rich.text import Text
 
-    out = console()
+    def told(text: str, indent: int = 4) -> None:
+        out.print(printable(" " * indent + say(text)))
+
+    out, restated = console(), len(found.restated)
+    equal = Message("formulas that are equal and printed otherwise: [[count]]", count=restated)
     if found.same:
-        restated = counted(len(found.restated), "formula is", "formulas are")
-        more = f" ({restated} printed otherwise)" if found.restated else ""
-        out.print(Text.assemble((printable(name), "bold"), f": no change{more}"))
-        _versions(found)
-        return
-    counts = counted(len(found.changes), "change", "changes") if found.changes else "only names are others"
-    out.print(Text.assemble((printable(name), "bold"), f": {counts}   ", (printable(f"{first} -> {second}"), "dim")))
-    for one in found.renamed:
-        out.print(Text.assemble(("  ~ ", "cyan"), printable(f"{one.kind} {one.before} is called {one.after}")))
-    shown = found.changes if everything else found.changes[:MOST_CHANGES]
-    for change in shown:
-        sign, colour = _SIGN.get(change.kind, ("*", "magenta"))
-        for k, line in enumerate(lines(change)):
-            out.print(Text.assemble((f"  {sign if not k else ' '} ", colour), printable(line)))
-    if len(shown) < len(found.changes):
-        out.print(f"    and {len(found.changes) - len(shown)} more: --all prints them")
-    if found.restated:
-        out.print(f"    {counted(len(found.restated), 'formula is', 'formulas are')} equal and printed otherwise")
-    _versions(found)
-
-
-def _versions(found: Diff) -> None:
+        summary = Message("no change")
+        if restated:
+            summary = Message("no change ([[restated]])", restated=equal)
+        out.print(Text.assemble((printable(name), "bold"), f": {say(summary)}"))
+    else:
+        counts = Counted(len(found.changes), "change") if found.changes else Message("only names are others")
+        sides = (printable(f"{first} -> {second}"), "dim")
+        out.print(Text.assemble((printable(name), "bold"), f": {say(counts)}   ", sides))
+        for one in found.renamed:
+            text = "[[kind]] [[before]] is called [[after]]"
+            renamed = Message(text, kind=worded(one.kind), before=one.before, after=one.after)
+            out.print(Text.assemble(("  ~ ", "cyan"), printable(say(renamed))))
+        shown = found.changes if everything else found.changes[:MOST_CHANGES]
+        for change in shown:
+            sign, colour = _SIGN.get(change.kind, ("*", "magenta"))
+            for k, line in enumerate(lines(change)):
+                out.print(Text.assemble((f"  {sign if not k else ' '} ", colour), printable(say(line))))
+        if len(shown) < len(found.changes):
+            told(Message("and [[count]] more: --all prints them", count=len(found.changes) - len(shown)))
+        if restated:
+            told(equal)
     if found.versions[0] != found.versions[1]:
-        console().print(printable(f"    written by mbsym {found.versions[0]} -> {found.versions[1]}"))
-
-
-def show_lacking(name: str, first_only: bool) -> None:
-    console().print(printable(f"{name}: only in {'A' if first_only else 'B'}"))
+        text = "written by mbsym [[before]] -> [[after]]"
+        told(Message(text, before=found.versions[0], after=found.versions[1]))
 
 
 def system_data(name: str, found: Diff) -> doc.SystemDiff:
-    """One system, for ``--format json``."""
+    """One system, for ``--json``."""
     return doc.SystemDiff(
         system=name,
         same=found.same,

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym_cli.console import BAD_INPUT, INTERRUPTED, complain, printable
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
@@ -67,7 +68,7 @@ def command(file: Path | None, port: str, no_browser: bool) -> None:
     try:
         serve(path, Services(folder, write), number, ready)
     except OSError as error:
-        complain(path, f"port {number}: {error.strerror or error}")
+        complain(path, Message("port [[number]]: [[why]]", number=number, why=error.strerror or error))
         sys.exit(BAD_INPUT)
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from mbsym.expressions.message import Message
 from mbsym_cli.completion import among, examples
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, printable
 from mbsym_cli.options import Options
@@ -63,7 +64,7 @@ def _copy(name: str, path: Path) -> int:
     try:
         write_whole(path, example_text(name))
     except OSError as error:
-        complain(path, f"cannot be written: {error.strerror}")
+        complain(path, Message("cannot be written: [[why]]", why=error.strerror))
         return FAILED
     click.echo(printable(path))
     return OK

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
 from difflib import get_close_matches
 
 import click
@@ -22,36 +23,121 @@ TOPICS = {
 
 
 @click.command("explain")
-@click.argument("topic", required=False, shell_complete=among(lambda: [*map(str, NUMBERS), *TOPICS]))
-def command(topic: str | None) -> None:
+@click.argument("topic", nargs=-1, shell_complete=among(lambda: [*map(str, NUMBERS), *TOPICS]))
+def command(topic: tuple[str, ...]) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
     The topics description, loads, constraints, expressions, abbreviations and claims tell what may stand in a
-    description.
+    description.  TOPIC may also be a command, a verdict, a theorem, a key or kind of a description.
 
     \b
     Examples:
       mbsym explain 5
       mbsym explain loads
+      mbsym explain gyroscopically stabilised only
+      mbsym explain Kelvin-Chetaev
+      mbsym explain inertia about
     """
     from mbsym.analysis import PROBLEMS
 
-    if topic is None:
+    word = " ".join(topic)
+    if not word:
         width = max(map(len, TOPICS))
         for problem in PROBLEMS.values():
             click.echo(f"{problem.number:<{width}}  {problem.title}")
         for name, meaning in TOPICS.items():
             click.echo(f"{name:<{width}}  {meaning}")
-    elif topic in TOPICS:
-        click.echo(_narrowed(_topic(topic)))
-    elif topic.isdigit() and int(topic) in PROBLEMS:
-        click.echo(_narrowed(PROBLEMS[int(topic)].explanation))
+    elif texts := explanations(word):
+        click.echo("\n\n".join(map(_narrowed, texts)))
     else:
-        near = get_close_matches(topic, TOPICS, 1)
+        near = get_close_matches(word, known_words(), 1)
         known = f"did you mean {near[0]}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
-        click.echo(f"there is no problem or topic {topic}; {known}", err=True)
+        click.echo(f"there is no problem or topic {word}; {known}", err=True)
         sys.exit(BAD_INPUT)
+
+
+def explanations(word: str) -> list[str]:
+    """What there is to say of a problem, a topic, or whatever else is called so."""
+    from mbsym.analysis import PROBLEMS
+    from mbsym.source.topics import meanings
+
+    if word in TOPICS:
+        return [_topic(word)]
+    if word.isdigit() and int(word) in PROBLEMS:
+        return [PROBLEMS[int(word)].explanation]
+    return [*_command(word), *_verdict(word), *_theorem(word), *meanings(word)]
+
+
+def known_words() -> list[str]:
+    """Whatever can be explained, but for the numbers of problems."""
+    from mbsym.problems.stability.theorems import THEOREMS, HigherOrder
+    from mbsym.problems.stability.word import Word
+    from mbsym.source.topics import words
+    from mbsym_cli.main import COMMANDS
+
+    theorems = [*(one.name for one in THEOREMS), *(one.value for one in HigherOrder if one)]
+    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(one.value for one in Word), *theorems, *words()]))
+
+
+def _command(word: str) -> Iterator[str]:
+    """The help of a command."""
+    from mbsym_cli.main import COMMANDS, main
+
+    if word in COMMANDS:
+        context = click.Context(main, info_name="mbsym")
+        found = main.get_command(context, word)
+        assert found is not None
+        yield found.get_help(click.Context(found, context, word, max_content_width=100))
+
+
+def _verdict(word: str) -> Iterator[str]:
+    """What a verdict of problem 6 says, in the words of docs/theory.md."""
+    from mbsym.problems.stability.word import Word
+
+    meaning = {
+        Word.ASYMPTOTIC: "disturbed motions stay near and come back",
+        Word.ASYMPTOTIC_BUT_TURNED: "they come back to the same motion, turned in space",
+        Word.ASYMPTOTIC_BUT_CYCLIC: (
+            "everything else comes back, or to a steady motion near by where momenta were changed; cyclic "
+            "coordinates may drift"
+        ),
+        Word.ASYMPTOTIC_BUT_STEADY: (
+            "of a system with constraints on velocities: they come to a steady motion near by, of another speed "
+            "or at another place"
+        ),
+        Word.STABLE: (
+            "disturbed motions stay near, in the nonlinear system (of a system given by its matrices: these "
+            "equations are all there is)"
+        ),
+        Word.STABLE_BUT_CYCLIC: "everything else stays near; cyclic coordinates may drift",
+        Word.GYROSCOPIC: (
+            "the first approximation is stable by gyroscopic forces; no theorem decides the nonlinear system"
+        ),
+        Word.CRITICAL: "no root is to the right; no theorem decides the nonlinear system",
+        Word.UNDECIDED: "no theorem applies",
+        Word.DEPENDS: "the cases are told with their conditions",
+        Word.UNSTABLE: "some disturbed motions leave",
+        Word.UNSTABLE_BUT_BORDERS: (
+            "so wherever no condition is an equality, whatever the parameters; about the border nothing is said"
+        ),
+    }
+    yield from (f"A verdict of problem 6: {text}." for verdict, text in meaning.items() if verdict.value == word)
+
+
+def _theorem(word: str) -> Iterator[str]:
+    """What a theorem needs and gives, each time it stands in the table of those of problem 6."""
+    from mbsym.problems.stability.theorems import THEOREMS, Ground, HigherOrder
+
+    for one in THEOREMS:
+        if one.name.casefold() == word.casefold():
+            needs = "".join(f"\n    {fact.value}" for fact in type(next(iter(one.needs))) if fact in one.needs)
+            gives = "instability" if one.gives is None else "stability"
+            if one.gives is Ground.DECAYS:
+                gives = "asymptotic stability (where a family is named: to a member of it)"
+            yield f"{one.name}, problem 6: {gives}, where{needs}"
+    if any(one and one.value.casefold() == word.casefold() for one in HigherOrder):
+        yield "A theorem of problem 11: mbsym explain 11"
 
 
 def _narrowed(text: str) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from mbsym.expressions.message import Message
+from mbsym.report.language import LANGUAGES, Language
 from mbsym_cli.completion import among, examples
 from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable
 from mbsym_cli.options import Options
@@ -26,7 +28,8 @@ if TYPE_CHECKING:
     shell_complete=among(examples),
     help="Begin with one of the shipped systems instead of questions.",
 )
-def command(name: str, like: str | None) -> None:
+@click.option("--language", metavar="NAME", help="Of its reports, and of the questions: en, ru or es.")
+def command(name: str, like: str | None, language: str | None) -> None:
     """Write NAME.yaml, a commented description that runs as it is.
 
     Asks for the bodies and their joints; with --like, or where nobody can answer, it takes a shipped system.  A file
@@ -41,6 +44,8 @@ def command(name: str, like: str | None) -> None:
     from mbsym_cli.files import write_whole
 
     asked = Options()
+    tongue = "" if language is None else asked.word("--language", language, tuple(LANGUAGES), "language") or ""
+    say = asked.say = Language(tongue).say
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
     if not path.stem.strip() or path.is_dir():
         asked.complain("NAME", "bad-name", Message("no file can be called [[name]]", name=printable(name)))
@@ -54,19 +59,24 @@ def command(name: str, like: str | None) -> None:
     if asked.refused():
         sys.exit(BAD_INPUT)
     title = path.stem.replace("-", " ").replace("_", " ").capitalize()
-    text = _interview(title) if example is None else _renamed(example, title)
+    text = _interview(title, say) if example is None else _renamed(example, title)
+    text = in_language(text, tongue)
     try:
         write_whole(path, text)
     except OSError as error:
-        complain(path, f"cannot be written: {error.strerror}")
+        complain(path, Message("cannot be written: [[why]]", why=error.strerror), say)
         sys.exit(FAILED)
     shown = printable(path)
     quoted = shlex.quote(shown)
-    begun = f", begun with the example {example}" if example is not None else ""
-    told = (("run", "derives it"), ("watch", "derives it whenever you save"), ("edit", "draws it in the browser"))
-    click.echo(f"{shown}{begun}")
+    begun = Message("[[file]], begun with the example [[name]]", file=shown, name=example)
+    click.echo(shown if example is None else say(begun))
+    told = (
+        ("run", Message("derives it")),
+        ("watch", Message("derives it whenever you save")),
+        ("edit", Message("draws it in the browser")),
+    )
     for name, what in told:
-        click.echo(f"  mbsym {name} {quoted}{' ' * (5 - len(name))}  {what}")
+        click.echo(f"  mbsym {name} {quoted}{' ' * (5 - len(name))}  {say(what)}")
 
 
 def _answers() -> bool:
@@ -85,42 +95,51 @@ def _renamed(example: str, title: str) -> str:
     return "\n".join([f"# Begun with the example {example} of mbsym.", *lines])
 
 
-def _interview(title: str) -> str:
+def in_language(text: str, language: str) -> str:
+    """A description whose reports are in that language, which stands behind its name; as it is for none."""
+    others = [line for line in text.split("\n") if not (language and line.startswith("language:"))]
+    index = next(k for k, line in enumerate(others) if line.startswith("name:")) + 1
+    return "\n".join([*others[:index], *([f"language: {language}"] if language else []), *others[index:]])
+
+
+def _interview(title: str, say: Callable[[str], str]) -> str:
     """A description from the answers to a few questions."""
     from mbsym.source.starter import JOINTS, starter
 
-    title = click.prompt("What is the system called", default=title)
-    count = click.prompt("How many bodies", type=click.IntRange(1, 20), default=1)
-    click.echo("Joints:")
+    title = click.prompt(say(Message("What is the system called")), default=title)
+    count = click.prompt(say(Message("How many bodies")), type=click.IntRange(1, 20), default=1)
+    click.echo(say(Message("Joints:")))
     for joint, (_, _, told) in JOINTS.items():
-        click.echo(f"    {joint:<7} {told}")
+        click.echo(f"    {joint:<7} {say(told)}")
     bodies: list[NewBody] = []
     for number in range(1, count + 1):
-        bodies.append(_body(number, bodies))
-    return starter(title, bodies, click.confirm("Does gravity act", default=True))
+        bodies.append(_body(number, bodies, say))
+    return starter(title, bodies, click.confirm(say(Message("Does gravity act")), default=True))
 
 
-def _body(number: int, earlier: list[NewBody]) -> NewBody:
+def _body(number: int, earlier: list[NewBody], say: Callable[[str], str]) -> NewBody:
     from mbsym.source.starter import JOINTS, NewBody
 
     known = {body.name for body in earlier}
     while True:
-        name = click.prompt(f"Body {number}: its name", default=f"body {number}")
+        name = click.prompt(say(Message("Body [[number]]: its name", number=number)), default=f"body {number}")
         reason = _why_no_body(name, known)
         if reason is None:
             break
-        click.echo(f"  {reason}", err=True)
+        click.echo(f"  {say(reason)}", err=True)
     carrier = None
     if earlier:
         choice = click.Choice(["0", *(body.name for body in earlier)])
-        answer = click.prompt("  attached to (0: the ground)", type=choice, default=earlier[-1].name)
+        answer = click.prompt(f"  {say(Message('attached to (0: the ground)'))}", type=choice, default=earlier[-1].name)
         carrier = None if answer == "0" else answer
-    return NewBody(name, carrier, click.prompt("  by a joint", type=click.Choice(list(JOINTS)), default="hinge"))
+    by = f"  {say(Message('by a joint'))}"
+    return NewBody(name, carrier, click.prompt(by, type=click.Choice(list(JOINTS)), default="hinge"))
 
 
 def _why_no_body(name: str, known: set[str]) -> str | None:
     from mbsym.source.bodies import is_body_name
 
     if name in known:
-        return "another body is called so"
-    return None if is_body_name(name) else "letters, digits, blanks and . / _ -, beginning with a letter"
+        return Message("another body is called so")
+    form = Message("letters, digits, blanks and . / _ -, beginning with a letter")
+    return None if is_body_name(name) else form

@@ -23,6 +23,20 @@ MAX_LENGTH = 2_000
 #: Descriptions end in one of these.
 SUFFIXES = (".yaml", ".yml", ".txt")
 
+DESCRIPTIONS_HAVE = Message(
+    "a description has the key 'mbsym', and its name ends in [[suffixes]]", suffixes=", ".join(SUFFIXES)
+)
+
+
+def nothing_here(others: int) -> Message:
+    """What is said where there are no descriptions, but so many other files."""
+    if not others:
+        return Message("there are no descriptions here")
+    if others == 1:
+        return Message("there are no descriptions here (1 other file was passed over)")
+    return Message("there are no descriptions here ([[count]] other files were passed over)", count=others)
+
+
 #: Words that resemble each other as much (1: equal) are taken for slips.
 _MISSPELT = 0.7
 
@@ -88,14 +102,7 @@ class Options:
             for one in inside:
                 found.setdefault(identity_of(one), one)
         if not found and not self.complaints:
-            words = "a description has the key 'mbsym', and its name ends in [[suffixes]]"
-            hint = Message(words, suffixes=", ".join(SUFFIXES))
-            told = Message("there are no descriptions here")
-            if others:
-                many = "there are no descriptions here ([[count]] other files were passed over)"
-                single = "there are no descriptions here (1 other file was passed over)"
-                told = Message(many, count=others) if others > 1 else Message(single)
-            self.complain(", ".join(map(str, files)), "no-descriptions", told, hint)
+            self.complain(", ".join(map(str, files)), "no-descriptions", nothing_here(others), DESCRIPTIONS_HAVE)
         return list(found.values())
 
     def unwritten(self, option: str, path: Path | None) -> None:

@@ -6,12 +6,13 @@ Whatever fails stays where it happened: a formula in its problem, a problem in i
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mbsym.report.content import say
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.report import content
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
 from mbsym_cli.assignments import in_scale, with_settings
@@ -28,6 +29,7 @@ from mbsym_cli.console import (
     read_description,
     reason_of,
     show,
+    speaking,
     status,
     tell,
     trace,
@@ -82,12 +84,13 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
 
     ``base`` is the folder that the reports must not leave.
     """
+    say = Language(request.language).say if request.language else speaking(path)
     try:
         system = read_description(path)
         if system is None:
             return BAD_INPUT
         asked = Options()
-        asked.say = Language(request.language or system.language).say
+        asked.say = say
         if request.settings:
             system = with_settings(path, system, request.settings, asked)
         if request.scale is not None and not asked.complaints:
@@ -97,11 +100,11 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
             return BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
-            complain(path, f"the reports cannot be written: {reason}")
+            complain(path, Message("the reports cannot be written: [[why]]", why=reason), say)
             return FAILED
         return _derive(path, system, folder, request, letters)
     except OSError as error:
-        complain(path, f"the reports cannot be written: {reason_of(error)}")
+        complain(path, Message("the reports cannot be written: [[why]]", why=reason_of(error)), say)
         trace(error)
     except Exception as error:  # a defect of ours must not cost the rest of the batch
         defect(error, path)
@@ -220,7 +223,7 @@ def _documents(known: Results, writer: Writer, request: Request) -> Iterator[Lin
             yield line._replace(parts=title if seconds is None else (*title, (f"  {seconds:.3f} s", "dim")))
 
 
-def _remarks(path: Path, files: list[Rendered], request: Request) -> None:
+def _remarks(path: Path, files: list[Rendered], request: Request, say: Callable[[str], str]) -> None:
     """What is to be told of files that were made, on standard error."""
     from mbsym.report.targets import FORMATS
 
@@ -228,25 +231,32 @@ def _remarks(path: Path, files: list[Rendered], request: Request) -> None:
     for target in (FORMATS[name] for name in request.formats):
         words = target.remark() if target.remark is not None and target.filename in made else ""
         if words:
-            complain(path, f"{target.filename}: {words}")
+            complain(path, joined((target.filename, worded(words)), ": "), say)
 
 
 def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: Request) -> bool:
     """What went wrong, on standard error; whether anything did."""
     defects = lost(analysis, files)
+    say = Language(analysis.language or analysis.system.language).say
     for where, failure in defects:
-        complain(path, f"{where}: {failure.reason}" + (f"; {failure.hint}" if failure.hint else ""))
-    _remarks(path, files, request)
+        reason = joined((failure.reason, failure.hint), "; ") if failure.hint else failure.reason
+        complain(path, joined((where, reason), ": "), say)
+    _remarks(path, files, request, say)
     open_claims = [result for result in analysis.claims if not result.holds] if request.strict_claims else []
     for result in open_claims:
-        place = f"{result.claim.place}: " if result.claim.place else ""
-        complain(path, f"CLAIM DOES NOT HOLD: {place}{result.title}: {result.outcome}")
+        parts = (
+            Message("CLAIM DOES NOT HOLD"),
+            *filter(None, (result.claim.place,)),
+            result.title,
+            worded(result.outcome),
+        )
+        complain(path, joined(parts, ": "), say)
     failed = [check for check in analysis.checks if check.failed]
     for check in failed:
-        complain(path, f"SELF-CHECK FAILED: {check.name}: {check.detail}")
+        complain(path, joined((Message("SELF-CHECK FAILED"), worded(check.name), worded(check.detail)), ": "), say)
     for check in analysis.checks:
         if check.singular:
-            complain(path, f"the mass matrix is singular: {check.detail}")
+            complain(path, Message("the mass matrix is singular: [[detail]]", detail=worded(check.detail)), say)
     for error in {described(error): error for error in analysis.defects}.values():
         defect(error, path)
     return bool(defects or open_claims or failed or analysis.defects)
@@ -270,7 +280,7 @@ def show_finding(
         texts = ("[[file]]", "[[file]] (files there: [[count]])")
         if more:
             texts = ("[[file]] (all of it here: -v)", "[[file]] (files there: [[count]]; all of it here: -v)")
-        tell(writer.said(say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
+        tell(writer.said(content.say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
 
 
 def show_brief(found: Brief, name: str, width: int) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.report.language import Language
 from mbsym_cli.assignments import reduction_of, scaling_of, with_settings
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, complain, printable, read_description, status
@@ -87,7 +87,7 @@ def command(
         asked.complain("--reduce", "not-both", "the reduction prints what it finds, and no NAMEs", "leave them out")
     if asked.refused(file) or system is None or budget is None:
         sys.exit(BAD_INPUT)
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
     from mbsym.analysis import Analysis
     from mbsym.expressions.tree import text
     from mbsym.report.formulas_by_name import carried_lines, known_names, lines, reduced_lines, remarked, written
@@ -104,7 +104,7 @@ def command(
         except NoDescription:
             formulas = Formulas(system, scaling, budget)
         except Failure as error:
-            complain(file, f"--scale: {error}")
+            complain(file, joined(("--scale", message_of(error)), ": "))
             sys.exit(FAILED)
     analysis = Analysis(system, terms=budget) if formulas is None else formulas.analysis
     if reducing is not None:
@@ -114,7 +114,7 @@ def command(
             with status(False, "reducing"):
                 reduction = reduced(analysis, reducing, formulas, system.claims)
         except Failure as error:
-            complain(file, f"--reduce: {error}")
+            complain(file, joined(("--reduce", message_of(error)), ": "))
             sys.exit(FAILED)
         system = reduction.system
     known = known_names(analysis)
@@ -138,20 +138,21 @@ def command(
                         found = list(lines(analysis, name) if formulas is None else carried_lines(formulas, name))
                     told = [written(line, language or "text") for line in found]
             except Failure as error:
-                complain(file, f"{name}: {error}")
+                complain(file, joined((name, message_of(error)), ": "))
                 worst = FAILED
                 continue
             length = sum(map(len, told))
             if not names and reduction is None and language is None and length > MOST_UNASKED and name == "equations":
-                click.echo(f"equations: {len(found)}, of {length} characters together; one of them, or all:")
-                click.echo(f"  mbsym show {file} {known[-1]}\n  mbsym show {file} equations")
+                many = "equations: [[count]], of [[length]] characters together; one of them, or all:"
+                click.echo(asked.say(Message(many, count=len(found), length=length)))
+                click.echo(f"  mbsym show {file} {known[-1]}\n  mbsym show {file} {name}")
                 sys.exit(OK)
             for line, text_of_it in zip(found, told, strict=True):
                 if line.remark:
                     click.echo(remarked(printable(line.remark), language or "text"))
                 click.echo(text_of_it)
     if used:
-        click.echo(remarked("where", language or "text"))
+        click.echo(remarked(asked.say("where"), language or "text"))
         for name, value in letters_of(system).definitions(used):
             click.echo(remarked(f"{name} = {text(value)}", language or "text"))
     sys.exit(worst)

@@ -16,7 +16,7 @@ from typing import Any, NoReturn, TypeVar
 
 import click
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.model.system import System
 from mbsym.report.content import Block, facts
 from mbsym.report.language import Language
@@ -69,7 +69,7 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
     """``--json``, ``--out`` and ``--quiet``, where there is something to them."""
     if study.letters:
         yield letters_option()
-    if study.json is not None:
+    if study.json is not None or (isinstance(study.out, Folder) and study.out.json):
         yield click.Option(["--json", "as_json"], is_flag=True, help=study.json_help)
     match study.out:
         case Folder() as out:
@@ -169,7 +169,7 @@ class _Run:
                 if answer.files:
                     deliver(folder_for(file, self.out), answer.files, study.name)
         except OSError as error:
-            complain(file, f"the results cannot be written: {reason_of(error)}")
+            complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
             return FAILED
         except NotFit as error:
             for one in error.reasons:
@@ -181,15 +181,15 @@ class _Run:
             if refusal is None:
                 raise
             for text in (refusal.text, *refusal.more):
-                complain(file, self.say(text))
+                complain(file, text, self.say)
             return refusal.code
-        if self.as_json and study.json is not None:
-            click.echo(study.json(asked, request, found), nl=False)
+        if self.as_json:
+            click.echo(_json(answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
         for text in answer.complaints:
-            complain(file, self.say(text))
+            complain(file, text, self.say)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -214,7 +214,7 @@ class _Run:
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
         for text in document.complaints:
-            complain(self.file, self.say(text))
+            complain(self.file, text, self.say)
         if document.text is None:
             return FAILED
         try:
@@ -223,11 +223,18 @@ class _Run:
             else:
                 write_whole(out, document.text)
         except OSError as error:
-            complain(out, f"cannot be written: {error.strerror or error}")
+            complain(out, Message("cannot be written: [[why]]", why=error.strerror or error), self.say)
             return FAILED
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
+
+
+def _json(answer: Answer) -> str:
+    """What the file says that is JSON; nothing where what ended early has none."""
+    texts = (text for name, text in answer.files.items() if name.endswith(".json"))
+    text = next(texts, "")
+    return text if isinstance(text, str) else "".join(map(str, text))
 
 
 def leave(file: Path, command: Callable[[], int]) -> NoReturn:
@@ -245,7 +252,7 @@ def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> in
         return BAD_INPUT
     reason = "" if folder is None else obstacle(folder)
     if reason:
-        complain(file, f"the results cannot be written: {reason}")
+        complain(file, Message("the results cannot be written: [[why]]", why=reason))
         return FAILED
     return OK
 
@@ -254,14 +261,12 @@ def attempted(
     file: Path,
     work: Callable[[], Found],
     expected: Mapping[type[Exception], str] | None = None,
-    equations: str = "these equations",
-    results: str = "results",
 ) -> Found | None:
     """What ``work`` finds and writes; None where it fails, and a word about why.
 
     ``expected`` are failures of its own, with what to say before their message.
     """
-    from mbsym.algebra.failures import Failure
+    from mbsym.algebra.failures import Failure, message_of
 
     own = dict(expected or {})
     try:
@@ -270,9 +275,10 @@ def attempted(
         before = next(text for kind, text in own.items() if isinstance(error, kind))
         complain(file, f"{before}: {error}")
     except Failure as error:
-        complain(file, f"error[no-program]: there is no program for {equations}: {error}")
+        told = Message("error[no-program]: there is no program for these equations")
+        complain(file, joined((told, message_of(error)), ": "))
     except OSError as error:
-        complain(file, f"the {results} cannot be written: {reason_of(error)}")
+        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
     return None
 
 

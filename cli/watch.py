@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, INTERRUPTED, OutPath, complain, printable
+from mbsym_cli.console import BAD_INPUT, INTERRUPTED, OutPath, complain
 
 #: Seconds between two looks at the file, and after which a file that is being saved has settled.
 PERIOD = 0.2
@@ -57,7 +57,7 @@ def _watch(file: Path, commands: list[list[str]]) -> None:
         stamp = _settled(file)
         changed = any(_ran(file, stamp, command) for command in commands)
         if not changed:
-            click.echo(f"{printable(file)}: waiting for changes; Ctrl-C ends", err=True)
+            complain(file, "waiting for changes; Ctrl-C ends")
         while _stamp(file) in (stamp, None):
             time.sleep(PERIOD)
 

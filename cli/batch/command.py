@@ -10,7 +10,7 @@ import click
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
-from mbsym_cli.console import BAD_INPUT, OutPath
+from mbsym_cli.console import BAD_INPUT, OutPath, speaking
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -143,12 +143,14 @@ def command(
 
 def _on_cluster(request: Request) -> int:
     from mbsym.batch.cluster import NoCluster
+    from mbsym_cli.batch.folders import found_in
     from mbsym_cli.batch.run import run
 
     try:
         return run(request)
-    except NoCluster as reason:
-        print(f"--cluster: {reason}", file=sys.stderr)
+    except NoCluster as error:
+        files = [place.file for place in found_in(request.folders, request.out).places]
+        print(f"--cluster: {speaking(*files)(error.reason)}", file=sys.stderr)
         return BAD_INPUT
 
 

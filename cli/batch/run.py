@@ -20,16 +20,17 @@ from mbsym.batch.digests import derivation
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row, Summary, findings
 from mbsym.batch.summary_json import FILENAME, summary_text
 from mbsym.batch.transport import BatchOptions, Budget
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message, joined
+from mbsym.report.language import Language
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
 from mbsym_cli.batch.appendix import SUMMARY
 from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
 from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable
+from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable, speaking
 from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifest
-from mbsym_cli.options import SUFFIXES
+from mbsym_cli.options import DESCRIPTIONS_HAVE, nothing_here
 
 if TYPE_CHECKING:
     from mbsym.batch.coordinator import Executor
@@ -57,33 +58,35 @@ class Request:
 
 def run(request: Request) -> int:
     """The whole batch; its exit code."""
-    started = time.monotonic()
+    started, say = time.monotonic(), Language().say
     reason = obstacle(request.out)
     if reason:
-        print(f"the results cannot be written: {reason}", file=sys.stderr)
+        print(say(Message("the results cannot be written: [[why]]", why=reason)), file=sys.stderr)
         return BAD_INPUT
     found = found_in(request.folders, request.out)
     places = chosen(found.places, request.patterns)
+    say = speaking(*(place.file for place in places or found.places))
     if not places and not found.unreadable:
-        print(_nothing(request, found), file=sys.stderr)
+        print("\n".join(map(say, _nothing(request, found))), file=sys.stderr)
         return BAD_INPUT
     if request.shard is not None:
         places = share(places, *request.shard)
     if request.budget.memory and not memory_is_bounded():
-        print("--memory has no effect here: this system has no such bound", file=sys.stderr)
+        print(say(Message("--memory has no effect here: this system has no such bound")), file=sys.stderr)
     summary, stopped = _summed_up(request, places, found, started)
     wanted = {place.folder for place in found.places}
     gone = forget_gone(request.out, summary_name(request), request.folders, wanted)
-    whole = write_files(request, summary)
+    whole = write_files(request, summary, say)
     if request.output_format != "text":
         sys.stdout.write(_for_programs(request, summary))
     elif not request.quiet:
         for folder in gone:
-            print(f"{printable(request.out / folder)}: removed, its description is gone")
+            complained = Message("[[folder]]: removed, its description is gone", folder=printable(request.out / folder))
+            print(say(complained))
         where = printable(request.out / summary_name(request))
-        print(f"{totals(summary)}; {summary.seconds:.2f} s; {where}")
+        print(f"{say(totals(summary))}; {summary.seconds:.2f} s; {where}")
     if stopped:
-        print("interrupted; what was finished is kept", file=sys.stderr)
+        print(say(Message("interrupted; what was finished is kept")), file=sys.stderr)
         return INTERRUPTED
     return summary.exit_code if whole else summary.exit_code or FAILED
 
@@ -168,7 +171,7 @@ def _for_programs(request: Request, summary: Summary) -> str:
     return github_annotations(found) if request.output_format == "github" else json_lines(found)
 
 
-def write_files(request: Request, summary: Summary) -> bool:
+def write_files(request: Request, summary: Summary, say: Callable[[str], str]) -> bool:
     """Each of them whole; whether all could be written.
 
     Of one that cannot be, the reason is told, and none is left of an earlier batch, which would speak for this one.
@@ -189,7 +192,16 @@ def write_files(request: Request, summary: Summary) -> bool:
             write()
         except OSError as error:
             whole = False
-            print(f"{printable(request.out / name)} cannot be written: {error.strerror or error}", file=sys.stderr)
+            print(
+                say(
+                    Message(
+                        "[[file]] cannot be written: [[why]]",
+                        file=printable(request.out / name),
+                        why=error.strerror or error,
+                    )
+                ),
+                file=sys.stderr,
+            )
             if not isinstance(error, FileExistsError):
                 with suppress(OSError):
                     (request.out / name).unlink(missing_ok=True)
@@ -197,20 +209,20 @@ def write_files(request: Request, summary: Summary) -> bool:
 
 
 def _unreadable(folder: str, reason: str) -> Row:
-    complaint = ComplaintRow("error", "unreadable", f"the folder cannot be read: {reason}")
+    complaint = ComplaintRow("error", "unreadable", Message("the folder cannot be read: [[why]]", why=reason))
     return Row(folder, "", Outcome.ERRORS, complaints=(complaint,))
 
 
-def _nothing(request: Request, found: Descriptions) -> str:
-    """What to say where there is nothing to do."""
+def _nothing(request: Request, found: Descriptions) -> Iterator[Message]:
+    """What to say where there is nothing to do, line by line."""
     where = ", ".join(map(printable, request.folders))
     if found.places:
         asked = ", ".join(map(printable, request.patterns))
-        there = counted(len(found.places), "description is", "descriptions are")
-        return f"{where}: no description fits --filter {asked} ({there} there)"
-    passed = f" ({counted(found.others, 'other file was', 'other files were')} passed over)" if found.others else ""
-    hint = f"a description has the key 'mbsym', and its name ends in {', '.join(SUFFIXES)}"
-    return f"{where}: there are no descriptions here{passed}\n  hint: {hint}"
+        text = "[[where]]: no description fits --filter [[patterns]] (descriptions there: [[count]])"
+        yield Message(text, where=where, patterns=asked, count=len(found.places))
+        return
+    yield joined((where, nothing_here(found.others)), ": ")
+    yield joined(("  ", Message("hint: [[hint]]", hint=DESCRIPTIONS_HAVE)), "")
 
 
 #: A summary is no larger; more of a file is not read.

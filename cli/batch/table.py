@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
-from mbsym.expressions.message import counted
-from mbsym_cli.console import console, printable
+from mbsym.expressions.message import Counted, Message, joined, worded
+from mbsym_cli.console import console, printable, speaking
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -129,6 +130,12 @@ class Live(Lines):
         return f"{left} to go, about {_duration(seconds)}"
 
 
+#: What derived results are called that were there before.
+UP_TO_DATE = Message("up to date")
+
+#: How many descriptions have an outcome.
+NUMBER_OF = "[[count]] [[outcome]]"
+
 _STYLES = {outcome: "red" for outcome in Outcome if outcome.failed} | {Outcome.SKIPPED: "dim"}
 
 
@@ -140,64 +147,66 @@ def watcher(total: int, width: int, quiet: bool, changed: bool) -> Lines:
 
 def line(row: Row, width: int) -> str:
     """A row on one line: file, outcome, seconds, what is to be known of it."""
-    pieces = [printable(row.file).ljust(width), _word(row)]
+    say = speaking(row.file)
+    pieces = [printable(row.file).ljust(width), say(_word(row))]
     if not row.cached and row.seconds:
         pieces.append(f"{row.seconds:.2f} s")
-    pieces.append(printable(_said(row)))
+    pieces.append(printable(_said(row, say)))
     return "  ".join(piece for piece in pieces if piece)
 
 
 def _word(row: Row) -> str:
-    return "up to date" if row.cached and row.outcome is Outcome.DERIVED else row.outcome.value
+    return UP_TO_DATE if row.cached and row.outcome is Outcome.DERIVED else row.outcome.value
 
 
-def _said(row: Row) -> str:
+def _said(row: Row, say: Callable[[str], str]) -> str:
     """The verdict, what is missing, claims that do not hold."""
     if row.message:
-        return row.message
-    said = []
+        return say(row.message)
+    parts: list[str] = []
     errors = sum(one.severity == "error" for one in row.complaints)
     if errors:
-        said.append(counted(errors, "error", "errors"))
+        parts.append(Message("errors: [[count]]", count=errors))
     for problem in row.problems:
         if problem.verdict_at_values is not None:
-            said.append(f"at the values {problem.verdict_at_values}")
+            parts.append(Message("at the values [[verdict]]", verdict=worded(problem.verdict_at_values)))
         elif problem.verdict is not None:
-            said.append(problem.verdict)
+            parts.append(problem.verdict)
     missing = [str(problem.number) for problem in row.problems if problem.status == "none"]
     if missing:
-        said.append(f"no result: {', '.join(missing)}")
-    said += [f"SELF-CHECK FAILED: {check.name}" for check in row.checks if check.failed]
+        parts.append(Message("no result: [[problems]]", problems=", ".join(missing)))
+    parts += [joined((Message("SELF-CHECK FAILED"), check.name), ": ") for check in row.checks if check.failed]
     refuted = sum(claim.word == "refuted" for claim in row.claims)
     if refuted:
-        said.append(f"{counted(refuted, 'claim', 'claims')} refuted")
-    return "; ".join(said)
+        parts.append(Message("claims refuted: [[count]]", count=refuted))
+    return "; ".join(map(say, parts))
 
 
 def complaints(row: Row) -> list[str]:
     """What is complained about, for standard error, each with its place."""
-    name = printable(row.file)
-    return [_complaint(name, one) for one in row.complaints] + [f"{name}: {printable(note)}" for note in row.notes]
+    name, say = printable(row.file), speaking(row.file)
+    return [_complaint(name, one, say) for one in row.complaints] + [f"{name}: {printable(note)}" for note in row.notes]
 
 
-def _complaint(name: str, one: ComplaintRow) -> str:
+def _complaint(name: str, one: ComplaintRow, say: Callable[[str], str]) -> str:
     place = name if one.line is None else f"{name}:{one.line}:{one.column}"
-    hint = "" if one.hint is None else f"\n  hint: {printable(one.hint)}"
-    return f"{place}: {one.severity}[{one.code}]: {printable(one.message)}{hint}"
+    hint = "" if one.hint is None else "\n  " + say(Message("hint: [[hint]]", hint=printable(one.hint)))
+    return f"{place}: {one.severity}[{one.code}]: {printable(say(one.message))}{hint}"
 
 
-def totals(summary: Summary) -> str:
-    """The last line: how many of what, in how many seconds."""
-    parts = []
+def totals(summary: Summary) -> Message:
+    """The last line: how many of what."""
+    parts: list[Message] = []
     for outcome, count in summary.totals.items():
         word = outcome.value
         if outcome is Outcome.DERIVED:
             kept = sum(row.cached for row in summary.rows if row.outcome is outcome)
-            parts += [f"{count - kept} derived"] if count > kept else []
-            parts += [f"{kept} up to date"] if kept else []
+            parts += [Message(NUMBER_OF, count=count - kept, outcome=worded(word))] if count > kept else []
+            parts += [Message(NUMBER_OF, count=kept, outcome=UP_TO_DATE)] if kept else []
         else:
-            parts.append(f"{count} {word}")
-    return f"{counted(len(summary.rows), 'system', 'systems')}: {', '.join(parts) or 'nothing to do'}"
+            parts.append(Message(NUMBER_OF, count=count, outcome=worded(word)))
+    what = joined(parts, ", ") if parts else Message("nothing to do")
+    return joined((Counted(len(summary.rows), "system"), what), ": ")
 
 
 def _duration(seconds: float) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from mbsym.expressions.message import Message
-from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, printable, progress, status
+from mbsym_cli.console import BAD_INPUT, BROKEN_DOWN, FAILED, INTERRUPTED, OK, complain, progress, status
 from mbsym_cli.files import deliver
 from mbsym_cli.options import Options
 from mbsym_cli.study import attempted, show_result
@@ -67,13 +68,16 @@ def spread(
         return FAILED
     if found is None:
         return FAILED
+    if wanted.as_json:
+        click.echo(texts["ensemble.json"], nl=False)
     if not wanted.quiet:
         show_result(file, given.system, sentences(found), folder, texts)
     if found.interrupted:
-        complain(file, f"interrupted; kept up to t = {found.times[-1]:.9g}")
+        complain(file, Message("interrupted; kept up to t = [[time]]", time=f"{found.times[-1]:.9g}"))
         return INTERRUPTED
     if found.fates:
-        print(f"{printable(file)}: {len(found.fates)} of {found.count} members ended early.", file=sys.stderr)
+        told = "members that ended early: [[ended]] of [[count]]"
+        complain(file, Message(told, ended=len(found.fates), count=found.count))
         return BROKEN_DOWN
     return OK
 
@@ -119,12 +123,12 @@ def answers(
             deliver(folder, {"sensitivity.csv": sensitivity_csv(found)}, "sensitivity")
         return found
 
-    found = attempted(file, work, None, "the derivatives", "derivatives")
+    found = attempted(file, work)
     if found is None:
         return FAILED
     if not wanted.quiet:
         show_result(file, given.system, sentences(found), folder, ["sensitivity.csv"], Message("derivatives"))
     if found.ended is not None:
-        complain(file, f"the derivatives end early: {found.ended}")
+        complain(file, Message("the derivatives end early: [[why]]", why=found.ended.told))
         return BROKEN_DOWN
     return OK

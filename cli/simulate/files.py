@@ -8,6 +8,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message
+from mbsym.report.language import Language
 from mbsym_cli.console import status
 from mbsym_cli.files import Content, deliver
 from mbsym_cli.simulate.request import FIGURES, Asked
@@ -133,7 +135,8 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
 
     found = animation(run)
     if found is None:
-        print("no animation: no body has a place that could be drawn", file=sys.stderr)
+        told = Message("no animation: no body has a place that could be drawn")
+        print(Language(run.system.language).say(told), file=sys.stderr)
         return {}
     files: dict[str, bytes] = {}
     if "html" in formats:

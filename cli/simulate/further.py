@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.condition import AxisText, Condition, parse_axes, parse_condition
-from mbsym.expressions.message import Message, worded
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.safe import quoted
 from mbsym.source import render_option
@@ -160,13 +160,12 @@ def _model(texts: Mapping[str, Any], system: System | None, asked: Options) -> M
 
 
 def _continued(request: Request, path: Path, system: System, asked: Options) -> Request:
-    from mbsym.algebra.failures import message_of
     from mbsym.report.runs.earlier_run import Unfit, read_earlier
 
     try:
         earlier = read_earlier(path, system)
-    except Unfit as reason:
-        asked.complain("--continue", "unfit-run", message_of(reason), "take the simulation.json of a run of this FILE")
+    except Unfit as error:
+        asked.complain("--continue", "unfit-run", error.reason, "take the simulation.json of a run of this FILE")
         return request
     if 0 < request.time <= earlier.time:
         there = f"{earlier.time:.9g}"
@@ -239,5 +238,5 @@ def _check_values(request: Request, given: Scenario | None, asked: Options) -> N
         return
     different = list(changed(request.earlier, given))
     if different:
-        message = Message("that run had other values: [[values]]", values="; ".join(different))
+        message = Message("that run had other values: [[values]]", values=joined(different, "; "))
         asked.complain("--continue", "unfit-run", message, "repeat the --set of that run, or leave out --continue")

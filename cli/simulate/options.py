@@ -108,6 +108,7 @@ OPTIONS: tuple[click.Option, ...] = (
     _option("--format -f formats", default="csv,svg,png", show_default=True),
     _flag("--bodies", "What each body does, in bodies.csv; the same as format bodies-csv."),
     _flag("--animate", "animation.html and animation.gif; the same as formats html,gif."),
+    _flag("--json as_json", "Print JSON, that of simulation.json or ensemble.json, instead of a summary."),
     _option("--out -o", "Folder.  [default: reports/NAME]", type=OutPath(path_type=Path, file_okay=False)),
     _flag("--quiet -q", "Print only what went wrong."),
     _flag("--verbose -v", "Tell how it was done, too: method, setting, work, what rests."),
@@ -187,6 +188,7 @@ APART: tuple[Apart, ...] = (
     ),
     *_apart(("--sensitivity",), ("--continue",), "derivatives by the state at t = 0 want the motion from there on"),
     *_apart(("--plan",), ("--stop",), "a plan is for the whole --time", "take the --time at which it stops"),
+    *_apart(("--json",), ("--plan",), "a plan is told in words, and as the command that repeats it"),
     *_apart(("--plan",), ("--certify",), "a plan runs nothing of which anything could be proved"),
     *_apart(
         ("--accuracy",),

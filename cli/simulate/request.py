@@ -60,6 +60,7 @@ class Asked:
     quiet: bool
     goal: Goal | None = None
     verbose: bool = False
+    as_json: bool = False
 
 
 #: Read from their texts alone.
@@ -92,7 +93,8 @@ def read_request(system: System | None, texts: Mapping[str, Any], options: Optio
     )
     if method is not None:
         _check_method(system, request, texts, options)
-    return Asked(request, written, texts["quiet"], verbose=texts["verbose"])
+    quiet = texts["quiet"] or texts["as_json"]
+    return Asked(request, written, quiet, verbose=texts["verbose"], as_json=texts["as_json"])
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, asked: Options) -> None:

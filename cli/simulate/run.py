@@ -102,7 +102,7 @@ def run(file: Path, folder: Path, given: Scenario, wanted: Asked, options: Optio
             complain(file, text)
         return refusal.code
     except OSError as error:
-        complain(file, f"the results cannot be written: {reason_of(error)}")
+        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
     except MemoryError:
         complain(file, "out of memory; ask for fewer --samples")
     return FAILED
@@ -132,6 +132,8 @@ def _delivered(file: Path, folder: Path, found: Simulation, asked: Asked) -> int
         text = Message("no first integrals: [[why]]", why=found.no_invariants)
         print(Language(found.system.language).say(text), file=sys.stderr)
     paths = write_files(folder, found, asked)
+    if asked.as_json:
+        click.echo((folder / "simulation.json").read_text(encoding="utf-8"), nl=False)
     if not asked.quiet:
         print_summary(file, found, paths, asked.verbose)
         if asked.goal is not None:

@@ -17,7 +17,8 @@ export async function begin(model: Model, beginning: Beginning, said: string): P
   try {
     const found = await model.post<{ text: string; format: Format }>("begin", beginning);
     model.replaceText(found.text, found.format);
-    model.select(null);
+    await model.look();
+    model.select("joint" in beginning ? "body" : null); // the next one is added on it
     model.say(said);
     return true;
   } catch (failure) {

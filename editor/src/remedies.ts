@@ -10,6 +10,9 @@ export interface Remedy {
   act: () => unknown;
 }
 
+/** What is positive of a body and of a load. */
+const POSITIVE = new Set(["mass", "inertia", "stiffness", "coefficient", "length", "acceleration", "constant", "distance"]);
+
 /** Fields of a body in which a name may be a coordinate. */
 const MOVING = new Set(["connection point", "rotation"]);
 
@@ -18,11 +21,12 @@ export function remedies(model: Model, complaint: Complaint, path: Path): Remedy
   if (complaint.code !== "unknown-name" || !/^[A-Za-z]\w*$/.test(name)) return [];
   if (/_dot$|_ddot$/.test(name)) return [];
   const found: Remedy[] = [];
+  const alone = nodeAt(model, path)?.source?.trim() === name;
   const change = (operations: () => Operation[], what: string) => () => model.change(operations, `${name} is ${what} now`);
   if (path[0] === "bodies" && path.length > 3 && MOVING.has(String(path[2]))) {
     found.push({ words: `${name} is a coordinate`, act: change(() => coordinate(model, path.slice(0, 2), name), "a coordinate") });
   }
-  found.push({ words: `${name} is a parameter`, act: change(() => parameter(model, name), "a parameter") });
+  found.push({ words: `${name} is a parameter`, act: change(() => parameter(model, name, path, alone), "a parameter") });
   return found;
 }
 
@@ -36,9 +40,10 @@ function coordinate(model: Model, body: Path, name: string): Operation[] {
   return [{ op: "set", path: at, source: `[${[...new Set([...all, name])].join(", ")}]` }];
 }
 
-/** Of any sign: which one it has is nobody's guess. */
-function parameter(model: Model, name: string): Operation[] {
+/** Positive where it alone is a mass, a length, a stiffness, ...; elsewhere of any sign: which one is nobody's guess. */
+function parameter(model: Model, name: string, path: Path, alone: boolean): Operation[] {
   const listed = nodeAt(model, ["parameters"]);
   if (listed?.kind === "sequence") return [{ op: "insert", path: ["parameters", listed.children?.length ?? 0], source: name }];
-  return [{ op: "insert", path: ["parameters", name], source: "real" }];
+  const positive = alone && path.some((key) => POSITIVE.has(String(key)));
+  return [{ op: "insert", path: ["parameters", name], source: `{sign: ${positive ? "positive" : "real"}, value: 1}` }];
 }

@@ -14,7 +14,7 @@ const ELEMENTS: Record<string, Set<string>> = {
   [MATHML]: words(
     "math mrow mi mn mo ms mtext mspace msub msup msubsup mfrac msqrt mroot mover munder munderover mtable mtr mtd mpadded mphantom mstyle",
   ),
-  [SVG]: words("svg g path rect line circle text title desc"),
+  [SVG]: words("svg g defs marker path rect line circle text title desc foreignObject"),
 };
 
 const ATTRIBUTES: Record<string, Set<string>> = {
@@ -22,8 +22,19 @@ const ATTRIBUTES: Record<string, Set<string>> = {
   [MATHML]: words(
     "class display separator stretchy form fence accent lspace rspace width mathvariant symmetric data-latex data-wolfram data-python",
   ),
-  [SVG]: words("class viewBox width height x y x1 y1 x2 y2 d rx r cx cy role"),
+  [SVG]: words(
+    "class viewBox width height x y x1 y1 x2 y2 d rx r cx cy role aria-label markerWidth markerHeight refX refY markerUnits orient",
+  ),
 };
+
+/** A drawing's own arrow head, and lines that end in it: no other name, and no other address. */
+function isTip(element: Element, name: string, value: string): boolean {
+  return (
+    element.namespaceURI === SVG &&
+    ((element.localName === "marker" && name === "id" && value === "tip") ||
+      (/^marker-(start|end)$/.test(name) && value === "url(#tip)"))
+  );
+}
 
 /** Links of the report lead to its own sections; here they are words that name them. */
 function linked(element: Element): string | null {
@@ -45,7 +56,7 @@ function copied(from: Node, follow: (section: string) => void): Node | null {
   } else if (ELEMENTS[space]?.has(from.localName)) {
     made = document.createElementNS(space, from.localName);
     for (const { name, value } of from.attributes) {
-      if (ATTRIBUTES[space]?.has(name)) made.setAttribute(name, value);
+      if (ATTRIBUTES[space]?.has(name) || isTip(from, name, value)) made.setAttribute(name, value);
     }
   } else if (from.localName === "script" || from.localName === "style") {
     return null;

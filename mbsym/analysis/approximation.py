@@ -26,6 +26,7 @@ from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, System
 from mbsym.problems import linearisation
+from mbsym.problems.equilibrium import equilibrium
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:
@@ -103,22 +104,32 @@ def _demand_motion(analysis: Analysis) -> None:
             hint = Message(
                 "say with 'motion:' about which one; at rest with all coordinates 0 the description is singular"
             )
-        elif not _rests_at_zero(analysis):
-            hint = Message(
-                "say with 'motion:' about which one; rest with all coordinates 0 is none, or only at special values of "
-                "parameters"
-            )
+        elif not (rests := _rests_at_zero(analysis)):
+            hint = Message("say with 'motion:' about which one")
+            if rests is not None:
+                hint = Message(
+                    "say with 'motion:' about which one; rest with all coordinates 0 is none, or only at special "
+                    "values of parameters"
+                )
         reason = "the description gives no unperturbed motion"
         raise Unavailable("motion", NoResult(reason, hint, "no motion", "no-motion"))
 
 
-def _rests_at_zero(analysis: Analysis) -> bool:
-    """Whether the description, were this its motion, had it at all values of the parameters."""
+def _rests_at_zero(analysis: Analysis) -> bool | None:
+    """Whether the description, were this its motion, had it at all values of the parameters; None if that is open."""
     still = MotionEntry(analysis.system.coordinates[0], Number(Fraction(0)), Number(Fraction(0)))
+    resting = type(analysis)(replace(analysis.system, motion=(still,)), ())
+    if analysis.system.constraints or analysis.system.linear is not None:
+        try:
+            return resting.equilibrium.satisfied
+        except Unavailable:
+            return False
     try:
-        return type(analysis)(replace(analysis.system, motion=(still,)), ()).equilibrium.satisfied
-    except Unavailable:
-        return False
+        scene = linearisation.quadratised(resting.parameters_scene, resting.system, order=0)  # nothing deviates here
+        values = [-x.value for x in newton_euler.residuals(scene).values()]
+        return equilibrium(resting.parameters_scene, values, resting.signs).satisfied
+    except Failure:
+        return None
 
 
 def first_approximation(analysis: Analysis) -> Linearisation:

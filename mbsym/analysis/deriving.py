@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
+from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
 from mbsym.analysis import constrained, given
@@ -179,7 +180,11 @@ def balance_of(analysis: Analysis) -> Balance:
     if analysis.system.constraints:
         from mbsym.problems.constrained_balance import ConstrainedBalance
 
-        return ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=analysis.reduced.about)
+        tied = analysis.optional("constraints")
+        redundant = () if tied is None or tied.in_speeds else tied.redundant
+        proved = frozenset(row.name for row in redundant if row.certainty is Certainty.PROVED)
+        about = analysis.reduced.about
+        return ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=about, following=proved)
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )

@@ -17,6 +17,7 @@ from mbsym.batch.digests import derivation
 from mbsym.batch.isolation import Processes, isolated
 from mbsym.batch.outcome import Outcome, Row
 from mbsym.batch.transport import Budget, Finished, Task, finished_text, read_finished, read_task, task_text
+from mbsym.expressions.message import Message
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -32,7 +33,11 @@ LOCAL = "local"
 
 
 class NoCluster(Exception):
-    """There is no cluster to work on; the message says why and what to do."""
+    """There is no cluster to work on; ``reason`` says why and what to do."""
+
+    def __init__(self, reason: Message) -> None:
+        self.reason = reason
+        super().__init__(str(reason))
 
 
 class Connection:
@@ -54,14 +59,17 @@ class Connection:
                 )
             self.client = distributed.Client(self._own or address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError, ImportError) as error:  # connection refused, no such address, no TLS
-            raise NoCluster(f"no scheduler answers at {address}: {_first_line(error)}") from error
+            raise NoCluster(
+                Message("no scheduler answers at [[address]]: [[why]]", address=address, why=_first_line(error))
+            ) from error
         try:
             self.client.wait_for_workers(1, timeout=FIRST_WORKER)
             self._check_versions()
         except BaseException as error:
             self.close()
             if isinstance(error, TimeoutError):
-                raise NoCluster(f"the scheduler at {address} has no worker; start one: dask worker {address}") from None
+                text = "the scheduler at [[address]] has no worker; start one: dask worker [[address]]"
+                raise NoCluster(Message(text, address=address)) from None
             raise
         # Its futures are those of concurrent.futures; a deterministic mistake is not repeated, a lost worker's task is.
         self.executor = self.client.get_executor(pure=False, retries=0)
@@ -84,7 +92,8 @@ class Connection:
         wanted = derivation()
         for worker, found in self.client.run(derivation).items():
             if found != wanted:
-                raise NoCluster(f"the worker {worker} has another version of mbsym: install the same there and here")
+                text = "the worker [[worker]] has another version of mbsym: install the same there and here"
+                raise NoCluster(Message(text, worker=worker))
 
 
 class Cluster:
@@ -120,7 +129,7 @@ def _distributed() -> Any:
     try:
         import distributed
     except ImportError:
-        raise NoCluster("--cluster needs Dask: pip install 'mbsym[cluster]'") from None
+        raise NoCluster(Message("Dask is needed: pip install 'mbsym[cluster]'")) from None
     return distributed
 
 
@@ -141,7 +150,8 @@ def _speak_with(distributed: Any, address: str) -> None:
     except (OSError, ValueError, ImportError):
         raise
     except (Exception, MemoryError) as error:
-        raise NoCluster(f"what answers at {address} is no Dask scheduler of this version") from error
+        text = "what answers at [[address]] is no Dask scheduler of this version"
+        raise NoCluster(Message(text, address=address)) from error
 
 
 def _first_line(error: BaseException) -> str:

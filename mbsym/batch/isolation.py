@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 from mbsym.batch.outcome import Outcome, Row
 from mbsym.batch.transport import MALFORMED, Budget, Finished, Task, read_finished, task_text
 from mbsym.batch.worker import OUT_OF_MEMORY, SINGLE
+from mbsym.expressions.message import Message, joined
 
 if TYPE_CHECKING:
     from mbsym.batch.nursery import Nursery
@@ -133,7 +134,9 @@ def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
     try:
         running = processes.start(task, budget.memory)
     except OSError as error:
-        return _failed(task, Outcome.CRASHED, f"its process cannot be started: {error.strerror or error}")
+        return _failed(
+            task, Outcome.CRASHED, Message("its process cannot be started: [[why]]", why=error.strerror or error)
+        )
     if running is None:
         return _failed(task, Outcome.INTERRUPTED)
     try:
@@ -141,7 +144,7 @@ def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
     finally:
         processes.ended(running)
     if ended is None:
-        return _failed(task, Outcome.TIMEOUT, f"stopped after {budget.seconds:g} s")
+        return _failed(task, Outcome.TIMEOUT, Message("stopped after [[seconds]] s", seconds=f"{budget.seconds:g}"))
     code, answer, said = ended
     if code == 0:
         with suppress(*MALFORMED):
@@ -154,16 +157,18 @@ def _ran(task: Task, budget: Budget, processes: Processes) -> Finished:
 def _ended(task: Task, budget: Budget, code: int | None, said: str) -> Finished:
     """Why a process ended without an answer."""
     if code == OUT_OF_MEMORY or any(word in said.lower() for word in _MEMORY_WORDS):
-        bound = f"more than {budget.memory // 2**20} MB were wanted" if budget.memory else "the memory was not enough"
+        bound = Message("the memory was not enough")
+        if budget.memory:
+            bound = Message("more than [[count]] MB were wanted", count=budget.memory // 2**20)
         return _failed(task, Outcome.MEMORY, bound)
     if code is None:
-        what = "its process is gone"
+        what = Message("its process is gone")
     elif code < 0:
-        what = f"its process was ended by {_signal_name(-code)}"
+        what = Message("its process was ended by [[signal]]", signal=_signal_name(-code))
     else:
-        what = f"its process ended with code {code}"
+        what = Message("its process ended with code [[code]]", code=code)
     last = said.strip().rpartition("\n")[2][-_LAST_WORDS:]
-    return _failed(task, Outcome.CRASHED, f"{what}: {last}" if last else what)
+    return _failed(task, Outcome.CRASHED, joined((what, last), ": ") if last else what)
 
 
 def _failed(task: Task, outcome: Outcome, message: str = "") -> Finished:

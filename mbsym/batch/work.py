@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
@@ -14,6 +15,7 @@ from msgspec import structs
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.transport import Finished, Task
+from mbsym.expressions.message import Message
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -27,7 +29,9 @@ if TYPE_CHECKING:
 
 def work(task: Task) -> Finished:
     """What becomes of a description.  Raises nothing but MemoryError and what is our own mistake."""
+    from mbsym.report.language import Language
     from mbsym.source.document import load_bytes
+    from mbsym.source.text_lines import language_of
 
     system, complaints, text = load_bytes(task.data, task.file)
     if system is not None and (system.constraints or system.linear):
@@ -35,7 +39,8 @@ def work(task: Task) -> Finished:
 
         complain_of(system, complaints)
         system = None if complaints.errors else system
-    told = tuple(map(complaint_row, complaints.sorted()))
+    say = Language(language_of(text)).say
+    told = tuple(complaint_row(one, say) for one in complaints.sorted())
     if system is None:
         return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=told))
     from mbsym.batch import digests
@@ -48,10 +53,12 @@ def work(task: Task) -> Finished:
     return Finished(replace(row, complaints=told), files, meaning)
 
 
-def complaint_row(complaint: Complaint) -> ComplaintRow:
-    """A complaint of :mod:`mbsym.source` as a row."""
+def complaint_row(complaint: Complaint, say: Callable[[str], str] = str) -> ComplaintRow:
+    """A complaint of :mod:`mbsym.source` as a row; ``say`` says it in the language of the description."""
     span = complaint.span
-    row = ComplaintRow(complaint.severity, complaint.code, complaint.message, hint=complaint.hint)
+    row = ComplaintRow(
+        complaint.severity, complaint.code, say(complaint.message), hint=complaint.hint and say(complaint.hint)
+    )
     return row if span is None else structs.replace(row, line=span.line, column=span.column, length=span.length)
 
 
@@ -83,7 +90,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
             CheckRow(check.name, check.first, check.second, check.outcome, check.detail) for check in analysis.checks
         ),
         files=tuple(FileRow(name, _digest(content)) for name, content in sorted(files.items())),
-        message="there was not enough memory for a part of it" if outcome is Outcome.MEMORY else "",
+        message=Message("there was not enough memory for a part of it") if outcome is Outcome.MEMORY else "",
         notes=tuple(_notes(analysis, defects, asked.formats, files)),
     )
     return row, files

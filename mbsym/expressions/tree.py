@@ -391,7 +391,7 @@ def text(expression: Expression) -> str:
 def _text(expression: Expression, outer: int) -> str:
     match expression:
         case Number(value):
-            written, own = _decimal(value), 5
+            written, own = decimal_text(value), 5
             if value < 0 or "/" in written:  # a literal is neither: only built trees hold such numbers
                 own = 1
         case Name(name):
@@ -409,7 +409,7 @@ def _text(expression: Expression, outer: int) -> str:
     return f"({written})" if own < outer else written
 
 
-def _decimal(value: Fraction) -> str:
+def decimal_text(value: Fraction) -> str:
     """A terminating decimal where there is one (literals always have one), else a quotient."""
     denominator = value.denominator
     twos = fives = 0

@@ -9,6 +9,10 @@ times smaller at least; two runs that come down to the same settings are never c
 two thousandth of the whole, so that short events are not stepped over twice.  Where the run is as fine as any method,
 a short one is compared with an extrapolation in 160 bits at places that lie unevenly.
 
+What is wrong with a method itself is no difference between two runs of it: where the better run is of the run's own
+method, a third one of another method, a witness, is held against the run at some places.  One that differs by clearly
+more than the better run does is believed, for at least one of the three is wrong by as much.
+
 The better run may be given so much counted work (``planning.prices``): one that shows on the way that it would
 cost more is given up.  No clock is looked at: whether there is an estimate, and which, is the same on every machine.
 
@@ -21,6 +25,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import inf
+from typing import Any
 
 import numpy as np
 
@@ -52,6 +57,15 @@ LONG = 20_000
 
 #: Places at which a run is held against an extrapolation, its tolerance, and what that may cost.
 PLACES, PRECISELY, PRECISE_COST = 150, 1e-22, 2.0
+
+#: Who witnesses for a method that is judged by itself.
+WITNESSES = {"dop853": "rk45", "radau": "bdf", "bdf": "radau", "lsoda": "radau"}
+
+#: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case.
+CLEARLY, BESIDE, LITTLE = 3.0, 2.0, 0.05
+
+#: A witness is looked at after so many parts of the way, to see whether it costs too much.
+LOOKS = 30
 
 #: A run with a limit is not given up before this part of it; then, if it would cost so many times as much.
 EARLY, FAR_TOO_LONG = 0.2, 1.5
@@ -156,7 +170,8 @@ def estimated(
                     return NoEstimate(Lacking.BREAKS_DOWN)
                 why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent
                 continue
-            return ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
+            estimate = ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
+            return _witnessed(dynamics, found, (method, scalar), estimate, completed, (left, budget.spent))
         if why is Lacking.FINEST:
             return _precisely(dynamics, found, method, scalar)
     except KeyboardInterrupt:
@@ -214,6 +229,63 @@ def _compared(
             (found.times, found.states),
             watch=budget.reached,
         )
+
+
+def _witnessed(
+    dynamics: Dynamics,
+    found: Trajectory,
+    own: tuple[Method, str],
+    estimate: ErrorEstimate,
+    completed: Callable[[Method], Method],
+    costs: tuple[float, float],
+) -> ErrorEstimate:
+    """The estimate, or that of a witness that contradicts it; ``costs``: what is allowed, and what the runs have cost.
+
+    A witness that is itself coarse comes closer to the run when it is made finer; one that stays as far away is
+    believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
+    """
+    (method, scalar), better, (limit, spent) = own, estimate.against, costs
+    name = WITNESSES.get(better.method)
+    if name is None or method.traits.name != better.method or estimate.parted is not None:
+        return estimate
+    witness, end = completed(METHODS[name]), float(found.times[-1])
+    places = np.concatenate([[0.0], uneven(0.0, end, PLACES), [end]])
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    budget = _Budget(dynamics, min(limit - spent, max(LITTLE, BESIDE * spent)), end, even=False)
+    setting, before = better.setting, inf
+    try:
+        run = method.start(dynamics, found.setting, scalar)
+        states = np.column_stack([run.state, run.fill(places[1:])])
+        while True:
+            truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
+            scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
+            other = ErrorEstimate(Against(name, better.scalar, setting), scene, _rounding(scalar))
+            if other.largest <= CLEARLY * estimate.largest:
+                return estimate
+            if other.largest > before / CLEARLY:
+                return other
+            setting, before = _finer(setting), other.largest
+    except (Breakdown, Unusable, _TooDear):
+        return estimate
+
+
+def _finer(setting: Setting) -> Setting:
+    """A tolerance and steps so much smaller that errors are, too."""
+    assert setting.tolerance is not None
+    longest = setting.longest and SHORTER * setting.longest
+    return replace(setting, tolerance=setting.tolerance * TIGHTER, longest=longest)
+
+
+def _filled(witness: Method, dynamics: Dynamics, setting: Setting, scalar: str, places: Any, budget: _Budget) -> Any:
+    """The states (2n, m) of a run at increasing places from 0.  Raises Breakdown, Unusable, _TooDear."""
+    with np.errstate(all="ignore"):
+        run = witness.start(dynamics, setting, scalar)
+        budget.start(((run, witness.traits.name, scalar),))
+        states = [np.array(run.state)[:, None]]
+        for some in np.array_split(places[1:], LOOKS):
+            states.append(run.fill(some))
+            budget.reached(float(some[-1]))
+    return np.hstack(states)
 
 
 def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:

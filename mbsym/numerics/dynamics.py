@@ -49,6 +49,9 @@ class Dynamics:
     #: What these are; None of coordinates and their velocities.
     form: SpeedForm | None = None
 
+    #: Parameters that are inputs, behind the state.
+    free: tuple[str, ...] = ()
+
     def __init__(self, scenario: Scenario, ring: Ring | None = None, apart: bool = False) -> None:
         self.scenario = scenario
         self.system: System = scenario.system
@@ -60,8 +63,8 @@ class Dynamics:
 
     @property
     def dimension(self) -> int:
-        """How many numbers a state has: q and q'."""
-        return 2 * self.size
+        """How many numbers a state has: q and q', or whatever else stands between the time and the free parameters."""
+        return len(self.inputs) - 1 - len(self.free)
 
     def exactly(self, point: Sequence[Any]) -> Sequence[Any]:
         """(t, q, q') of the model itself beside a point of a run, which has been rounded: it itself."""
@@ -280,7 +283,7 @@ class Frozen(Dynamics):
         curves = whole.features.curves
         self._lengths = [0 if curve is None else 2 * (1 + len(curve.polynomials[0])) for curve in curves]
         self.cells = Cells(len(curves) + sum(self._lengths))
-        self.inputs, self.size = whole.inputs, whole.size  # a state may go on behind (q, q')
+        self.inputs, self.size, self.free = whole.inputs, whole.size, whole.free  # a state may go on behind (q, q')
         self.in_states = whole.in_states
         # One program: what stands under a sign is known by its number there.
         self.__dict__["_specialised"] = whole._specialised
@@ -290,11 +293,6 @@ class Frozen(Dynamics):
         if whole.in_states:
             self.form = whole.form
             self.__dict__["correction"], self.__dict__["pivots"] = whole.correction, whole.pivots
-
-    @property
-    def dimension(self) -> int:
-        """As many as in the whole."""
-        return self.whole.dimension
 
     def take(self, sides: Sequence[int]) -> None:
         """These sides from now on."""

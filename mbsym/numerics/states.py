@@ -83,11 +83,6 @@ class StateDynamics(Dynamics):
         super().__init__(scenario, ring if ring is not None else ring_of(self.described))
         self.form = SpeedForm(self.described, self.ring)
 
-    @property
-    def dimension(self) -> int:
-        """How many there are."""
-        return len(self.inputs) - 1
-
     @cached_property
     def _in_program(self) -> tuple[list[list[Node]], list[Node], list[Node]]:
         """M, f, s' in the specialised program."""

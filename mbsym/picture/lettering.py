@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, cos, dist, hypot, pi, sin
@@ -61,15 +62,16 @@ class Letters(Generic[T]):
 
     def placed(self) -> list[tuple[T, Place]]:
         """Each with the middle of its place; what would cover another one stands nowhere."""
-        found = []
+        found, lines = [], sorted(self.lines)
         for one in self._wanted:
-            place = self._best(one)
+            place = self._best(one, lines)
             if place is not None:
                 self._boxes.append((place, one.wide))
                 found.append((one.what, place))
         return found
 
-    def _best(self, one: _Wanted[T]) -> Place | None:
+    def _best(self, one: _Wanted[T], lines: Sequence[Place]) -> Place | None:
+        """``lines`` are those to be avoided, from left to right."""
         best, least = None, float("inf")
         size = hypot(*one.away)
         for out in FURTHER_OUT:
@@ -82,10 +84,9 @@ class Letters(Generic[T]):
                 place = (one.place[0] + reach * x, one.place[1] + reach * y) if one.near else one.place
                 if any(_meet(place, one.wide, other, wide) for other, wide in self._boxes):
                     continue
-                crossed = sum(
-                    abs(p - place[0]) < one.wide / 2 + 0.02 and abs(q - place[1]) < HIGH / 2 + 0.02
-                    for p, q in self.lines
-                )
+                half = one.wide / 2 + 0.02
+                near = slice(bisect_left(lines, (place[0] - half,)), bisect_left(lines, (place[0] + half,)))
+                crossed = sum(abs(q - place[1]) < HIGH / 2 + 0.02 for _, q in lines[near])
                 cost = 3 * crossed + 4 * out + (1 - cos(angle) if size else 0.0)
                 if cost < least - 1e-9:
                     best, least = place, cost

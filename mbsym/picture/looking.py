@@ -56,10 +56,10 @@ def azimuth_of(up: Sequence[float], towards: Sequence[float]) -> float:
     return degrees(atan2(dot(towards, second), dot(towards, first)))
 
 
-def projection(up: Sequence[float], azimuth: float, elevation: float) -> Rows:
+def projection(view: View) -> Rows:
     """Rows: to the right, upwards, towards the eye."""
-    first, second, third = basis(up)
-    a, e = radians(azimuth), radians(elevation)
+    first, second, third = basis(view.up)
+    a, e = radians(view.azimuth), radians(view.elevation)
     level = combined((cos(a), sin(a)), (first, second))
     return (
         combined((-sin(a), cos(a)), (first, second)),
@@ -150,12 +150,20 @@ def first_look(
     size = max(spread)
     turning = [max((_range(at(one, row)[k] for one in values) for row in axes), default=0.0) for k in range(3)]
     flat = [k for k in (2, 1, 0) if spread[k] <= SAME * size and turning[k] <= SAME]
-    if not flat or not size:
-        return View(AXES[2] if own is None else own, AZIMUTH, ELEVATION, False)
-    normal = AXES[flat[0]]
-    above = AXES[1 if flat[0] != 1 else 2]
-    if own is not None and abs(dot(normal, own)) <= 0.5:
-        above = own
+    return looked_at(own, flat[0] if flat and size else None)
+
+
+def looked_at(up: Numbers | None, flat: int | None) -> View:
+    """From where something is seen: along the axis (0, 1, 2) along which it is ``flat``, else from aside and above.
+
+    ``up`` is the direction away from gravity, None where there is none.
+    """
+    if flat is None:
+        return View(AXES[2] if up is None else up, AZIMUTH, ELEVATION, False)
+    normal = AXES[flat]
+    above = AXES[1 if flat != 1 else 2]
+    if up is not None and abs(dot(normal, up)) <= 0.5:
+        above = up
     if sum(cross(above, normal)) < 0:  # the axis that goes sideways is to go to the right
         normal = combined((-1.0,), (normal,))
     return View(above, azimuth_of(above, normal), 0.0, True)
@@ -201,8 +209,11 @@ def shapes(body: Body, values: Mapping[str, Fraction]) -> tuple[Outline, ...]:
     return tuple(found)
 
 
-def ellipsoid(body: Body, values: Mapping[str, Fraction]) -> Ellipsoid | None:
-    """The homogeneous ellipsoid with a body's mass and inertia; None where there is none, or it has no number."""
+def ellipsoid(body: Body, values: Mapping[str, Fraction], thickness: float = THICKNESS) -> Ellipsoid | None:
+    """The homogeneous ellipsoid with a body's mass and inertia; None where there is none, or it has no number.
+
+    No semi-axis is shorter than ``thickness`` times the longest.
+    """
     if body.inertia is None:
         return None
     try:
@@ -222,7 +233,7 @@ def ellipsoid(body: Body, values: Mapping[str, Fraction]) -> Ellipsoid | None:
     if not max(moments) > 0 or min(squares) < -ROUNDING * max(squares):
         return None
     half = [sqrt(max(x, 0.0) * (2.5 / mass if mass > 0 else 1.0)) for x in squares]
-    return Ellipsoid(_numbers([max(x, THICKNESS * max(half)) for x in half]), rows, mass > 0)
+    return Ellipsoid(_numbers([max(x, thickness * max(half)) for x in half]), rows, mass > 0)
 
 
 def turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Rows:
@@ -254,10 +265,6 @@ def principal(tensor: Sequence[Sequence[float]]) -> tuple[Numbers, Rows]:
     order = sorted(range(3), key=lambda k: a[k][k])
     first, second = _numbers(rows[order[0]]), _numbers(rows[order[1]])
     return _numbers([a[k][k] for k in order]), (first, second, cross(first, second))
-
-
-def _transposed(rows: list[list[float]]) -> list[list[float]]:
-    return [[row[k] for row in rows] for k in range(3)]
 
 
 def _rotated(rows: list[list[float]], p: int, q: int, c: float, s: float) -> list[list[float]]:

@@ -14,6 +14,7 @@ import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property, reduce
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
@@ -88,15 +89,26 @@ class PoseProgram:
         """
         values = [*(float(given[name]) for name in self.inputs), *self.constants]
         for operation, *operands in self.steps:
-            arguments = [values[k] for k in operands]
-            try:
-                does = _NUMBERS.get(operation)
-                values.append(self._looked_up(operation, arguments[0]) if does is None else does(*arguments))
-            except OverflowError:
-                values.append(math.inf)
-            except (ValueError, ZeroDivisionError):
-                values.append(math.nan)
+            values.append(self.done(operation, [values[k] for k in operands]))
         return values
+
+    def done(self, operation: str, arguments: Sequence[float]) -> float:
+        """One step."""
+        try:
+            does = _NUMBERS.get(operation)
+            return self._looked_up(operation, arguments[0]) if does is None else does(*arguments)
+        except OverflowError:
+            return math.inf
+        except (ValueError, ZeroDivisionError):
+            return math.nan
+
+    @cached_property
+    def depends(self) -> tuple[int, ...]:
+        """On which inputs each value depends: bit i for input i."""
+        bits = [1 << i for i in range(len(self.inputs))] + [0] * len(self.constants)
+        for _, *operands in self.steps:
+            bits.append(reduce(operator.or_, (bits[k] for k in operands)))
+        return tuple(bits)
 
     def _table(self, operation: str) -> Curve:
         return self.tables[int(operation.removeprefix("table "))]
@@ -105,6 +117,36 @@ class PoseProgram:
         from mbsym.algebra.lookup import looked_up
 
         return float(looked_up(self._table(operation), x))
+
+
+class Varied(Sequence[float]):
+    """The values of a program where some inputs are others: what depends on them is evaluated where it is asked for."""
+
+    def __init__(self, program: PoseProgram, values: Sequence[float], given: Mapping[str, float]) -> None:
+        self._program, self._values = program, values
+        places = {name: k for k, name in enumerate(program.inputs)}
+        self._new = {places[name]: float(value) for name, value in given.items() if name in places}
+        self._changed = sum(1 << k for k in self._new)
+        self._before = len(program.inputs) + len(program.constants)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __getitem__(self, place: Any) -> Any:
+        depends, steps, new = self._program.depends, self._program.steps, self._new
+        asked = [place]
+        while asked:
+            k = asked[-1]
+            if k in new or not depends[k] & self._changed:
+                asked.pop()
+                continue
+            operation, *operands = steps[k - self._before]
+            unknown = [j for j in operands if j not in new and depends[j] & self._changed]
+            if unknown:
+                asked += unknown
+            else:
+                new[k] = self._program.done(operation, [new.get(j, self._values[j]) for j in operands])
+        return new.get(place, self._values[place])
 
 
 def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -> tuple[PoseProgram, dict[int, int]]:

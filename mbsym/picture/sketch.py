@@ -37,6 +37,7 @@ from mbsym.picture import outlined
 from mbsym.picture.build import picture_at, start
 from mbsym.picture.lettering import Letters
 from mbsym.picture.looking import AXES, at, combined, dot, projection, unit
+from mbsym.picture.program import Varied
 from mbsym.picture.values import Acting, Drawn, Ellipsoid, Hinge, Measure, Numbers, Operands, Picture, Stretch
 
 #: The drawing fits into so many centimetres, letters apart.
@@ -149,8 +150,7 @@ class _Paper:
         self.found, self.system, self.unknown = found, system, unknown
         self.bodies = {body.name: body for body in found.bodies}
         self.own: dict[str, Body] = {body.name: body for body in system.bodies}
-        view = found.view
-        self.look = projection(view.up, view.azimuth, view.elevation)
+        self.look = projection(found.view)
         self.state = self._state()
         self.values = found.program.at(self.state)
         self.marks: list[Mark] = []
@@ -211,9 +211,9 @@ class _Paper:
         """How near it is to the eye."""
         return dot(self.look[2], place)
 
-    def varied(self, name: str, value: float) -> list[float]:
-        """The program's values with one coordinate at another value."""
-        return self.found.program.at(self.state | {name: value})
+    def varied(self, name: str, value: float, zero: Iterable[str] = ()) -> Varied:
+        """The program's values with one coordinate at another value, and some at zero."""
+        return Varied(self.found.program, self.values, dict.fromkeys(zero, 0.0) | {name: value})
 
     # --- scale ---
 
@@ -695,11 +695,10 @@ class _Paper:
         value = self.state[name]
         if abs(value) < 0.05 or abs(value) > 2 * pi:
             return False
-        program, here = self.found.program, self.point(body.origin)
-        held = self.state | dict.fromkeys(later, 0.0)
+        here, later = self.point(body.origin), tuple(later)
         arc = []
         for k in range(ARC):
-            values = program.at(held | {name: value * k / (ARC - 1)})
+            values = self.varied(name, value * k / (ARC - 1), zero=later)
             arm = combined((1.0, -1.0), (self.point(target, values), self.point(body.origin, values)))
             if not all(map(isfinite, arm)) or hypot(*arm) < 1e-9 * self.found.extent:
                 return False

@@ -18,7 +18,7 @@ from flint import fmpq_mat
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.mechanics.constraints.rows import Row, said_rows
+from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
 from mbsym.mechanics.motion import turning
 from mbsym.problems.displacements import Displacements
 from mbsym.problems.dissipation import Balance, EnergyLaw
@@ -30,9 +30,13 @@ MOST_ENTRIES = 4_000_000
 
 @dataclass(frozen=True)
 class ConstrainedBalance(Balance):
-    """The balance of the open tree, as far as it holds under constraints; ``about`` says what they leave free."""
+    """The balance of the open tree, as far as it holds under constraints; ``about`` says what they leave free.
+
+    ``following`` are rows on velocities that are proved to follow from others: they say nothing further.
+    """
 
     about: Reduction | None = None
+    following: frozenset[RowName] = frozenset()
 
     @cached_property
     def law(self) -> EnergyLaw:
@@ -156,9 +160,31 @@ class ConstrainedBalance(Balance):
         if not self.scene.motions:
             return None
         try:
-            return said_rows(self.scene)
+            rows = said_rows(self.scene)
+            kept = [row for row in rows if row.position is not None or row.name not in self.following]
+            return tuple(self._shortest(row, rows) for row in kept)
         except Failure:
             return None
+
+    def _shortest(self, row: Row, rows: Sequence[Row]) -> Row:
+        """A row, or one on velocities that says the same and is shorter: (1 + y^2) g = 0 knows y, g = 0 does not."""
+
+        def length(x: Row) -> int:
+            return len(x.velocity)
+
+        if row.position is not None:
+            return row
+        same = (x for x in rows if x.name in self.following and length(x) < length(row) and self._proportional(x, row))
+        return min(same, key=length, default=row)
+
+    def _proportional(self, one: Row, other: Row) -> bool:
+        """Whether b x = a y for velocity rows x and y: a, b are the partials in the first place where x has one."""
+        ring = self.ring
+        at = next((k for k, x in enumerate(one.partials) if not x.is_zero()), None)
+        if at is None or one.position is not None:
+            return False
+        left, right = ring.times(other.partials[at], one.velocity), ring.times(one.partials[at], other.velocity)
+        return bool(ring.reduce(left - right).is_zero())
 
     @cached_property
     def _homogeneous(self) -> bool:

@@ -19,7 +19,7 @@ from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, R
 from mbsym.problems.stability.word import Word
 
 #: Places that are told with the condition: the others are those of the list as a whole.
-_TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY)
+_TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY, Place.DRIFTS)
 
 
 #: A formula of so many characters that was shown before is written again, rather than its name.

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.message import counted
+from mbsym.expressions.tree import decimal_text
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
 from mbsym.report.documents import regressor as doc
@@ -15,6 +17,7 @@ from mbsym.report.documents.base import written
 from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
+    from mbsym.formulas.formula import Formula
     from mbsym.problems.regressor import Base, Regressor
 
 
@@ -27,12 +30,18 @@ def sum_of(one: Base) -> str:
     """``Jzz(one) + l**2 m(two)``."""
     told = named(one.kept)
     for other, factor in one.others:
-        text = str(factor)
+        text = _number(factor) or str(factor)
         sign, text = ("-", text[1:]) if text.startswith("-") and not set(text[1:]) & set("+-") else ("+", text)
         if set(text) & set("+-"):
             text = f"({text})"
         told += f" {sign} {named(other)}" if text == "1" else f" {sign} {text}*{named(other)}"
     return told
+
+
+def _number(factor: Formula) -> str:
+    """A decimal as descriptions write it, 0.2717 and not 2717/10000; "" for others: 1/2 may be a squared sine."""
+    number = Fraction(str(factor)) if factor.is_number else Fraction(0)
+    return "" if number.denominator % 5 else decimal_text(number)
 
 
 def regressor_json(found: Regressor) -> str:
@@ -68,7 +77,7 @@ def regressor_latex(found: Regressor) -> str:
     for k, one in enumerate(found.base, start=1):
         told = _symbol(one.kept, numbers)
         for other, factor in one.others:
-            text = factor.latex()
+            text = _number(factor) or factor.latex()
             if text == "1":
                 told += f" + {_symbol(other, numbers)}"
             elif text == "-1":

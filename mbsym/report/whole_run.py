@@ -10,6 +10,8 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext, supp
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
+from mbsym.expressions.message import Message
+
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
@@ -157,10 +159,15 @@ def _whole(made: Files) -> bool:
 
 def lost(analysis: Analysis, files: Iterable[Rendered]) -> list[tuple[str, NoResult]]:
     """What the program is at fault for: problems that ended in an internal error, files that cannot be written."""
-    failures = [(f"problem {number}", analysis.stage(number).failure) for number in analysis.problems]
-    found = [(where, failure) for where, failure in failures if failure is not None and failure.error is not None]
+    failures = [
+        (Message("problem [[number]]", number=number), analysis.stage(number).failure) for number in analysis.problems
+    ]
+    found: list[tuple[str, NoResult]] = [
+        (where, failure) for where, failure in failures if failure is not None and failure.error is not None
+    ]
     for file in files:
         if file.failure is not None:
-            found.append((f"{file.filename} cannot be written", file.failure))
-        found += [(f"{file.filename}: problem {number} cannot be written", why) for number, why in file.withheld]
+            found.append((Message("[[file]] cannot be written", file=file.filename), file.failure))
+        text = "[[file]]: problem [[number]] cannot be written"
+        found += [(Message(text, file=file.filename, number=number), why) for number, why in file.withheld]
     return found

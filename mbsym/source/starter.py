@@ -54,12 +54,13 @@ class NewBody:
 def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
     """A commented description in YAML of bodies with symbols for everything, and numbers so that it can be simulated.
 
-    Body k has mass m_k, its mass centre at the distance l_k below its joint, principal moments of inertia about the
-    mass centre, coordinates q_k1, q_k2, ...; the next body hangs at the distance d_k below the joint of its carrier.
+    Body k has mass m_k and, where it turns, its mass centre at the distance l_k below its joint and principal moments
+    of inertia about the mass centre; coordinates q_k1, q_k2, ...; the next body hangs at the distance d_k below the
+    joint of its carrier, on one that never turns at the joint itself.
     Raises ValueError for an unknown joint, or a carrier that does not stand before its body.
     """
     _check(bodies)
-    carriers = {body.carrier for body in bodies}
+    parameters = _parameters(bodies, gravity)
     return "\n".join(
         [
             "# A description for mbsym.  What follows # is a comment; every formula may hold symbols.",
@@ -70,8 +71,7 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
             "",
             "# Constants.  A sign lets more be decided: positive, nonnegative, negative, nonpositive, nonzero, real.",
             "parameters:",
-            *(line for number, body in enumerate(bodies, 1) for line in _parameters(number, body, carriers)),
-            *(["  g: {sign: positive, meaning: acceleration of gravity}"] if gravity else []),
+            *(f"  {name}: {{sign: positive, meaning: {quoted(one.meaning)}}}" for name, one in parameters.items()),
             "",
             "# Bodies in a tree, each attached to an earlier one (0: the inertial frame).  Vectors are written in axes",
             "# 1, 2, 3: a connection point in those of the carrier, a mass centre in those of the body.",
@@ -84,8 +84,8 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
             *(f"  {name}: 0" for name in _coordinates(bodies)),
             "",
             "# Numbers, for simulations only; results stay in symbols.",
-            f"values: {{{', '.join(_values(bodies, carriers, gravity))}}}",
-            f"initial: {{{', '.join(_initial(bodies))}}}",
+            f"values: {{{', '.join(f'{name}: {one.value}' for name, one in parameters.items())}}}",
+            f"initial: {{{', '.join(f'{name}: {value}' for name, value in _initial(bodies).items())}}}",
             "",
         ]
     )
@@ -101,21 +101,47 @@ def _check(bodies: Iterable[NewBody]) -> None:
         known.add(body.name)
 
 
-def _parameters(number: int, body: NewBody, carriers: set[str | None]) -> list[str]:
-    meanings = parameters_of(number, body)
-    if body.name in carriers:
-        meanings[f"d{number}"] = f"distance from the joint of {body.name} to the next one"
-    return [f"  {name}: {{sign: positive, meaning: {quoted(meaning)}}}" for name, meaning in meanings.items()]
+def _parameters(bodies: Sequence[NewBody], gravity: bool) -> dict[str, NewParameter]:
+    found: dict[str, NewParameter] = {}
+    carriers, turning = {body.carrier for body in bodies}, _turning(bodies)
+    for number, body in enumerate(bodies, 1):
+        found |= parameters_of(number, body, body.name in turning)
+        if body.name in carriers & turning:
+            found[f"d{number}"] = NewParameter(f"distance from the joint of {body.name} to the next one", "1")
+    return found | ({"g": NewParameter("acceleration of gravity", "9.81")} if gravity else {})
 
 
-def parameters_of(number: int, body: NewBody) -> dict[str, str]:
-    """Mass, distance to the mass centre, principal moments of inertia of a body: name -> meaning."""
-    moments = {f"J{number}{axis}": f"moment of inertia of {body.name}, axis {axis}" for axis in _AXES}
-    return {
-        f"m{number}": f"mass of {body.name}",
-        f"l{number}": f"distance from the joint of {body.name} to its mass centre",
-        **moments,
+@dataclass(frozen=True)
+class NewParameter:
+    """What a positive parameter of a new description means, and a number for simulations."""
+
+    meaning: str
+    value: str
+
+
+def parameters_of(number: int, body: NewBody, turns: bool = True) -> dict[str, NewParameter]:
+    """Mass, distance to the mass centre, principal moments of inertia of a body; of one that never turns its mass.
+
+    The numbers are those of a slender body of 1 kg, its mass centre 0.5 m below its joint.
+    """
+    mass = {f"m{number}": NewParameter(f"mass of {body.name}", "1")}
+    if not turns:
+        return mass
+    distance = NewParameter(f"distance from the joint of {body.name} to its mass centre", "0.5")
+    moments = {
+        f"J{number}{axis}": NewParameter(f"moment of inertia of {body.name}, axis {axis}", value)
+        for axis, value in zip(_AXES, ("0.08", "0.01", "0.08"), strict=True)
     }
+    return {**mass, f"l{number}": distance, **moments}
+
+
+def _turning(bodies: Sequence[NewBody]) -> set[str]:
+    """The bodies that turn, by themselves or with their carriers."""
+    found: set[str] = set()
+    for body in bodies:
+        if body.axes or body.carrier in found:
+            found.add(body.name)
+    return found
 
 
 def coordinates_of(number: int, body: NewBody) -> list[str]:
@@ -123,10 +149,11 @@ def coordinates_of(number: int, body: NewBody) -> list[str]:
     return [*_translations(number, body), *_rotations(number, body)]
 
 
-def on_its_joint(number: int, body: NewBody, below: str = "0") -> dict[str, Any]:
+def on_its_joint(number: int, body: NewBody, below: str = "0", turns: bool = True) -> dict[str, Any]:
     """The keys of a body from its joint on, which is ``below`` that of the carrier (0: where that is).
 
-    The mass centre is at the distance l below the joint, for a hinge about the second axis beside it.
+    The mass centre is at the distance l below the joint, for a hinge about the second axis beside it.  Of a body that
+    never turns neither this nor its moments of inertia are in the equations: it has a mass alone.
     """
     angles, point = _rotations(number, body), ["0", f"-{below}" if below != "0" else "0", "0"]
     for axis, name in zip(body.slides, _translations(number, body), strict=True):
@@ -136,15 +163,12 @@ def on_its_joint(number: int, body: NewBody, below: str = "0") -> dict[str, Any]
         found["rotation"] = {"axes": list(map(str, body.axes)), "angles": angles}
     if point != ["0", "0", "0"]:
         found["connection point"] = point
-    beside = body.axes == (2,)
-    return {
-        **found,
-        "mass": f"m{number}",
-        "mass centre": [f"l{number}", "0", "0"] if beside else ["0", f"-l{number}", "0"],
-        "inertia about": "mass centre",
-        "inertia": [f"J{number}{axis}" for axis in _AXES],
-        "coordinates": coordinates_of(number, body),
-    }
+    found["mass"] = f"m{number}"
+    if turns:
+        beside = body.axes == (2,)
+        found["mass centre"] = [f"l{number}", "0", "0"] if beside else ["0", f"-l{number}", "0"]
+        found["inertia about"], found["inertia"] = "mass centre", [f"J{number}{axis}" for axis in _AXES]
+    return {**found, "coordinates": coordinates_of(number, body)}
 
 
 def _rotations(number: int, body: NewBody) -> list[str]:
@@ -169,8 +193,9 @@ _COMMENTS = {
 def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
     told = f"{body.joint}: {JOINTS[body.joint][2]}"
     lines = [f"  - name: {quoted(body.name)}", f"    attached to: {quoted(body.carrier) if body.carrier else 0}"]
-    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier), None)
-    data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}")
+    turning = _turning(bodies)
+    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier and one.name in turning), None)
+    data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}", body.name in turning)
     comments = {**_COMMENTS, "rotation": told}
     if "rotation" not in data:
         lines[0] += f" # {told}"
@@ -193,18 +218,14 @@ def _gravity() -> list[str]:
     ]
 
 
-def _values(bodies: Sequence[NewBody], carriers: set[str | None], gravity: bool) -> list[str]:
-    """A slender body each: 1 kg, 0.5 m to its mass centre."""
-    values: list[str] = []
+def _initial(bodies: Sequence[NewBody]) -> dict[str, str]:
+    found: dict[str, str] = {}
     for number, body in enumerate(bodies, 1):
-        values += [f"m{number}: 1", f"l{number}: 0.5", f"J{number}1: 0.08", f"J{number}2: 0.01", f"J{number}3: 0.08"]
-        values += [f"d{number}: 1"] if body.name in carriers else []
-    return [*values, *(["g: 9.81"] if gravity else [])]
+        found |= initial_of(number, body)
+    return found
 
 
-def _initial(bodies: Sequence[NewBody]) -> list[str]:
-    return [
-        f"{name}: 0.{index % 9 + 1}"
-        for k, body in enumerate(bodies, 1)
-        for index, name in enumerate(_rotations(k, body), 1)
-    ]
+def initial_of(number: int, body: NewBody) -> dict[str, str]:
+    """Somewhere away from rest, so that a simulation moves: rotations, or translations where there are none."""
+    names = _rotations(number, body) or _translations(number, body)
+    return {name: f"0.{index % 9 + 1}" for index, name in enumerate(names, 1)}

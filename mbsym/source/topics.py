@@ -5,7 +5,7 @@ Everything comes from the table that the reader itself goes by, so that nothing 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from textwrap import wrap
 
 from mbsym.expressions.tree import SMOOTH
@@ -104,6 +104,30 @@ def _listed(table: Mapping[str, Key]) -> str:
         lines.append(f"    {key:<{width}}  {first}")
         lines += [" " * (width + 6) + other for other in others]
     return "\n".join(lines)
+
+
+def meanings(word: str) -> list[str]:
+    """What a word means as a key of a description, or a kind of load, constraint or claim; none for other words."""
+    named = [(one.title, one.keys) for one in records(DESCRIPTION)]
+    named += [("A claim", CLAIM)]
+    found = [f"{title}\n\n{_listed({word: keys[word]})}" for title, keys in named if word in keys]
+    for what, kinds in (("load", LOADS), ("constraint", CONSTRAINTS)):
+        if word in kinds:
+            kind = kinds[word]
+            keys = f"\n\n{_listed(kind.keys)}" if kind.keys else ""
+            found.append(f"A kind of {what}: {kind.meaning}{keys}")
+        for name, kind in kinds.items():
+            found += [f"A {what}, {name}\n\n{_listed({word: kind.keys[word]})}"] if word in kind.keys else []
+    if word in CLAIMS:
+        found.append(f"A kind of claim: {CLAIMS[word].meaning}{_keys(CLAIMS[word])}")
+    return found
+
+
+def words() -> list[str]:
+    """Every word that ``meanings`` knows."""
+    tables: list[Iterable[str]] = [*(one.keys for one in records(DESCRIPTION)), CLAIM, LOADS, CONSTRAINTS, CLAIMS]
+    tables += [kind.keys for kinds in (LOADS, CONSTRAINTS) for kind in kinds.values()]
+    return list(dict.fromkeys(word for table in tables for word in table))
 
 
 _SEE = (

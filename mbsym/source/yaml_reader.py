@@ -103,11 +103,11 @@ def _problem(error: yaml.MarkedYAMLError) -> str:
 def _hint(error: yaml.MarkedYAMLError) -> str | None:
     problem = error.problem or ""
     if "cannot start any token" in problem:
-        return "put values with special characters in quotes"
+        return Message("put values with special characters in quotes")
     if "mapping values are not allowed" in problem:
-        return "is the line indented as its neighbours are? A value with ': ' in it needs quotes"
+        return Message("is the line indented as its neighbours are? A value with ': ' in it needs quotes")
     if "expected ',' or" in problem or "did not find expected" in problem:
-        return "look for a missing bracket, comma or quote here or above"
+        return Message("look for a missing bracket, comma or quote here or above")
     return None
 
 

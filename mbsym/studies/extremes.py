@@ -49,6 +49,8 @@ class Request:
 
 
 def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+    if request.sequences and "as_json" in typed:
+        yield Unfit("--json", "conflicting-options", "there is no JSON of a ranking", "leave --sequences out")
     if request.sequences and system.constraints:
         told = Message(
             "sequences are ranked without constraints, and here are some ([[which]])", which=listed(system.constraints)
@@ -159,5 +161,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 STUDY = Study(
     "extremes", Request, derive, answer, refusal, unfit,
     constraints=True, timed=True, writes=lambda typed: "sequences" not in typed,
-    out=Folder(quiet="Print only the sentences.", unwritten=None),
+    out=Folder("Print only the sentences.", json=True),
 )  # fmt: skip

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
 from mbsym.studies.request import Stateless
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, no_program, refused
+from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.numerics.orbits.floquet import Judged
@@ -66,4 +66,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return no_program(error, asked, request)
 
 
-STUDY = Study("floquet", Request, floquet.derive, answer, refusal, constraints=True)
+STUDY = Study("floquet", Request, floquet.derive, answer, refusal, constraints=True, out=Folder(json=True))

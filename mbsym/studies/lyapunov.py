@@ -10,7 +10,7 @@ from mbsym.expressions.message import Message
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Number, Values, Whole, duration
-from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watch, no_program
+from mbsym.studies.study import Answer, Asked, Exit, Folder, Refusal, Study, Unfit, Watch, no_program
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -108,4 +108,4 @@ def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
     return Answer(lines, files, (*notes, f"ended early: {found.ended}"), code)
 
 
-STUDY = Study("lyapunov", Request, lyapunov.derive, answer, refusal, unfit, constraints=True)
+STUDY = Study("lyapunov", Request, lyapunov.derive, answer, refusal, unfit, constraints=True, out=Folder(json=True))

@@ -10,7 +10,7 @@ from mbsym.expressions.message import Message
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
 from mbsym.studies.request import Named, Number, Values, Word
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Unfit, Watch, no_program, refused
+from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.model.system import System
@@ -101,4 +101,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return not_closed(error, asked.system) or no_program(error, asked, request)
 
 
-STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit, constraints=True)
+STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit, constraints=True, out=Folder(json=True))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbsym.studies.described import public
-from mbsym.studies.study import Answer, Asked, Refusal, Study, Watch, failed
+from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Watch, failed
 
 if TYPE_CHECKING:
     from mbsym.problems.regressor import Regressor
@@ -63,4 +63,4 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "no base parameters")
 
 
-STUDY = Study("regressor", Request, regressor.derive, answer, refusal, held=False)
+STUDY = Study("regressor", Request, regressor.derive, answer, refusal, held=False, out=Folder(json=True))

@@ -138,13 +138,14 @@ class Folder:
     """Files go into a folder; ``quiet``: whether there is an option to print nothing else, and what of.
 
     ``unwritten``: what is said of these options where nothing is written, ``alone``: of ``--json`` where something is;
-    ``help`` of ``--out``.
+    ``help`` of ``--out``; ``json``: whether one of the files is JSON, which ``--json`` prints.
     """
 
     quiet: str | None = "Print only what went wrong."
     unwritten: tuple[str, str, str] | None = None
     help: str = "Folder.  [default: reports/NAME]"
     alone: tuple[str, str, str] | None = None
+    json: bool = False
 
 
 @dataclass(frozen=True)

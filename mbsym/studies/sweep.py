@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.studies.request import (
     ExactSettings,
     Formula,
@@ -269,12 +269,12 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
         from mbsym.batch.cluster import NoCluster
 
         if isinstance(error, NoCluster):
-            return Refusal(f"--cluster: {error}", Exit.BAD_INPUT)
+            return Refusal(joined(("--cluster", error.reason), ": "), Exit.BAD_INPUT)
     return no_program(error, asked, request)
 
 
 STUDY = Study(
     "sweep", Request, derive, answer, refusal, unfit,
-    constraints=True, matrices=True, out=Folder(quiet="Print nothing but complaints."),
+    constraints=True, matrices=True, out=Folder("Print nothing but complaints.", json=True),
     bodies=lambda texts: str(texts["measure"]).strip().startswith(MOTION),
 )  # fmt: skip

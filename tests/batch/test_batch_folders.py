@@ -109,7 +109,7 @@ def test_a_file_keeps_its_folder_when_others_are_left_out(tmp_path: Path, monkey
     [
         (["empty"], "there are no descriptions here (1 other file was passed over)"),
         (["nothing"], "no such file or folder"),
-        (["in", "--filter", "x*"], "no description fits --filter x* (1 description is there)"),
+        (["in", "--filter", "x*"], "no description fits --filter x* (descriptions there: 1)"),
         (["in", "--shard", "4/3"], "--shard: error[bad-shard]"),
         (["in", "--jobs", "0"], "--jobs: error[bad-number]"),
         (["in", "--timeout", "soon"], "--timeout: error[bad-number]"),

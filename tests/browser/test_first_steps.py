@@ -9,6 +9,9 @@ import windows
 import yaml
 from windows import Window, serving
 
+from mbsym.analysis import Analysis
+from mbsym.source import read
+
 browser, opened = windows.browser, windows.opened
 CART = """mbsym: 1
 name: Cart
@@ -55,6 +58,8 @@ def test_unknown_names_are_settled_where_they_stand_and_a_deleted_file_is_writte
         assert form.get_by_role("button", name="M is a coordinate").count() == 0
         form.get_by_role("button", name="M is a parameter", exact=True).click()
         window.told("M is a parameter now")
+        # With a number it can be simulated at once; only what is a mass itself is known to be positive.
+        assert yaml.safe_load(window.text)["parameters"]["M"] == {"sign": "real", "value": 1}
         window.form_of("System")
         form.get_by_label("Add a load", exact=True).click()
         dialog = window.page.locator("dialog[open]")
@@ -70,7 +75,7 @@ def test_unknown_names_are_settled_where_they_stand_and_a_deleted_file_is_writte
         assert window.page.locator("#saved").inner_text() == "not saved"
         window.page.get_by_role("button", name="Save it again", exact=True).click()
         window.told("saved")
-        assert yaml.safe_load(path.read_bytes())["parameters"] == {"M": "real"}
+        assert yaml.safe_load(path.read_bytes())["parameters"] == {"M": {"sign": "real", "value": 1}}
 
 
 def test_an_empty_page_offers_three_ways_to_begin_and_nothing_red(
@@ -110,3 +115,39 @@ def test_an_empty_list_of_bodies_beside_other_mistakes_is_one(tmp_path: Path, op
     with serving(path) as address:
         window = opened(address, path)
         assert any("there are no bodies" in words for words in window.complaints)
+
+
+def test_a_cart_with_a_pole_and_a_spring_is_built_by_clicks(tmp_path: Path, opened: Callable[..., Window]) -> None:
+    """From an empty page: a slider, a hinge on it, a spring; the equations are those of the book, and it moves.
+
+    (m1 + m2) x'' + m2 l2 (q'' cos q - q'^2 sin q) + k x = 0, (m2 l2^2 + J23) q'' + m2 l2 (x'' cos q + g sin q) = 0.
+    """
+    path = tmp_path / "cart.yaml"
+    with serving(path) as address:
+        window = opened(address, path)
+        page = window.page
+        page.get_by_role("button").filter(has_text="slider").click()
+        window.told("")
+        page.get_by_role("button", name="Add body", exact=True).click()
+        window.in_dialog("pole")
+        window.form_of("System")
+        page.locator("#form").get_by_label("Add a load", exact=True).click()
+        dialog = page.locator("dialog[open]")
+        dialog.get_by_label("Kind", exact=True).select_option(label="spring: on a coordinate")
+        dialog.get_by_label("coordinate", exact=True).fill("x11")
+        dialog.get_by_label("stiffness", exact=True).fill("k")
+        dialog.get_by_role("button", name="Add", exact=True).click()
+        page.get_by_role("button", name="k is a parameter", exact=True).click()
+        window.told("k is a parameter now")
+        assert window.complaints == []
+        page.get_by_role("button", name="Simulate", exact=True).click()
+        page.get_by_role("button", name="Pause", exact=True).wait_for()
+        system, _ = read(window.text, "cart.yaml")
+    assert system is not None
+    assert {one.name: one.sign for one in system.parameters}["k"] == "positive"
+    equations = Analysis(system).equations
+    assert equations is not None
+    mass, force = equations.mass_matrix, equations.forcing
+    assert [str(mass[i, j]) for i, j in ((0, 0), (0, 1), (1, 1))] == ["m1 + m2", "m2*l2*cos(q21)", "m2*l2**2 + J23"]
+    assert str(force[1]) == "-g*m2*l2*sin(q21)"
+    assert "k*x11" in str(force[0])

@@ -37,6 +37,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sources with the packages that the lock file names, in a folder of their own."""
     folder = tmp_path_factory.mktemp("page") / "editor"
     shutil.copytree(ROOT / "editor", folder, ignore=shutil.ignore_patterns("node_modules"))
+    shutil.copytree(ROOT / "templates" / "html", folder.parent / "templates" / "html")
     command = ["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--prefer-offline"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     if done.returncode != 0 and any(

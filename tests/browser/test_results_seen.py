@@ -42,6 +42,15 @@ def test_results_fill_are_copied_and_follow_the_text(served: tuple[str, Path], o
     # A pendulum at rest below, by hand: m l^2 x'' + m g l x = 0, stable.
     assert page.locator("#result-summary .good").first.inner_text() == "stable"
 
+    # The drawing is seen as in a report: lines with their colour, heads of arrows, letters.
+    drawing = page.locator("#result-summary svg.drawing")
+    strokes = "all => all.map(e => getComputedStyle(e).stroke + getComputedStyle(e).markerEnd)"
+    lines = drawing.locator("path:not(.tip)").evaluate_all(strokes)
+    assert lines
+    assert not [line for line in lines if line.startswith("none")]
+    assert any("#tip" in line for line in lines)
+    assert "x" in drawing.locator("foreignObject math").all_text_contents()
+
     # Nothing of the description is an element or a handler here.
     page.locator("#result-system > summary").click()
     page.locator("#result-system").get_by_text("</td><script>alert(5)</script>", exact=True).wait_for()

@@ -16,10 +16,11 @@ from mbsym import loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
+from mbsym.problems.stability.word import Word
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files
-from mbsym_cli.explain import TOPICS
+from mbsym_cli.explain import TOPICS, explanations, known_words
 from mbsym_cli.main import COMMANDS, main
 
 ROOT = Path(__file__).parents[2]
@@ -259,6 +260,22 @@ def test_explain_lists_and_refuses() -> None:
     assert mbsym("explain").stdout.count("\n") == len(PROBLEMS) + len(TOPICS)
     assert mbsym("explain", "99").exit_code == 2
     assert "did you mean claims" in mbsym("explain", "clams").stderr
+
+
+def test_explain_knows_every_command_verdict_theorem_and_key() -> None:
+    """Each says something of its own; verdicts what the page on the theory says of them."""
+    for word in known_words():
+        assert all(text.strip() for text in explanations(word)), word
+        assert explanations(word), word
+    told = (Path(__file__).parents[2] / "docs" / "theory.md").read_text(encoding="utf-8")
+    for verdict in Word:
+        text = explanations(verdict)[0].removeprefix("A verdict of problem 6: ").removesuffix(".")
+        assert f"| {verdict} | {text} |" in told
+    assert {*COMMANDS, *Word, *BODY, *LOADS, *CONSTRAINTS, *CLAIMS} <= set(known_words())
+    assert "D > 0" in mbsym("explain", "kelvin-chetaev").stdout
+    assert "Usage: mbsym floquet" in mbsym("explain", "floquet").stdout
+    assert mbsym("explain", "gyroscopically", "stabilised", "only").exit_code == 0
+    assert "did you mean inertia about?" in mbsym("explain", "inertia abut").stderr
 
 
 @pytest.mark.parametrize("topic", TOPICS)

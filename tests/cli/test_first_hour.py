@@ -57,6 +57,17 @@ def test_a_body_on_any_joint_runs(joint: str) -> None:
     assert not [check for check in analysis.checks if check.failed]
 
 
+def test_what_never_turns_has_a_mass_alone() -> None:
+    """No moment of a cart is in (m1 + m2) x'' + ..., and none is asked for; of a slider on its pole there is."""
+    text = starter("Cart", [NewBody("cart", None, "slider"), NewBody("pole", "cart"), NewBody("tip", "pole", "slider")])
+    system, _ = read(text, "cart.yaml")
+    assert system is not None
+    given = {one.name for one in system.parameters}
+    assert {"l1", "J11", "d1"}.isdisjoint(given)
+    assert {"m1", "m2", "d2", "l2", "J23", "m3", "l3", "J33"} <= given
+    assert not [check for check in Analysis(system).checks if check.failed]
+
+
 def test_a_starter_refuses_what_is_no_tree() -> None:
     with pytest.raises(ValueError, match="joint"):
         starter("x", [NewBody("a", None, "weld")])

@@ -270,7 +270,7 @@ def test_the_command_checks_a_description_against_kept_results(tmp_path: Path) -
     assert changed.exit_code == 1
     assert "linear form K [theta1, theta1]: B - A = 2*l*P" in changed.output
     assert command("diff", file, kept).exit_code == 0
-    told = json.loads(command("diff", file, kept / "results.json", "--check", "--format", "json").output)
+    told = json.loads(command("diff", file, kept / "results.json", "--check", "--json").output)
     assert list(Draft202012Validator(schema("diff")).iter_errors(told)) == []
     assert told["systems"][0]["changes"][0]["difference"] == "2*l*P"
 

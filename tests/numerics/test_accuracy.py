@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +17,10 @@ import mbsym
 from mbsym.numerics.accuracy import Against, ErrorEstimate, Lacking, NoEstimate, contradicted
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.landing import Landing
+from mbsym.numerics.methods.runge_kutta import RungeKutta
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.methods.tableaux import DOP853
 from mbsym.numerics.trade.comparison import Comparison, Difference
 from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
 from mbsym.simulation import Simulation
@@ -179,10 +185,14 @@ def test_a_planted_comparison_of_a_run_with_itself_is_found(monkeypatch: pytest.
         "mbsym.numerics.accuracy._candidates",
         lambda dynamics, found, method, scalar, completed: iter([(method, scalar, found.setting)]),
     )
-    run = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
-    final, _ = true_errors(run, kepler)
-    assert isinstance(run.error, ErrorEstimate)
-    assert not final / 2 <= run.error.final
+    witnessed = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
+    final, _ = true_errors(witnessed, kepler)
+    assert isinstance(witnessed.error, ErrorEstimate)
+    assert final / 2 <= witnessed.error.final, "the witness finds it out"
+    monkeypatch.setattr("mbsym.numerics.accuracy.WITNESSES", {})
+    alone = mbsym.simulate(CASES / "kepler.yaml", 6, tolerance=1e-7, estimate=True)
+    assert isinstance(alone.error, ErrorEstimate)
+    assert not final / 2 <= alone.error.final
 
 
 def test_without_finer_arithmetic_a_coarse_run_is_judged_by_a_finer_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -318,3 +328,17 @@ def test_an_estimate_that_nobody_asked_for_is_cut_and_told_so(monkeypatch: pytes
     assert run.error == NoEstimate(Lacking.CUT)
     assert "--estimate" in " ".join(error_lines(run.error))
     assert isinstance(mbsym.simulate(system, 1, estimate=True).error, ErrorEstimate)
+
+
+@needs_extended
+def test_a_method_that_is_wrong_itself_is_not_judged_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: weights of dop853 that are too large, so that all its runs solve x' = (1 + 1e-5) f and agree."""
+    wrong = replace(DOP853, weights=tuple(weight * Fraction(100_001, 100_000) for weight in DOP853.weights))
+    monkeypatch.setitem(METHODS, "dop853", Landing(RungeKutta(wrong)))
+    run = mbsym.simulate(CASES / "osc.yaml", 6, method="dop853", estimate=True)
+    final, worst = true_errors(run, oscillator)
+    assert worst > 1e-6
+    assert isinstance(run.error, ErrorEstimate)
+    assert run.error.against.method != "dop853"
+    assert final / 2 <= run.error.final <= 2 * final
+    assert worst / 2 <= run.error.largest <= 2 * worst

@@ -17,7 +17,9 @@ from mbsym.formulas.mathml import mathml_names
 from mbsym.picture import lettering, picture
 from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
+from mbsym.picture.program import Varied
 from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
+from mbsym.picture.values import View
 from mbsym.report.html.writer import Writer as HtmlWriter
 from mbsym.report.language import Language
 from mbsym.report.latex.labels import Form, Labels
@@ -221,7 +223,7 @@ def test_outlines_by_hand() -> None:
     oval, edges = outlined("ellipsoid", (3.0, 1.0, 2.0), (0.0, 0.0, 0.0), FRONT, FRONT)
     assert [(x / 3) ** 2 + y**2 for x, y in oval] == pytest.approx([1.0] * len(oval))
     assert len(edges) == 2, "the ellipse in the plane of the paper is the outline itself"
-    diagonal = projection((0.0, 0.0, 1.0), 45.0, np.degrees(np.arctan(1 / sqrt(2))))
+    diagonal = projection(View((0.0, 0.0, 1.0), 45.0, np.degrees(np.arctan(1 / sqrt(2))), False))
     hexagon, edges = outlined("box", (1.0, 1.0, 1.0), (0.0, 0.0, 0.0), FRONT, diagonal)
     assert len(hexagon) == 6
     assert [dist(x, (0.0, 0.0)) for x in hexagon] == pytest.approx([sqrt(2 / 3)] * 6)
@@ -280,6 +282,11 @@ def test_every_system_is_drawn_on_its_paper(path: Path) -> None:
     state = {name: 0.1 * (k + 1) for k, name in enumerate(program.inputs)}
     with_it = [float(x) for x in program.evaluate(state)]
     assert program.at(state) == pytest.approx(with_it, nan_ok=True, rel=1e-9, abs=1e-9)
+    for name in program.inputs:
+        some = Varied(program, program.at(state), {name: 0.7, "no input": 1.0})
+        whole = program.at(state | {name: 0.7})
+        backwards = [some[k] for k in reversed(range(len(some)))]
+        assert backwards[::-1] == pytest.approx(whole, nan_ok=True, rel=0, abs=0)
 
 
 def test_letters_upon_each_other_are_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from bench.chains import chain, description
 
 import mbsym
+from mbsym.algebra.failures import NoClosedForm
 
 ARM = """
 mbsym: 1
@@ -84,6 +86,20 @@ def test_the_hint_at_a_motion_stays_short() -> None:
     hint = mbsym.loads(text, problems=(4,)).stage(4).failure.hint
     assert hint == "add for example  motion: {q1: 0}; what is left out is 0 at rest"
     assert mbsym.loads(text + "motion: {q1: 0}\n", problems=(4,)).stage(4).failure is None
+
+
+def test_rest_of_a_long_chain_is_called_a_motion() -> None:
+    """It hangs at rest whatever its length; expanded to second order it outgrew the budget."""
+    analysis = mbsym.loads(description(chain(100, full=False)), problems=(4,))
+    assert analysis.stage(4).failure.hint == "add for example  motion: {q1: 0}; what is left out is 0 at rest"
+
+
+def test_where_the_budget_ends_nothing_is_said_of_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    def out_of_terms(*_: object, **__: object) -> None:
+        raise NoClosedForm("too many terms")
+
+    monkeypatch.setattr("mbsym.analysis.approximation.linearisation.quadratised", out_of_terms)
+    assert mbsym.loads(FALL, problems=(4,)).stage(4).failure.hint == "say with 'motion:' about which one"
 
 
 FALL = "mbsym: 1\nname: fall\nbodies:\n  - {name: p, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}\n"

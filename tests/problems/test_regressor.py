@@ -23,7 +23,7 @@ from mbsym.mechanics.newton_euler import Accelerations, residuals
 from mbsym.mechanics.regressor import KINDS, Standard, column
 from mbsym.problems import regressor as problem
 from mbsym.problems.regressor import regressor
-from mbsym.report.regressor_files import sum_of
+from mbsym.report.regressor_files import regressor_latex, sum_of
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
@@ -295,3 +295,21 @@ def test_the_command_writes_what_its_schema_says(tmp_path: Path) -> None:
         own.regressor([0, 0], [0, 0], [0, 0], {})
     again = mbsym.regressor(SHIPPED / "double-pendulum.yaml")
     assert [sum_of(one) for one in again.base][2] == "hy(first rod) - l1*m(second rod)"
+
+
+def test_numbers_are_told_as_they_are_typed() -> None:
+    """Two links, the second at a from the first: J + a^2 m and h + a m (Khalil & Dombre), a = 0.2717 and 1/3."""
+    text = """
+mbsym: 1
+name: arm
+bodies:
+  - {name: a, rotation: {axes: [3], angles: [p]}, mass centre: [0.1, 0, 0], mass: 1}
+  - {name: b, attached to: a, connection point: [LENGTH, 0, 0], rotation: {axes: [3], angles: [q]},
+     mass centre: [1, 0, 0], mass: 1}
+loads: [{uniform gravity: {vector: [0, -9.81, 0]}}]
+"""
+    typed = regressor(mbsym.loads(text.replace("LENGTH", "0.2717")).scene)
+    assert [sum_of(one) for one in typed.base][:2] == ["Jzz(a) + 0.07382089*m(b)", "hx(a) + 0.2717*m(b)"]
+    assert "0.2717" in regressor_latex(typed)
+    third = regressor(mbsym.loads(text.replace("LENGTH", "1/3")).scene)
+    assert [sum_of(one) for one in third.base][:2] == ["Jzz(a) + 1/9*m(b)", "hx(a) + 1/3*m(b)"]

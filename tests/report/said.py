@@ -21,6 +21,12 @@ LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "problems")
 BEFORE = {"refused": 0, "failed": 1}
 #: Where among the arguments of a complaint about an option the message stands; a hint follows.
 COMPLAINTS = {"complain": 2, "complain_whole": 3}
+#: What prints words, and asks for an answer.
+PRINTS = ("print", "echo", "prompt", "confirm")
+#: Commands that are about no description: nobody says in which language they are read.
+OF_NO_DESCRIPTION = tuple(
+    f"cli/{name}.py" for name in ("console", "edit", "examples", "explain", "lsp", "main", "process")
+)
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,12 @@ class Module(ast.NodeVisitor):
             self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
         elif name == "Unfit" and self.name.startswith("studies/"):
             self._words(self._unpacked(node.args)[2:4], node)
+        elif name == "Unfit" and self.name == "report/runs/earlier_run.py":
+            self._words(node.args[:1], node)
+        elif isinstance(node.func, ast.Name) and name == "complain" and self.name.startswith("cli/"):
+            self._words(node.args[1:2], node)
+        elif name in PRINTS and self.name.startswith("cli/") and self.name not in OF_NO_DESCRIPTION:
+            self.open += [f"{self._at(node)}: {ast.unparse(one)}" for one in node.args if _in_english(one)]
         elif name in COMPLAINTS and self.name.startswith("cli/"):
             first = COMPLAINTS[name]
             self._words(self._unpacked(node.args)[first : first + 2], node)
@@ -150,6 +162,25 @@ def _of_names(node: ast.JoinedStr) -> bool:
     """Whether nothing but names and signs is put together: ``a: 0.1``."""
     parts = [x.value for x in node.values if isinstance(x, ast.Constant)]
     return not has_words(" ".join(map(str, parts))) and any(not str(x).isspace() for x in parts)
+
+
+def _in_english(node: ast.expr) -> bool:
+    """Whether words stand in it that nobody says in another language."""
+    if isinstance(node, ast.Call):
+        if re.match(r"(\w+\.)*say\b|speaking\b", ast.unparse(node.func)):
+            return False
+        return any(map(_in_english, node.args))
+    if isinstance(node, ast.JoinedStr):
+        return any(map(_in_english, node.values))
+    if isinstance(node, ast.FormattedValue):
+        return _in_english(node.value)
+    if isinstance(node, ast.BinOp):
+        return _in_english(node.left) or _in_english(node.right)
+    if isinstance(node, ast.IfExp):
+        return _in_english(node.body) or _in_english(node.orelse)
+    commands = r"mbsym \w*|^--\w+|\.wrapped|bold|dim|cyan|red"
+    words = re.sub(commands, "", node.value) if isinstance(node, ast.Constant) and isinstance(node.value, str) else ""
+    return has_words(words)
 
 
 @cache

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import cache
 from io import BytesIO
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -93,12 +94,21 @@ def test_ellipsoids_have_the_inertia_of_their_bodies() -> None:
 
 @pytest.mark.parametrize("name", ["double-pendulum", "satellite", "tethered-satellites"])
 def test_the_eye_has_right_handed_axes(name: str) -> None:
-    up, azimuth, elevation = view(scene(name, 4.0).positions)
-    look = np.array(projection(up, azimuth, elevation))
+    look = np.array(projection(view(scene(name, 4.0).positions)))
     assert np.allclose(look @ look.T, np.eye(3))
     assert np.linalg.det(look) == pytest.approx(1)
     if scene(name, 4.0).positions.plane is not None:
         assert abs(look[2, scene(name, 4.0).positions.plane - 1]) == pytest.approx(1)
+
+
+@pytest.mark.parametrize(("plane", "up"), [(1, 3), (1, 2), (2, 3), (2, 1), (3, 2), (3, 1)])
+def test_a_plane_motion_is_seen_with_its_sideways_axis_to_the_right(plane: int, up: int) -> None:
+    axes = np.eye(3)
+    found: Any = SimpleNamespace(up=tuple(axes[up - 1]), plane=plane)
+    right, upwards, towards = np.array(projection(view(found)))
+    assert right == pytest.approx(axes[6 - plane - up - 1], abs=1e-12)
+    assert upwards == pytest.approx(axes[up - 1], abs=1e-12)
+    assert abs(towards) == pytest.approx(axes[plane - 1], abs=1e-12)
 
 
 def test_the_page_says_what_was_integrated() -> None:

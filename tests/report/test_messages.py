@@ -21,6 +21,7 @@ import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
 from mbsym.analysis.stages import NoResult
+from mbsym.batch import outcome
 from mbsym.expressions.message import GAP, Counted, Message
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
@@ -44,6 +45,7 @@ from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
+from mbsym.source.starter import JOINTS
 from mbsym_cli.simulate.options import APART, NEEDED
 from tests.report import said
 
@@ -159,6 +161,25 @@ def unfit(name):
     assert [one.text for one in module.texts] == ["nobody says this"]
 
 
+def test_words_that_a_command_prints_in_english_are_found() -> None:
+    """Negative control: a complaint, a line and a question of a command, and reasons against an earlier run."""
+    command = """
+complain(file, f"{count} descriptions are lost")
+complain(file, "nobody says this", say)
+print(f"{printable(file)}: nobody reads this")
+click.prompt("how many", default=1)
+click.echo(f"  mbsym run {file}")
+print(f"{printable(file)}: {say(text)}")
+"""
+    module = said.Module("cli/planted.py", ast.parse(command), frozenset())
+    assert [place.partition(": ")[0] for place in module.open] == [f"cli/planted.py:{k}" for k in (2, 4, 5)]
+    assert [one.text for one in module.texts] == ["nobody says this"]
+    reason = 'raise Unfit("it is lost")\nraise Unfit(f"{name} is lost")'
+    module = said.Module("report/runs/earlier_run.py", ast.parse(reason), frozenset())
+    assert [one.text for one in module.texts] == ["it is lost"]
+    assert len(module.open) == 1
+
+
 @pytest.mark.parametrize("name", OTHERS)
 def test_why_options_of_a_run_do_not_go_together_is_translated(name: str) -> None:
     known = {english for _, english in messages(name)}
@@ -197,6 +218,7 @@ def words_of_types() -> set[str]:
     found |= {BUT_TURNED, BUT_ZERO, *REASONS.values()}
     found |= {*_WORDS.values(), *_LESS_GRAVITY.values(), *_FROM_ORIGIN.values()}
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
+    found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
     found |= {one for one in because.values() if isinstance(one, str)}
     found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
     found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}

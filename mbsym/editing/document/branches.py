@@ -11,7 +11,7 @@ from mbsym.editing.document.words import body_renamed, pattern, places, words_of
 from mbsym.editing.document.written import Data, Path, Refused, Written, child, node_at, spelled_path
 from mbsym.source.bodies import is_body_name
 from mbsym.source.placed import Mapping, Node, Scalar, Sequence
-from mbsym.source.starter import JOINTS, NewBody, coordinates_of, on_its_joint, parameters_of
+from mbsym.source.starter import JOINTS, NewBody, NewParameter, coordinates_of, initial_of, on_its_joint, parameters_of
 
 
 def bodies_of(found: Written) -> list[tuple[str, str]]:
@@ -57,7 +57,7 @@ def _parent(found: Written, operation: Json) -> str:
 def add_body(found: Written, operation: Json) -> Meant:
     """A new body; with a ``joint`` (of ``starter.JOINTS``; its ``axis``) its coordinates, mass and moments, in symbols.
 
-    Its parameters are positive, of value 1, and have names that nothing else has.
+    Its parameters are positive, with the values of ``starter``, and have names that nothing else has.
     """
     name, parent = _new_name(found, word_of(operation, "name")), _parent(found, operation)
     data: dict[str, Data] = {"name": name, "attached to": parent}
@@ -72,22 +72,42 @@ def add_body(found: Written, operation: Json) -> Meant:
         for index, _ in enumerate(bodies_of(found)):
             known |= set(own_names(found, found.tree, index))
     number = next(k for k in count(path[1] + 1) if known.isdisjoint(_names(k, body)))
-    meanings = parameters_of(number, body)
-    below = "0" if parent == "0" else f"d{number}"
-    if parent != "0":
-        meanings[below] = f"distance from the joint of {parent} to that of {name}"
-    data |= on_its_joint(number, body, below)
-    return Meant([*_declared(found, meanings), setting(found, path, data, None)], select=path)
+    carried = _turns(found, parent)
+    turns = bool(body.axes) or carried
+    parameters = parameters_of(number, body, turns)
+    below = f"d{number}" if carried else "0"
+    if carried:
+        parameters[below] = NewParameter(f"distance from the joint of {parent} to that of {name}", "1")
+    data |= on_its_joint(number, body, below, turns)
+    moved = initial_of(number, body)
+    begun = [setting(found, ("initial", one), value, None) for one, value in moved.items()] if _begins(found) else []
+    return Meant([*_declared(found, parameters), setting(found, path, data, None), *begun], select=path)
+
+
+def _begins(found: Written) -> bool:
+    """Whether coordinates of an initial state are listed one by one."""
+    return isinstance(node_at(found.tree, ("initial",)), Mapping)
+
+
+def _turns(found: Written, name: str) -> bool:
+    """Whether a body has a rotation, or one of those that carry it."""
+    parents = dict(bodies_of(found))
+    while name in parents:
+        path = ("bodies", index_of(found, name))
+        if any(node_at(found.tree, (*path, key)) is not None for key in ("rotation", "orientation")):
+            return True
+        name = parents.pop(name)
+    return False
 
 
 def _names(number: int, body: NewBody) -> set[str]:
     return {*parameters_of(number, body), *coordinates_of(number, body), f"d{number}"}
 
 
-def _declared(found: Written, meanings: dict[str, str]) -> list[Primitive]:
-    """Parameters with these names and meanings, positive, of value 1."""
+def _declared(found: Written, parameters: dict[str, NewParameter]) -> list[Primitive]:
+    """These parameters, positive."""
     new: dict[str, Data] = {
-        name: {"sign": "positive", "value": "1", "meaning": meaning} for name, meaning in meanings.items()
+        name: {"sign": "positive", "value": one.value, "meaning": one.meaning} for name, one in parameters.items()
     }
     node = None if found.tree is None else child(found.tree, "parameters")
     if isinstance(node, Mapping) and node.entries:

@@ -258,11 +258,6 @@ class WithParameters(Dynamics):
         self.inputs = base.inputs
         self.__dict__["constraints"] = base.constraints
 
-    @property
-    def dimension(self) -> int:
-        """Of (q, q', p)."""
-        return len(self.inputs) - 1
-
     @cached_property
     def _specialised(self) -> Specialised:
         return self.base._specialised

@@ -142,11 +142,6 @@ class Parametrised(Dynamics):
 class ParametrisedStates(Parametrised, StateDynamics):
     """The same in declared variables."""
 
-    @property
-    def dimension(self) -> int:
-        """Positions and speeds."""
-        return len(self.inputs) - 1 - len(self.free)
-
 
 def parametrised(
     scenario: Scenario,

@@ -87,11 +87,6 @@ class Variational(Dynamics):
         # Its flow leaves constraints alone: states and columns are led back where a passage ends (``flow``).
         self.__dict__["constraints"] = None
 
-    @property
-    def dimension(self) -> int:
-        """Of the state and all columns."""
-        return len(self.inputs) - 1
-
     @cached_property
     def _specialised(self) -> Specialised:
         return bound(self.scenario)

@@ -90,11 +90,6 @@ class Propagated(Dynamics):
         # Rates keep what is on constraints there, and nothing leads back: small errors of steps are no matter here.
         self.__dict__["constraints"] = None
 
-    @property
-    def dimension(self) -> int:
-        """Of x~ and y."""
-        return len(self.inputs) - 1
-
     @cached_property
     def pivots(self) -> Code:
         """Those of the simpler model's matrices."""

@@ -136,7 +136,7 @@ def _need(region: Region, claim: Claim) -> Need:
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
         if not everywhere and (beyond or wanted.relation == "!="):
-            everywhere = region.on_border(pieces[-1], list(map(_closed, pieces[:-1]))).word is Word.UNSTABLE
+            everywhere = region.on_border(pieces[-1], list(map(_closed, pieces[:-1]))).counted is Word.UNSTABLE
         exponential = region.exponential(wanted, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
@@ -283,7 +283,7 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
         return None
     if not equality:
         return _told(result, EXACT, what)
-    needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).word is Word.UNSTABLE
+    needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).counted is Word.UNSTABLE
     outcome = EXACT if needed else BORDERS
     label, whose, note = what.data
     assert isinstance(note, str)
@@ -370,7 +370,7 @@ def _on_borders(region: Region, conditions: Sequence[Inequality]) -> list[Verdic
     for one in conditions:
         if one.relation == ">=":
             found.append(region.on_border(one, [other for other in conditions if other is not one]))
-            if not found[-1].stable:
+            if not found[-1].counted.stable:
                 return None
     return found
 

@@ -266,10 +266,10 @@ class Trials:
                 continue
             asked += 1
             verdict = self.verdict(trial)
-            if verdict.word.open and looked < LOOKED_INTO and (trial.special or verdict.word not in words):
+            if verdict.word.open and looked < LOOKED_INTO and (trial.special or verdict.counted not in words):
                 looked += 1
                 verdict = self.looked_into(trial)
-            if verdict.word not in words:
+            if verdict.counted not in words:
                 continue
             equal = any(gap == 0 for _, gap, _ in gaps)
             border = equal and on_border(trial.values)

@@ -121,7 +121,7 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     found: list[Solution] = []
     families: list[EquilibriumFamily] = []
     complete = True
-    uncounted = False
+    uncounted: list[bool] = []
     covering = charts(first, described_by)
     rank = _rank(first) if first.rows else None
     limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
@@ -132,7 +132,7 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
             if families and chart.restrictions:
                 search.points = _off_families(search, within, limits)
         _counted_once(searches)
-        uncounted = uncounted or any(rank is not None and x.case.rank < rank and x.leaves_none for x in searches)
+        uncounted += [x.is_real for x in searches if rank is not None and x.case.rank < rank and x.leaves_none]
         for search in searches:
             found += search.points
             families += search.families
@@ -159,13 +159,17 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
         )
         remarks.append(Message(text, count=Counted(len(lost), "relative equilibrium", "relative equilibria")))
     elif uncounted:
-        remarks.append(
-            Message(
-                "there are positions, perhaps not real ones, in which the constraints are singular (a cusp, links in "
-                "line, branches of motion that meet): a rest there that only unbounded reactions would hold is not "
-                "counted"
-            )
+        text = (
+            "there are positions in which the constraints are singular (a cusp, links in line, branches of motion that "
+            "meet): a rest there that only unbounded reactions would hold is not counted"
         )
+        if not any(uncounted):
+            text = (
+                "there may be positions in which the constraints are singular, but no real one was found (a cusp, "
+                "links in line, branches of motion that meet): a rest there that only unbounded reactions would hold "
+                "is not counted"
+            )
+        remarks.append(Message(text))
     if families and covering[0].joints:
         remarks.append(
             Message("families are listed in coordinates: one set of configurations may be described more than once")
@@ -196,11 +200,13 @@ def _rank(first: Rest) -> int:
 
 def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> Iterator[_ChartSearch]:
     """One search for each case of the rank of constraints."""
-    left_out = []
+    left_out, real = [], list[tuple[Polynomials, Polynomials]]()
 
     def possible(zero: Polynomials, nonzero: Polynomials) -> bool:
         probe = _ChartSearch(chart, within, limits, Case((), zero, nonzero))
         there = probe.exists()
+        if probe.is_real:
+            real.append((zero, nonzero))
         if there and probe.reason:  # of equations that are not algebraic only the case of all others is searched
             left_out.append(probe)
             return False
@@ -208,6 +214,7 @@ def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> 
 
     for case in cases(chart.found, possible):
         search = _ChartSearch(chart, within, limits, case, rank)
+        search.is_real = (case.zero, case.nonzero) in real
         if left_out:
             search.leaves_out_singular()
         yield search
@@ -267,7 +274,12 @@ def _described(group: Sequence[Solution]) -> RelativeEquilibrium:
 
 
 class _ChartSearch(SearchInBoxes):
-    """Conditions, solutions and verdicts in one set of coordinates."""
+    """Conditions, solutions and verdicts in one set of coordinates.
+
+    ``is_real``: positions of its case are known, by exact real solutions; else such that exist may all be complex.
+    """
+
+    is_real = False
 
     def run(self) -> None:
         self._conditions()
@@ -307,8 +319,10 @@ class _ChartSearch(SearchInBoxes):
         """Whether there may be a solution: False is proved."""
         self._conditions()
         if self.impossible or not self.equations or self.reason:
+            self.is_real = not self.impossible and not self.reason
             return not self.impossible
-        _, result = self._solutions()
+        table, result = self._solutions()
+        self.is_real = any(map(table.roots_agree, (*result.points, *(x.sample for x in result.families))))
         return bool(result.points or result.families or result.unfinished)
 
     def _solutions(self) -> tuple[Unknowns, Solutions]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
@@ -13,7 +13,7 @@ from flint import ctx, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
-from mbsym.algebra.matrices import ScalarMatrix, added, echelon, null_vectors, skew, symmetric
+from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, symmetric
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
@@ -29,7 +29,7 @@ from mbsym.problems.relative_equilibria.place import PRECISION, Place
 from mbsym.problems.stability.bundle import Element, Extremum, NumberField, in_one_coordinate, of_fourth_order
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.linear_form import LinearSystem, null_rows
+from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
@@ -291,12 +291,14 @@ def _rational_verdict(
 ) -> Verdict:
     """By exact counting of roots; ``spin`` is the rate of a steady spin that may be turned in space.
 
-    ``exact``: there are no terms of higher order; where positions are a line of equilibria that is not made use of,
-    as nobody knows here whether they are for all parameters.
+    ``exact``: there are no terms of higher order.
     """
     turned = () if spin is None else (_CONSTANTS.constant(1), _CONSTANTS.constant(spin * spin))
     made = [tuple(tuple(_CONSTANTS.constant(x) for x in row) for row in rows_) for rows_ in parts]
-    system = LinearSystem(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned, names=names)
-    if exact and not null_rows(added(system.K, system.N), lambda x: x):
-        system = replace(system, exact=True)
+    system = LinearSystem(
+        *(made[0], made[1], made[2], made[3], made[4], conservative, cyclic, turned),
+        names=names,
+        exact=exact,
+        free=True,
+    )
     return verdict_at(system, {}).verdict

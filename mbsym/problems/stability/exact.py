@@ -35,6 +35,7 @@ from mbsym.problems.stability.verdict import (
     displaced,
     drifting,
     exactly,
+    here,
     off_the_leaf,
     only_drifts,
     undecided,
@@ -47,10 +48,10 @@ from mbsym.problems.stability.word import Word
 # polynomial): every solution is bounded, the motion is stable.  A Jordan block on the axis: some grow like a power of
 # t.
 #
-# Where everything may be shifted along directions V, (K + N) V = 0 for all parameters alike (two masses with a spring
-# between them), the shifted motions are motions, too: as with cyclic coordinates what is asked for then is the rest, q
-# modulo V and all velocities, and A acts on it.  There zero roots that are semisimple belong to velocities along V, or
-# to momenta, that stay what they are.  This is the same in all coordinates x = S y.
+# Where everything may be shifted along directions V, (K + N) V = 0 (two masses with a spring between them, a body whose
+# spring has the stiffness 0), the shifted motions are motions, too: as with cyclic coordinates what is asked for then
+# is the rest, q modulo V and all velocities, and A acts on it.  There zero roots that are semisimple belong to
+# velocities along V, or to momenta, that stay what they are.  This is the same in all coordinates x = S y.
 #
 # Source: F. R. Gantmacher, The Theory of Matrices, volume II, chapter XIV, section 3.
 
@@ -58,15 +59,15 @@ from mbsym.problems.stability.word import Word
 def decided(open_verdict: Verdict, first_order: Numbers, shifts: Numbers | None, shown: frozenset[Fact]) -> Verdict:
     """The verdict on x' = A x, A = ``first_order`` (coordinates first), that another one leaves open.
 
-    ``shifts``: rows v with A (v, 0) = 0, along which a drift does not count; None where there are none.  ``shown`` are
-    facts about the matrices of second order, for the reasons.
+    ``shifts``: rows v with A (v, 0) = 0, along which a drift does not count; None where all coordinates count.
+    ``shown`` are facts about the matrices of second order, for the reasons.
     """
     facts = shown | {Fact.EXACTLY_LINEAR}
     roots = counted(first_order.charpoly())
     if roots.right:
         return open_verdict
     calm = is_calm(first_order)
-    if shifts is None:
+    if shifts is None or not shifts.nrows():
         return bounded(facts) if calm else growing(first_order)
     rest = across(first_order, shifts)
     if not rest.nrows():
@@ -90,16 +91,24 @@ def growing(first_order: Numbers) -> Verdict:
     Modulo all v with A (v, 0) = 0 no block is left then.
     """
     verdict = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
-    still = _still(first_order)
+    still = kernel_of(first_order)
     drifts = still.nrows() and is_calm(across(first_order, still))
     return only_drifts(verdict) if drifts else verdict
 
 
-def _still(first_order: Numbers) -> Numbers:
-    """Rows v that span what A makes zero: positions that may be shifted, as x' = 0 there."""
-    n, zero = first_order.nrows(), first_order[0, 0] * 0
-    found = null_vectors(Operators(zero, zero + 1), reduced_rows(first_order), n)
-    return type(first_order)(len(found), n, [x for v in found for x in v])
+def kernel_of(*matrices: Numbers) -> Numbers:
+    """Rows v that span what all the matrices A make zero, A v = 0: positions that may be shifted, of x' = A x."""
+    kind, n, zero = type(matrices[0]), matrices[0].nrows(), matrices[0][0, 0] * 0
+    rows = [row for matrix in matrices for row in matrix.tolist()]
+    stacked = kind(len(rows), n, [x for row in rows for x in row])
+    found = null_vectors(Operators(zero, zero + 1), reduced_rows(stacked), n)
+    return kind(len(found), n, [x for v in found for x in v])
+
+
+def _independent(kind: Any, rows: Sequence[Sequence[Any]]) -> Numbers:
+    """Rows that span the same, none too many."""
+    kept = list(reduced_rows(kind(len(rows), len(rows[0]), [x for row in rows for x in row])).values())
+    return kind(len(kept), len(rows[0]), [x for row in kept for x in row])
 
 
 def is_calm(first_order: Numbers) -> bool:
@@ -214,9 +223,12 @@ def _of_linear_equations(system: LinearSystem, at: ExactPoint, found: Verdict) -
         return exactly(found, Ground.IDLE not in found.laid and is_calm(a))
     if system.leaf and a.charpoly().coeffs()[0] == 0:  # what changes the relations acts like a constant force
         return found
-    shifts = evaluated(system.shifts, at) if system.shifts else None
+    always = evaluated(system.shifts, at).tolist() if system.shifts else []
+    there = kernel_of(k + n, g).tolist() if system.free else []
+    shifts = _independent(type(m), [*always, *there]) if always or there else None
     facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system.conservative)
-    return exactly(decided(found, a, shifts, facts))
+    verdict = exactly(decided(found, a, shifts, facts))
+    return here(verdict) if shifts is not None and shifts.nrows() > len(always) else verdict
 
 
 def _energy_besides(system: LinearSystem, at: ExactPoint, d: Numbers, n: Numbers) -> frozenset[Fact]:

@@ -51,7 +51,9 @@ class LinearSystem:
     the coordinates are not those of the description but combinations of them.
 
     ``exact``: the equations of motion are these linear ones, without terms of higher order.  ``shifts`` are then the
-    directions along which everything may be shifted, for all parameters alike: rows v with (K + N) v = 0.
+    directions along which everything may be shifted, for all parameters alike: rows v with (K + N) v = 0; a drift along
+    them is told apart, as that of cyclic coordinates is.  ``free``: that is so, too, along those of some parameters
+    along which no velocities act on others, (K + N) v = 0 and G v = 0, as coordinates that are cyclic there.
     """
 
     M: Matrix
@@ -69,6 +71,7 @@ class LinearSystem:
     basis: Basis | None = None
     exact: bool = False
     shifts: Matrix = ()
+    free: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.M)

@@ -351,7 +351,7 @@ class Prepared:
 
     def exactly(self, exact: bool) -> LinearSystem:
         """The system, as one without terms of higher order if ``exact``."""
-        return replace(self.system, exact=exact, shifts=self._shifts if exact else ())
+        return replace(self.system, exact=exact, shifts=self._shifts if exact else (), free=self.drifts)
 
     @cached_property
     def theory(self) -> Theory:

@@ -65,6 +65,8 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
         turned=system.turned,
         names=tuple(system.name(i) for i in rest),
         exact=system.exact,
+        # through G another momentum acts like a constant force: where nothing holds, that is more than a drift
+        free=system.free and all(system.G[i][c] == 0 for i in rest for c in cyclic),
     )
 
 

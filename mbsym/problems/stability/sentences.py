@@ -85,8 +85,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     ),
     Because.LINEAR_DRIFTS: (
         "Nothing grows but a uniform drift along displacements that change no equation: coordinates count here, but "
-        "for that drift the motion is stable; of bodies just that is said where coordinates are cyclic at all values "
-        "of the parameters."
+        "for that drift the motion is stable; of bodies just that is said."
     ),
     Because.LINEAR_GYROSCOPIC: (
         "K is not positive definite: gyroscopic forces alone stabilise the motion, and complete dissipation would make "

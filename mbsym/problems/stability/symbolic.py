@@ -103,6 +103,7 @@ from mbsym.problems.stability.verdict import (
     depends,
     drifting,
     exactly,
+    here,
     only_drifts,
     undecided,
 )
@@ -393,7 +394,11 @@ def _place_of_equality(
         return None
     if verdict.word is Word.UNSTABLE:
         return Place.BESIDE
-    return Place.EQUALITY if verdict.stable and Flaw.CYCLIC not in verdict.flawed else None
+    if not verdict.stable:
+        return None
+    if Flaw.HERE in verdict.flawed:
+        return Place.DRIFTS
+    return Place.EQUALITY if Flaw.CYCLIC not in verdict.flawed or verdict.counted is Word.STABLE else None
 
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:
@@ -676,16 +681,18 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
     null = null_rows(places, known.normalised)
     if not null:
         return ()
+    drifts = system.shifts or (system.free and _no_gyroscopic(system, null, known))
     wanted = _wanted(found)
     decays = found.variable == "lambda" and bool(found.factors)
     calm = bounded({Fact.EXACTLY_LINEAR})
     if found.zero_power == len(null):
-        if decays and system.shifts:
+        if decays and drifts:
             calm = drifting(_all_left(False), constant_momenta=False)
         return Case(wanted, (), calm), *unstable
     still = all(known.normalised(dot(row, v)) == 0 for row in rates for v in null)
-    if system.shifts and still and found.zero_power == 2 * len(null):
+    if drifts and still and found.zero_power == 2 * len(null):
         calm = drifting(_all_left(False) if decays else calm) if found.factors else coasting()
+        calm = here(calm) if len(null) > len(system.shifts) else calm
         return Case(wanted, (), calm), *unstable
     if system.shifts:
         return ()
@@ -694,6 +701,10 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
         return (Case(wanted, (), only_drifts(grows)),)
     letter = "A" if system.of_first_order else "K + N"
     return (Case(_of_full_rank(places, letter, len(null), known), (), grows),)
+
+
+def _no_gyroscopic(system: LinearSystem, rows: Matrix, known: Signs) -> bool:
+    return all(known.normalised(dot(row, v)) == 0 for row in system.G for v in rows)
 
 
 def _wanted(found: Theory) -> tuple[Requirement, ...]:

@@ -48,6 +48,7 @@ class Flaw(Enum):
     """What keeps a verdict from being better."""
 
     CYCLIC = auto()  # cyclic coordinates may drift
+    HERE = auto()  # some of those that drift are cyclic at these parameters only; the word is the same
     TURNED = auto()  # a turned spin does not come back
     STEADY = auto()  # a disturbed steady motion may tend to another one of its family
     INDEFINITE = auto()  # what is bounded without dissipation is so by gyroscopic forces: K is not positive definite
@@ -116,6 +117,7 @@ PLAIN: Mapping[Word, tuple[Set[Ground], Set[Flaw]]] = {
 
 def row_of(grounds: Set[Ground], flaws: Set[Flaw]) -> Row:
     """The row of the table."""
+    flaws = flaws - {Flaw.HERE}
     return next(
         row for row in LAW if row.wanted <= flaws <= row.allowed and (row.ground is None or row.ground in grounds)
     )
@@ -183,6 +185,13 @@ class Verdict:
     def stable(self) -> bool:
         """Whether stability of the motion itself is proved, be it asymptotic, or but for drift or rotation."""
         return self.word.stable
+
+    @property
+    def counted(self) -> Word:
+        """The word where coordinates count that are cyclic at these parameters only: their drift is instability."""
+        if Flaw.HERE in self.flawed:
+            return Word.UNSTABLE
+        return Word.STABLE if Flaw.CYCLIC in self.flawed and Ground.LINEAR in self.laid else self.word
 
     @property
     def coordinates_singular(self) -> bool:
@@ -307,6 +316,13 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     reasons = dict.fromkeys([*(without.get(reason, reason) for reason in told), Reason(drift)])
     said = _farthest(set(reasons))
     return Verdict(row.word, names, tuple(one for one in reasons if one in said), tuple(grounds.items()), flaws)
+
+
+def here(verdict: Verdict) -> Verdict:
+    """The verdict on exactly linear equations of which drifting coordinates are cyclic at these parameters only."""
+    if Flaw.CYCLIC not in verdict.flawed or Ground.LINEAR in verdict.laid:
+        return verdict
+    return replace(verdict, flaws=verdict.flawed | {Flaw.HERE})
 
 
 #: What is true of a whole only if it is of every part that is not stable.

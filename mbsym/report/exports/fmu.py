@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.names import free_name, injective
 from mbsym.model.system import System
@@ -119,7 +120,9 @@ def compiler() -> str | None:
 
 def remark() -> str:
     """What is to be said of an FMU that was made here, or ""."""
-    return "" if compiler() else "no C compiler was found: the FMU holds its sources, and no binary for this platform"
+    if compiler():
+        return ""
+    return Message("no C compiler was found: the FMU holds its sources, and no binary for this platform")
 
 
 def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:

@@ -11,7 +11,7 @@ which turn with it.  A body with shapes is drawn by their outlines instead.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,7 +23,8 @@ from mbsym.numerics.between import accelerations
 from mbsym.numerics.body_motion import BodyMotions, body_motions
 from mbsym.numerics.positions import JOINT, ORIGIN, Positions, positions
 from mbsym.numerics.scenario import Scenario
-from mbsym.picture.looking import azimuth_of
+from mbsym.picture.looking import ellipsoid, looked_at
+from mbsym.picture.values import View
 from mbsym.report.outlines import Outline, outlines
 from mbsym.simulation import Simulation
 
@@ -123,9 +124,9 @@ def _ellipsoids(
     picture = extent(places)
     found = []
     for k, name in enumerate(bodies.names):
-        own = _semi_axes(scenario, name)
-        if own is not None and name not in shaped:
-            sizes, directions = own
+        own = ellipsoid(scenario.system.body(name), scenario.parameters, thickness=0.0)
+        if own is not None and own.true_size and name not in shaped:
+            sizes, directions = np.array(own.half_axes), np.array(own.axes)
             if np.sort(sizes)[1] < THIN * np.max(sizes):
                 continue  # a rod is a line already
             found.append((name, k, sizes, directions))
@@ -148,31 +149,6 @@ def extent(places: Positions) -> float:
     return places.size or 1.0
 
 
-def _semi_axes(scenario: Scenario, name: str) -> tuple[Any, Any] | None:
-    """(semi-axes, principal directions in rows, in the body's axes); None where a body has no such ellipsoid."""
-    from mbsym.numerics.scenario import exact
-
-    body = scenario.system.body(name)
-    if body.inertia is None:
-        return None
-    try:
-        values = scenario.parameters
-        mass = float(exact(body.mass, values))
-        tensor = np.array([[float(exact(x, values)) for x in row] for row in body.inertia.tensor])
-        centre = np.array([float(exact(x, values)) for x in body.mass_centre])
-    except Failure:  # an inertia that varies with the coordinates
-        return None
-    if body.inertia.about == "joint":
-        tensor = tensor - mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
-    moments, columns = np.linalg.eigh(tensor)
-    if not (mass > 0 and np.all(np.isfinite(moments)) and np.max(moments) > 0):
-        return None
-    squares = 2.5 / mass * (np.sum(moments) - 2 * moments)
-    if np.min(squares) < -1e-6 * np.max(squares):
-        return None  # no body has this inertia
-    return np.sqrt(np.maximum(squares, 0.0)), columns.T
-
-
 def moving_points(found: Positions) -> list[tuple[int, str]]:
     """(point, body) whose paths are drawn: mass centres, or the tips of axes where nothing else moves."""
     moving = set(found.moving(range(len(found.points))))
@@ -188,12 +164,6 @@ def dots(found: Positions) -> tuple[list[int], list[int]]:
     return joints, centres
 
 
-def view(found: Positions) -> tuple[Sequence[float], float, float]:
-    """(up, azimuth, elevation) in degrees of the first look: into the plane of a plane motion, else from above."""
-    up = found.up if found.up is not None else (0.0, 1.0, 0.0) if found.plane == 3 else (0.0, 0.0, 1.0)
-    if found.plane is not None:
-        normal = np.eye(3)[found.plane - 1]
-        if abs(float(np.dot(normal, up))) > 0.5:
-            up = tuple(np.eye(3)[1 if found.plane != 2 else 2])
-        return up, azimuth_of(up, normal), 0.0
-    return up, 35.0, 22.0
+def view(found: Positions) -> View:
+    """The first look: into the plane of a plane motion, else from above."""
+    return looked_at(found.up, None if found.plane is None else found.plane - 1)

@@ -36,7 +36,7 @@ def animation_gif(found: Animation) -> bytes:
 class _Picture:
     def __init__(self, found: Animation) -> None:
         self.found = found
-        look = np.array(projection(*view(found.positions)))
+        look = np.array(projection(view(found.positions)))
         self.flat = np.einsum("ij,pjm->pim", look, found.positions.places)
         self.bodies = [(np.einsum("ij,pjm->pim", look, item.axes), look @ item.places) for item in found.ellipsoids]
         self.look = look

@@ -77,7 +77,7 @@ def drift_of(run: Simulation) -> Message:
 def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
     """What the template of the moving system needs."""
     drawn = found.positions
-    up, azimuth, elevation = view(drawn)
+    seen = view(drawn)
     middle, size = _room(found)
     joints, centres = dots(drawn)
     end = float(found.times[-1])
@@ -95,9 +95,9 @@ def motion(found: Animation, sentences: tuple[str, ...]) -> Motion:
         "joints": joints,
         "centres": centres,
         "trails": moving_points(drawn),
-        "basis": [list(direction) for direction in basis(up)],
-        "azimuth": azimuth,
-        "elevation": elevation,
+        "basis": [list(direction) for direction in basis(seen.up)],
+        "azimuth": seen.azimuth,
+        "elevation": seen.elevation,
         "middle": middle,
         "size": size,
         "rate": rate,

@@ -8,7 +8,7 @@ besides.  ``mass-centres`` shows the places over time.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil, cos, floor, log10, radians, sin
+from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,8 @@ from mbsym.expressions.message import Message
 from mbsym.model.quantities import length_unit, time_unit, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
+from mbsym.picture.looking import projection
+from mbsym.report.figures.animation import view
 from mbsym.report.figures.drawing import pictures, spoken, thinned, title_of
 from mbsym.report.outlines import Outline
 from mbsym.report.unit_text import labelled, pretty
@@ -31,8 +33,8 @@ _TIME = LinearSegmentedColormap.from_list("time", ["#c3d3e8", "#5b87bd", "#173a6
 #: Paths, by body (or by axis).
 _PATHS = ("#b3372f", "#2e8b57", "#d9822b", "#8e5ea2", "#17a2b8", "#7a5c3e", "#c2528b", "#6b8e23")
 
-#: About so many snapshots; azimuth and elevation of the eye in degrees.
-SNAPSHOTS, AZIMUTH, ELEVATION = 12, 35.0, 22.0
+#: About so many snapshots.
+SNAPSHOTS = 12
 
 #: At most so many snapshots show shapes: lines of more of them hide each other.
 OUTLINED = 6
@@ -67,25 +69,7 @@ class _View:
 
     def __init__(self, found: Positions) -> None:
         self.plane = found.plane
-        up = _nearest_axis(found.up)
-        if self.plane is not None:
-            normal = np.eye(3)[self.plane - 1]
-            if up is None or up @ normal:
-                up = np.eye(3)[2 if self.plane != 3 else 1]
-            self.up, self.towards = up, normal
-            self.right = np.cross(self.up, self.towards)
-            # Axes that point left read badly: look from the other side.
-            if np.sum(self.right) < 0 and self.plane != 3:
-                self.right, self.towards = -self.right, -self.towards
-            return
-        up = np.eye(3)[2] if up is None else up
-        first = np.roll(np.abs(up), 1)
-        second = np.cross(up, first)
-        around, raised = radians(AZIMUTH), radians(ELEVATION)
-        level = cos(around) * first + sin(around) * second
-        self.right = -sin(around) * first + cos(around) * second
-        self.towards = cos(raised) * level + sin(raised) * up
-        self.up = -sin(raised) * level + cos(raised) * up
+        self.right, self.up, self.towards = np.array(projection(view(found)))
 
     def __call__(self, places: Any) -> Any:
         """(..., 3, m) -> (..., 2, m) on the paper."""
@@ -93,13 +77,6 @@ class _View:
 
     def depth(self, places: Any) -> Any:
         return np.tensordot(places, self.towards, (-2, 0))
-
-
-def _nearest_axis(up: tuple[float, float, float] | None) -> Any:
-    """The direction as a signed axis; None where it is none or lies between axes."""
-    if up is None or max(map(abs, up)) < 1 - 1e-9:
-        return None
-    return np.round(np.array(up))
 
 
 def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:

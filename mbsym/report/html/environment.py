@@ -23,7 +23,7 @@ def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[
     ``scripts`` names the files of that folder that the page runs.  An unknown name in a template is an error.
     """
     folder = templates() / "html"
-    style = (folder / "page.css").read_text(encoding="utf-8")
+    style = "".join((folder / name).read_text(encoding="utf-8") for name in ("page.css", "pictures.css"))
     code = [(folder / name).read_text(encoding="utf-8") for name in scripts]
     values |= {
         "style": Markup(style),

@@ -1,4 +1,4 @@
-"""What stands in a description, in LaTeX as it stands there: expressions and loads."""
+"""What stands in a description, in LaTeX as it stands there: expressions, tables."""
 
 from __future__ import annotations
 
@@ -6,16 +6,11 @@ import re
 from collections.abc import Sequence
 from fractions import Fraction
 
-from mbsym.expressions.rates import without_velocity
-from mbsym.expressions.table import Table
-from mbsym.expressions.tree import KINKED, Call, Expression, Name, Negative, Number, Operation, children
+from mbsym.expressions.tree import KINKED, Call, Expression, Number
 from mbsym.formulas.latex import LatexNames, Symbol
-from mbsym.model.speeds import OMEGA
+from mbsym.report.tree_printer import CALLED, TreePrinter
 
 # --- expressions ---
-
-_FUNCTIONS = {"atan": "arctan", "log": "ln"}
-
 
 #: A table of more points is shown by so many of its first and of its last.
 MOST_LISTED, SHOWN_FIRST = 100, 4
@@ -29,34 +24,17 @@ def call(function: str, argument: str) -> str:
         return f"\\lvert {argument} \\rvert"
     if function in KINKED:
         return f"\\operatorname{{{function}}}({argument})"
-    return f"\\{_FUNCTIONS.get(function, function)}({argument})"
+    return f"\\{CALLED.get(function, function)}({argument})"
 
 
-def expression(value: Expression, names: LatexNames | _WithSpins) -> str:
+def expression(value: Expression, names: LatexNames) -> str:
     """An expression of the description, as it stands."""
-    return _expression(value, names)[0]
-
-
-class _WithSpins:
-    """The names of a system, and the components of the angular velocity of a body: (omega_2)_1."""
-
-    def __init__(self, names: LatexNames, number: int) -> None:
-        self.names = names
-        self.spins = {name: Symbol(f"(\\omega_{{{number}}})", str(k)) for k, name in enumerate(OMEGA, start=1)}
-
-    def __getitem__(self, name: str) -> Symbol:
-        return self.spins.get(name) or self.names[name]
+    return _Latex(names)(value)
 
 
 def speed_form(form: Expression, names: LatexNames, number: int) -> str:
     """What a speed is made of; ``number`` is that of its body."""
-    return expression(form, _WithSpins(names, number))
-
-
-def speed(name: str, names: LatexNames) -> str:
-    """A speed by name: p, or a dotted coordinate."""
-    plain = without_velocity(name)
-    return str(names[name]) if plain == name else names[plain].accented("dot")
+    return _Latex.of_body(names, number)(form)
 
 
 def points(value: Sequence[tuple[Fraction, Fraction]], names: LatexNames) -> str:
@@ -72,60 +50,39 @@ def shown_points(value: Sequence[tuple[Fraction, Fraction]]) -> Sequence[tuple[F
     return value if len(value) <= MOST_LISTED else (*value[:SHOWN_FIRST], *value[-SHOWN_FIRST:])
 
 
-def _expression(value: Expression, names: LatexNames | _WithSpins) -> tuple[str, int]:
-    """(text, precedence): 1 sum, 2 product, 3 power, 4 atom."""
-    match value:
-        case Number(number):
-            return _number(number), 4 if number >= 0 else 1
-        case Name("pi"):
-            return r"\pi", 4
-        case Name(name):
-            base, _, dots = name.rpartition("_")
-            if dots in ("dot", "ddot") and base:
-                return names[base].accented(dots), 4
-            return str(names[name]), 4
-        case Negative(operand):
-            return "-" + _bracketed(operand, 2, names), 1
-        case Call(function, argument, table=Table()):
-            written = function.replace("_", "\\_")
-            return f"\\operatorname{{{written}}}({expression(argument, names)})", 4
-        case Call(function):
-            return call(function, ", ".join(expression(one, names) for one in children(value))), 4
-        case Operation("/", left, right):
-            return f"\\frac{{{expression(left, names)}}}{{{expression(right, names)}}}", 4
-        case Operation("**", base, exponent):
-            # Of a fraction the exponent would seem to belong to the denominator.
-            return f"{_bracketed(base, 5 if _is_fraction(base) else 4, names)}^{{{expression(exponent, names)}}}", 3
-        case Operation("*", Negative(left), right):
-            return _expression(Negative(Operation("*", left, right)), names)
-        case Operation("*", left, right):
-            return f"{_bracketed(left, 2, names)} {_bracketed(right, 2, names)}", 2
-        case Operation(sign, left, right):
-            return f"{_bracketed(left, 1, names)} {sign} {_bracketed(right, 2 if sign == '-' else 1, names)}", 1
-    raise TypeError(f"not an expression: {value!r}")
+class _Latex(TreePrinter[LatexNames]):
+    minus, times, pi = "-", " ", r"\pi"
 
+    @staticmethod
+    def spin(number: int, k: int) -> str:
+        return str(Symbol(f"(\\omega_{{{number}}})", str(k)))
 
-def _bracketed(value: Expression, wanted: int, names: LatexNames | _WithSpins) -> str:
-    text, precedence = _expression(value, names)
-    return text if precedence >= wanted else f"({text})"
+    def symbol(self, name: str, dots: str) -> str:
+        return self.names[name].accented(dots) if dots else str(self.names[name])
 
+    def decimal(self, text: str) -> str:
+        return text
 
-def _is_fraction(value: Expression) -> bool:
-    match value:
-        case Operation("/"):
-            return True
-        case Number(number):
-            return _number(number).startswith("\\frac")
-    return False
+    def quotient(self, value: Fraction) -> str:
+        return self.fraction(str(value.numerator), str(value.denominator))
 
+    def fraction(self, top: str, bottom: str) -> str:
+        return f"\\frac{{{top}}}{{{bottom}}}"
 
-def _number(value: Fraction) -> str:
-    if value.denominator == 1:
-        return str(value.numerator)
-    shown = repr(float(value))
-    if "e" not in shown and Fraction(shown) == value:
-        return shown
-    return f"\\frac{{{value.numerator}}}{{{value.denominator}}}"
+    def power(self, base: str, exponent: str) -> str:
+        return f"{base}^{{{exponent}}}"
+
+    def sum(self, left: str, operator: str, right: str) -> str:
+        return f"{left} {operator} {right}"
+
+    def bracketed(self, text: str) -> str:
+        return f"({text})"
+
+    def call(self, value: Call, arguments: Sequence[str]) -> str:
+        if value.table is None:
+            return call(value.function, ", ".join(arguments))
+        written = value.function.replace("_", "\\_")
+        return f"\\operatorname{{{written}}}({arguments[0]})"
 
 
 #: A formula of a sentence that is written with more characters may be broken.

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Counted, Message, worded
 from mbsym.model.quantities import marked
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import EXTENDED
@@ -28,8 +28,16 @@ from mbsym.source.yaml_writer import meaning
 LARGEST = 20_000_000
 
 
+#: What is said of the table beside a file.
+UNREAD = "[[file]] beside it cannot be read: [[why]]"
+
+
 class Unfit(Exception):
-    """A file that no run can go on from, and why."""
+    """A file that no run can go on from, and why: a message."""
+
+    def __init__(self, reason: str) -> None:
+        self.reason = worded(reason)
+        super().__init__(str(reason))
 
 
 def read_earlier(path: Path, system: System) -> Earlier:
@@ -39,7 +47,8 @@ def read_earlier(path: Path, system: System) -> Earlier:
         raise Unfit("it belongs to another description, or the description has changed since (its hash differs)")
     ended = content["ended"]
     if ended is not None and ended["kind"] not in ("interrupted", STEP_LIMIT):
-        raise Unfit(f"that run ended with {ended['kind']} at t = {ended['time']}: there is nothing to go on from")
+        text = "that run ended with [[kind]] at t = [[time]]: there is nothing to go on from"
+        raise Unfit(Message(text, kind=worded(str(ended["kind"])), time=str(ended["time"])))
     names = [*system.coordinates, *system.velocities]
     state = content["reached"]["state"]
     if not isinstance(state, dict) or list(state) != names:
@@ -49,7 +58,7 @@ def read_earlier(path: Path, system: System) -> Earlier:
         method = _last_method(content["method_changes"], method)
     method = "auto" if method == "parts" else method  # parts by different methods are found again
     if arithmetic not in TOLERANCE or method not in ("auto", *METHODS):
-        raise Unfit(f"there is no method {method} in {arithmetic}")
+        raise Unfit(Message("there is no method [[method]] in [[arithmetic]]", method=method, arithmetic=arithmetic))
     kind = np.longdouble if arithmetic == EXTENDED else float
     last = np.array([_number(value, kind) for value in state.values()])
     time = _number(content["reached"]["time"], float)
@@ -88,7 +97,7 @@ def changed(earlier: Earlier, scenario: Scenario) -> Iterator[str]:
     for name in dict.fromkeys([*values, *now]):
         before, after = values.get(name), now.get(name)
         if before != after:
-            yield f"{name} was {before!r} and is {after!r}"
+            yield Message("[[name]] was [[before]] and is [[after]]", name=name, before=before, after=after)
 
 
 def _content(path: Path) -> dict[str, Any]:
@@ -98,7 +107,7 @@ def _content(path: Path) -> dict[str, Any]:
             raise Unfit("it is too large for a simulation.json")
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise Unfit(f"it cannot be read: {error.strerror or error}") from None
+        raise Unfit(Message("it cannot be read: [[why]]", why=error.strerror or error)) from None
     except (ValueError, RecursionError):
         raise Unfit("it is no JSON file, or damaged") from None
     wanted = {"format", "description_sha256", "ended", "time", "reached", "method", "arithmetic", "tolerance", "step"}
@@ -111,7 +120,8 @@ def _content(path: Path) -> dict[str, Any]:
     shapes["model"] = ("gravity", "linear", "without")
     for key, inner in shapes.items():
         if not isinstance(content[key], dict) or not set(inner) <= set(content[key]):
-            raise Unfit(f'it is damaged, or older than --continue: {", ".join(inner)} are wanted under "{key}"')
+            text = 'it is damaged, or older than --continue: [[names]] are wanted under "[[key]]"'
+            raise Unfit(Message(text, names=", ".join(inner), key=key))
     ended = content["ended"]
     mappings = all(isinstance(content[key], dict) for key in ("parameters", "initial"))
     counts = all(isinstance(content[key]["samples"], int) for key in ("time", "reached"))
@@ -146,10 +156,11 @@ def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, l
             with warnings.catch_warnings(action="ignore"):  # of an empty table
                 found = np.loadtxt(stream, delimiter=",", usecols=range(size), ndmin=2).T
     except (OSError, ValueError) as error:
-        raise Unfit(f"{table.name} beside it cannot be read: {error}") from None
+        raise Unfit(Message(UNREAD, file=table.name, why=error)) from None
     count = content["reached"]["samples"]
     if len(header) < size or header != wanted or found.shape != (size, count):
-        raise Unfit(f"{table.name} beside it is not the table of that run ({counted(count, 'row', 'rows')} are wanted)")
+        text = "[[file]] beside it is not the table of that run ([[count]] are wanted)"
+        raise Unfit(Message(text, file=table.name, count=Counted(count, "row")))
     times, states = found[0], found[1:].astype(last.dtype)
     if (
         times[0]
@@ -157,9 +168,11 @@ def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, l
         or not np.array_equal(found[1:, -1], last.astype(float))
         or not np.all(np.diff(times) > 0)
     ):
-        raise Unfit(f"{table.name} beside it does not end where that run did: one of the two has been changed")
+        text = "[[file]] beside it does not end where that run did: one of the two has been changed"
+        raise Unfit(Message(text, file=table.name))
     if digest != content["table_sha256"]:
-        raise Unfit(f"{table.name} beside it has been changed since that run wrote it (its hash differs)")
+        text = "[[file]] beside it has been changed since that run wrote it (its hash differs)"
+        raise Unfit(Message(text, file=table.name))
     states[:, -1] = last
     return times, states
 
@@ -174,7 +187,7 @@ def _table(path: Path, content: Mapping[str, Any]) -> tuple[Path, str]:
         with table.open("rb") as stream:
             return table, hashlib.file_digest(stream, "sha256").hexdigest()
     except OSError as error:
-        raise Unfit(f"{table.name} beside it cannot be read: {error}") from None
+        raise Unfit(Message(UNREAD, file=table.name, why=error)) from None
 
 
 def _model(content: Mapping[str, Any], system: System) -> Model:

@@ -126,6 +126,8 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
     from mbsym.studies.map.answer import fitting
 
     of_one = request.of != "equilibria"
+    if "as_json" in typed and "json" not in (request.format or FORMATS):
+        yield Unfit("--json", "conflicting-options", "--format leaves JSON out", "add json to --format")
     if "z" in typed and "y" not in typed:
         yield Unfit("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
     if request.by == "boxes" and of_one and ("y" not in typed or "z" in typed):
@@ -198,5 +200,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "map", Request, derive, answer, refusal, unfit,
-    constraints=True, matrices=True, timed=True, out=Folder(quiet="Print nothing but complaints."),
+    constraints=True, matrices=True, timed=True, out=Folder("Print nothing but complaints.", json=True),
 )  # fmt: skip

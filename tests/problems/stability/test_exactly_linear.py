@@ -459,15 +459,46 @@ values: {{m: 1, k: 2, mu: 1/2, v: {-3 if v == "negative" else 3}, g: 10, c: 1}}
         assert found.numerical.word is Word.STABLE
 
 
-def test_a_body_on_which_nothing_acts_at_the_values_says_how_that_is_told_where_nothing_ever_does() -> None:
-    """x'' = -a x at a = 0 is x'' = 0 of a free body: with x counted unstable, and stable but for a drift.  Of bodies
-    only what is cyclic for all a is left out of account, and that is what is said: x is not cyclic here."""
-    body = """
-parameters: {a: {real: true, value: 0}}
-bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
-loads: [{potential: a*x**2/2}]
-motion: {x: 0}
-"""
-    said = mbsym.loads(LINE.format(body)).stability.numerical.explanation
-    assert "but for that drift the motion is stable" in said
-    assert "of bodies just that is said where coordinates are cyclic at all values of the parameters" in said
+BODIES = "bodies: [{{name: p, attached to: 0, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}}]\n"
+ACTING = {  # what acts, at a = 0, c = 1, and the same with what vanishes left out: the equations are the same
+    "{potential: a*x**2/2}": ("", Word.STABLE_BUT_CYCLIC),
+    "{potential: a*x**2/2}, {potential: y**2/2}": ("{potential: y**2/2}", Word.STABLE_BUT_CYCLIC),
+    "{potential: a*(x - y)**2/2}": ("", Word.STABLE_BUT_CYCLIC),
+    "{generalized force: {x: -c*x_dot - a*x, y: -y - c*y_dot}}": (
+        "{generalized force: {x: -c*x_dot, y: -y - c*y_dot}}",
+        Word.ASYMPTOTIC_BUT_CYCLIC,
+    ),
+    "{potential: a*x**2/2 - y**2/2}": ("{potential: -y**2/2}", Word.UNSTABLE),
+    "{potential: a*x**4 + y**2/2}": ("{potential: y**2/2}", Word.STABLE_BUT_CYCLIC),
+}
+
+
+@pytest.mark.parametrize(("loads", "without", "word"), [(x, *y) for x, y in ACTING.items()])
+def test_what_does_not_act_at_the_values_is_as_if_it_were_not_there(loads, without, word) -> None:
+    """x'' = -a x at a = 0 is x'' = 0 of a free body: x is cyclic there, whatever it is elsewhere."""
+    known = "parameters: {a: real, c: positive}\nmotion: {x: 0, y: 0}\nvalues: {a: 0, c: 1}\n" + BODIES.format()
+    acting = mbsym.loads(LINE.format(f"{known}loads: [{loads}]")).stability.numerical
+    absent = mbsym.loads(LINE.format(f"{known}loads: [{without}]")).stability.numerical
+    assert acting.word is absent.word is word
+
+
+def test_where_another_momentum_pushes_it_is_more_than_a_drift() -> None:
+    """x'' = g y' - a x, y'' = -g x': y' + g x = c is constant, x'' = g c at a = -g^2, so that x grows like t^2."""
+    text = LINE.format(f"""parameters: {{a: real, g: real}}
+{BODIES.format()}loads: [{{potential: a*x**2/2}}, {{generalized force: {{x: g*y_dot, y: -g*x_dot}}}}]
+motion: {{x: 0, y: 0}}
+values: {{a: -1, g: 1}}""")
+    assert mbsym.loads(text).stability.numerical.word is Word.UNSTABLE
+
+
+def test_a_drift_at_single_values_does_not_refute_what_is_necessary_elsewhere() -> None:
+    """x'' = -a x, with y free or not: a > 0 is what keeps x near, and a >= 0 is not enough for that."""
+    for point, moving in (("x, 0, 0", "x"), ("x, y, 0", "x, y")):
+        claims = "".join(
+            f"  - {{claim: condition, that: a {relation} 0, as: {role}}}\n"
+            for relation, role in ((">", "necessary"), (">=", "sufficient"), (">", "sufficient"))
+        )
+        body = f"bodies: [{{name: p, mass: 1, connection point: [{point}], coordinates: [{moving}]}}]\n"
+        text = f"parameters: {{a: real}}\n{body}loads: [{{potential: a*x**2/2}}]\nmotion: {{x: 0}}\nclaims:\n{claims}"
+        outcomes = [claim.outcome for claim in mbsym.loads(LINE.format(text)).claims]
+        assert outcomes == ["holds exactly", "does not hold", "holds exactly"], moving
