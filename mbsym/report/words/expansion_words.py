@@ -99,12 +99,13 @@ _SLOW = {
 
 
 def coefficients(found: Expansion) -> Iterator[Coefficient]:
-    """All of the manifold, then all of the flow."""
+    """All of the manifold, then all of the flow, but for what only says that the rate of a variable is its rate."""
     manifold = found.manifold
+    rates = {without_velocity(name) for name in (*manifold.fast, *manifold.slow) if name in found.velocities}
     for rate, names, series in ((False, manifold.fast, manifold.functions), (True, manifold.slow, manifold.flow)):
         for name, one in zip(names, series, strict=True):
-            if rate and any(without_velocity(other) == name for other in {*manifold.fast} & {*found.velocities}):
-                continue  # its rate is a fast variable
+            if rate and name in rates - {*found.velocities}:
+                continue
             for k, formula in of_series(found, one):
                 plain = without_velocity(name) if name in found.velocities else name
                 yield Coefficient(plain, rate + (plain != name), k, formula, rate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from terminal import told as lines
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
@@ -148,3 +149,22 @@ def test_what_stands_under_a_sine_is_refused():
     text = HONEY.replace("connection point: [x, 0, 0], mass: eps", joint).replace("x**3", "sin(x)")
     with pytest.raises(NoClosedForm, match=r"sin\(x\), cos\(x\) are variables"):
         expansion(mbsym.loads(text), 1)
+
+
+def test_that_a_rate_is_itself_is_not_told():
+    """eps = 0: x' = 0; y'' = -y - x is told, and no  y' = y'."""
+    text = """
+mbsym: 1
+name: a point with a strong damper along x
+parameters: {eps: positive}
+small parameter: eps
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 0}
+  - {name: b, attached to: a, connection point: [0, y, 0], coordinates: [y], mass: 1}
+loads:
+  - potential: (x + y)**2/2
+  - generalized force: {x: -x_dot/eps}
+"""
+    said = lines(mbsym.loads(text), 12)
+    assert any(line.endswith("y''(0) = -x - y") for line in said), said
+    assert not any("y'(0)" in line for line in said)
