@@ -29,10 +29,13 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, BinaryIO, TypeVar, cast
+from typing import IO, TYPE_CHECKING, BinaryIO, TypeVar, cast
 
 from mbsym.source.render import escaped
-from mbsym_cli.console import Force
+from mbsym_cli.console import BAD_INPUT, FAILED, OK, Force, complain
+
+if TYPE_CHECKING:
+    from mbsym_cli.options import Options
 
 T = TypeVar("T")
 
@@ -378,6 +381,17 @@ def safe_name(name: str) -> str:
     if len(data) <= _LONGEST_NAME:
         return plain
     return data[:_LONGEST_NAME].decode(errors="ignore") + "-" + hashlib.sha256(data).hexdigest()[:8]
+
+
+def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
+    """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
+    if asked.refused(file if read else None) or not read:
+        return BAD_INPUT
+    reason = "" if folder is None else obstacle(folder)
+    if reason:
+        complain(file, f"the results cannot be written: {reason}")
+        return FAILED
+    return OK
 
 
 def obstacle(folder: Path, inside: Path | None = None) -> str:

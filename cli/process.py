@@ -15,7 +15,7 @@ INTERRUPTED = 130
 def command() -> None:
     """Runs the command that ``sys.argv`` names, and ends the process with its exit code."""
     # Modules and formulas are many small objects and hardly ever cycles: looking for those less often saves time.
-    gc.set_threshold(200_000, 20, 20)
+    gc.set_threshold(1_000_000, 20, 20)
     # Matrices of mechanisms are small: threads of NumPy's BLAS wait for one another longer than they work.
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")

@@ -1,6 +1,6 @@
 """A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
 
-``attempted``, ``leave`` and ``prevented`` are the same for commands that are written out.
+``attempted`` and ``leave`` are the same for commands that are written out.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from mbsym_cli.console import (
     tell,
     watching,
 )
-from mbsym_cli.files import deliver, folder_for, obstacle, write_whole
+from mbsym_cli.files import deliver, folder_for, prevented, write_whole
 from mbsym_cli.letters import letters_option, read_letters
 from mbsym_cli.options import Options
 from mbsym_cli.requests import option_of, read_fields
@@ -246,6 +246,7 @@ def leave(file: Path, command: Callable[[], int]) -> NoReturn:
         sys.exit(INTERRUPTED)
 
 
+<<<<<<< HEAD
 def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
     """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
     if asked.refused(file if read else None) or not read:
@@ -257,6 +258,8 @@ def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> in
     return OK
 
 
+=======
+>>>>>>> quick
 def attempted(
     file: Path,
     work: Callable[[], Found],

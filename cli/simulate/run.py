@@ -29,10 +29,9 @@ from mbsym_cli.console import (
     reason_of,
     status,
 )
-from mbsym_cli.files import folder_for, room_beside
+from mbsym_cli.files import folder_for, prevented, room_beside
 from mbsym_cli.formulas import LAWS, read_formula
 from mbsym_cli.options import Options
-from mbsym_cli.simulate.ensemble import answers, spread
 from mbsym_cli.simulate.files import write_files
 from mbsym_cli.simulate.further import begun_at, declared, going_on, integrated, with_further
 from mbsym_cli.simulate.many import read_many
@@ -47,7 +46,6 @@ from mbsym_cli.simulate.summary import (
     print_summary,
     simulated_to,
 )
-from mbsym_cli.study import prevented
 
 if TYPE_CHECKING:
     from mbsym.algebra.failures import Failure
@@ -228,6 +226,12 @@ def simulated(file: Path, texts: Mapping[str, Any]) -> int:
         def read(more: tuple[str, ...]) -> Scenario | None:
             return given_numbers(file, given.system, (*settings, *more), asked, laws, own)[0]
 
+        from mbsym_cli.simulate.ensemble import spread  # few ask for many motions
+
         return spread(file, folder, given, overrides, varied, wanted, asked, read)
     code = run(file, folder, given, wanted, asked)
-    return code if code or not sensitive else answers(file, folder, given, overrides, sensitive, wanted)
+    if code or not sensitive:
+        return code
+    from mbsym_cli.simulate.ensemble import answers  # nor for sensitivities
+
+    return answers(file, folder, given, overrides, sensitive, wanted)

@@ -250,7 +250,7 @@ def _witnessed(
         return estimate
     witness, end = completed(METHODS[name]), float(found.times[-1])
     places = np.concatenate([[0.0], uneven(0.0, end, PLACES), [end]])
-    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    scales = np.array([q.scale for q in estimate.quantities])
     budget = _Budget(dynamics, min(limit - spent, max(LITTLE, BESIDE * spent)), end, even=False)
     setting, before = better.setting, inf
     try:
@@ -258,15 +258,17 @@ def _witnessed(
         states = np.column_stack([run.state, run.fill(places[1:])])
         while True:
             truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
-            scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
-            other = ErrorEstimate(Against(name, better.scalar, setting), scene, _rounding(scalar))
-            if other.largest <= CLEARLY * estimate.largest:
+            apart = float(np.max(np.max(np.abs(states - truth), axis=1) / scales))
+            if apart <= CLEARLY * estimate.largest:
                 return estimate
-            if other.largest > before / CLEARLY:
-                return other
-            setting, before = _finer(setting), other.largest
+            if apart > before / CLEARLY:
+                break
+            setting, before = _finer(setting), apart
     except (Breakdown, Unusable, _TooDear):
         return estimate
+    names = (*dynamics.system.coordinates, *dynamics.system.velocities)
+    scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
+    return ErrorEstimate(Against(name, better.scalar, setting), scene, _rounding(scalar))
 
 
 def _finer(setting: Setting) -> Setting:

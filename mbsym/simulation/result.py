@@ -14,7 +14,6 @@ from mbsym.model.system import System
 from mbsym.numerics.accuracy import ErrorEstimate, NoEstimate
 from mbsym.numerics.conservation import Conservation
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.enclosure.compare import Certificate
 from mbsym.numerics.events.events import Occurrences
 from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Setting
 from mbsym.numerics.planning.plan import Plan
@@ -26,6 +25,7 @@ from mbsym.simulation.watching import Happened, SectionPoints
 if TYPE_CHECKING:
     from mbsym.numerics.closing import Closed
     from mbsym.numerics.constrained import Drift
+    from mbsym.numerics.enclosure.compare import Certificate
     from mbsym.numerics.simulate import Trajectory
 
 

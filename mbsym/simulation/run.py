@@ -37,7 +37,6 @@ from mbsym.numerics.conservation import (
     visited,
 )
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.enclosure.compare import analytic, certified
 from mbsym.numerics.extremes.singular_positions import stepped_over
 from mbsym.numerics.methods.interface import Method, Unusable
 from mbsym.numerics.methods.table import METHODS
@@ -99,6 +98,8 @@ def simulate(
         ring = analysis.ring if analysis is not None and not missing else None
         dynamics = _dynamics(scenario, ring, request)
         if request.certify is not None:
+            from mbsym.numerics.enclosure.compare import analytic  # few ask for an enclosure
+
             analytic(dynamics)
         resting = None if request.model.linear else reduced(dynamics)
         chosen = chosen_for(dynamics, request, None if request.whole else resting)
@@ -126,6 +127,8 @@ def simulate(
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None
     if request.certify is not None:
+        from mbsym.numerics.enclosure.compare import certified
+
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
             asked = (request.certify, request.certify_seconds, request.certify_limit)

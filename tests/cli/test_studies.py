@@ -13,6 +13,7 @@ from conftest import SHIPPED
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym_cli import study
+from mbsym_cli.files import prevented
 from mbsym_cli.main import main
 from mbsym_cli.options import Options
 
@@ -120,10 +121,10 @@ def test_failures_are_told_alike(error: Exception, told: str | None, capsys: pyt
 
 
 def test_what_prevents_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert study.prevented(tmp_path / "f", tmp_path / "out", True, Options()) == 0
-    assert study.prevented(tmp_path / "f", tmp_path / "out", False, Options()) == 2
+    assert prevented(tmp_path / "f", tmp_path / "out", True, Options()) == 0
+    assert prevented(tmp_path / "f", tmp_path / "out", False, Options()) == 2
     (tmp_path / "file").write_text("")
-    assert study.prevented(tmp_path / "f", tmp_path / "file" / "out", True, Options()) == 1
+    assert prevented(tmp_path / "f", tmp_path / "file" / "out", True, Options()) == 1
     assert "cannot be written" in capsys.readouterr().err
     with pytest.raises(SystemExit) as left:
         study.leave(Path("f"), lambda: (_ for _ in ()).throw(KeyboardInterrupt))

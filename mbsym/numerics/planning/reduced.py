@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -276,10 +277,11 @@ def _unpushed(dynamics: Dynamics) -> Collection[str]:
     n, scenario = dynamics.size, dynamics.scenario
     rhs = compiled_kernel(dynamics, "right_hand_side")
     start = np.array([float(x) for x in scenario.state])
-    source = np.random.default_rng(SEED)
-    moved = source.uniform(-1, 1, (2 * n, STATES)) * (0.5 + np.abs(start[:, None]))
+    source = Random(SEED)
+    uniform = [[source.uniform(-1, 1) for _ in range(STATES)] for _ in range(2 * n)]
+    moved = np.array(uniform) * (0.5 + np.abs(start[:, None]))
     moved[:, 0] = 0.0
-    times = np.concatenate(([0.0], source.uniform(0, 1, STATES - 1)))
+    times = np.array([0.0, *(source.random() for _ in range(STATES - 1))])
     resting_now = np.array([velocity == 0 for velocity in scenario.velocities])
     while np.any(resting_now):
         held = np.concatenate((resting_now, resting_now))
