@@ -31,6 +31,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, BinaryIO, TypeVar, cast
 
+from mbsym.expressions.message import Message
 from mbsym.source.render import escaped
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, Force, complain
 
@@ -389,7 +390,7 @@ def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> in
         return BAD_INPUT
     reason = "" if folder is None else obstacle(folder)
     if reason:
-        complain(file, f"the results cannot be written: {reason}")
+        complain(file, Message("the results cannot be written: [[why]]", why=reason))
         return FAILED
     return OK
 

@@ -246,20 +246,6 @@ def leave(file: Path, command: Callable[[], int]) -> NoReturn:
         sys.exit(INTERRUPTED)
 
 
-<<<<<<< HEAD
-def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
-    """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
-    if asked.refused(file if read else None) or not read:
-        return BAD_INPUT
-    reason = "" if folder is None else obstacle(folder)
-    if reason:
-        complain(file, Message("the results cannot be written: [[why]]", why=reason))
-        return FAILED
-    return OK
-
-
-=======
->>>>>>> quick
 def attempted(
     file: Path,
     work: Callable[[], Found],

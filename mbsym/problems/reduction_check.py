@@ -60,7 +60,7 @@ def check_reduced_motion(
 
 
 def check_reduced_perturbation(system: System, ring: Ring, linear: Linearisation, dependent: Dependent) -> Check:
-    """Problem 5; undecided where parameters would have to fulfil a condition of problem 4 that is not solved for them."""
+    """Problem 5; undecided where a condition of problem 4 is solved for no parameter."""
     about = linear.constrained
     assert about is not None
 
