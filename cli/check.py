@@ -14,7 +14,6 @@ import mbsym
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import is_description, load
-from mbsym.source.text_lines import language_of
 from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
 from mbsym_cli.options import Options
 
@@ -74,12 +73,12 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     worst = OK
     for path in paths:
         try:
-            _, complaints, text = load(path)
+            _, complaints, _ = load(path)
         except Exception as error:
             defect(error, path)
             worst = max(worst, FAILED)
             continue
-        findings += findings_of(printable(path.as_posix()), complaints.sorted(), Language(language_of(text)).say)
+        findings += findings_of(printable(path.as_posix()), complaints.sorted())
         worst = max(worst, BAD_INPUT if complaints.errors else OK)
     written = {
         "github": github_annotations,

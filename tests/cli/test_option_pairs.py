@@ -259,7 +259,8 @@ ITEMS: dict[str, Item] = {
     "bodies": Item(("--bodies",), written("bodies*.csv", "--bodies")),
     "animate": Item(("--animate",), written("animation.html", "--animate")),
     "out": Item(("--out", "FOLDER"), lambda done: done.repeats("--out") if "plan" in done.items else bool(done.told)),
-    "quiet": Item(("--quiet",), lambda done: not done.result.stdout),
+    "quiet": Item(("--quiet",), lambda done: "json" in done.items or not done.result.stdout),
+    "json": Item(("--json",), lambda done: json.loads(done.result.stdout) == done.told),
 }
 
 

@@ -249,11 +249,14 @@ def test_many_coordinates_are_spread_over_pages(tmp_path: Path) -> None:
         assert b"<dc:date>" not in image
 
 
-def test_pages_are_filled_evenly() -> None:
+def test_pages_are_filled_evenly(tmp_path: Path) -> None:
     from mbsym.report.figures.figures import _pages
 
+    system = dynamics_of(described(tmp_path, chain(2))).system
+
     names = [f"q{i}" for i in range(11)]
-    pages = list(_pages("histories", names, 5))
+    pages = list(_pages("histories", names, 5, system))
+    assert [title for _, _, title in pages] == [f"Chain, page {number} of 3" for number in (1, 2, 3)]
     assert [file for file, _, _ in pages] == ["histories", "histories-2", "histories-3"]
     assert [name for _, part, _ in pages for name in part] == names
     assert {len(part) for _, part, _ in pages} == {3, 4}

@@ -103,8 +103,8 @@ def test_all_that_is_wrong_is_said_and_nothing_written(
     [
         (KeyError("x"), None),
         (ValueError("y"), "a word of one's own: y"),
-        (NoClosedForm("z"), "error[no-program]: there is no program for the derivatives: z"),
-        (PermissionError("w"), "the tables cannot be written: w"),
+        (NoClosedForm("z"), "error[no-program]: there is no program for these equations: z"),
+        (PermissionError("w"), "the results cannot be written: w"),
     ],
 )
 def test_failures_are_told_alike(error: Exception, told: str | None, capsys: pytest.CaptureFixture[str]) -> None:
@@ -114,9 +114,9 @@ def test_failures_are_told_alike(error: Exception, told: str | None, capsys: pyt
     own = {ValueError: "a word of one's own"}
     if told is None:
         with pytest.raises(KeyError):
-            study.attempted(Path("f.yaml"), work, own, "the derivatives", "tables")
+            study.attempted(Path("f.yaml"), work, own)
         return
-    assert study.attempted(Path("f.yaml"), work, own, "the derivatives", "tables") is None
+    assert study.attempted(Path("f.yaml"), work, own) is None
     assert capsys.readouterr().err == f"f.yaml: {told}\n"
 
 
