@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mbsym.expressions.message import Message
-from mbsym.expressions.place import Complaint, Complaints
+from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.model.system import System
 from mbsym.source.builder import build
 from mbsym.source.placed import MAX_TEXT, Node, TooManyComplaints, check_characters, normalised
@@ -91,7 +91,7 @@ def read_placed(
     complaints = _BoundedComplaints()
     system, node, editor, stopped = None, None, False, False
     try:
-        if check_characters(text, complaints):
+        if check_characters(text, complaints) and not _is_xml(text, complaints):
             editor = is_text(text, filename)
             node = read_text(text, complaints) if editor else read_yaml(text, complaints, extents)
             if node is not None and understand:
@@ -99,6 +99,17 @@ def read_placed(
     except TooManyComplaints:
         system, stopped = None, True
     return ReadResult(system, Complaints([*complaints.sorted(), *complaints.rest(stopped)]), node, editor)
+
+
+def _is_xml(text: str, complaints: Complaints) -> bool:
+    """Whether a text is a robot's file, which is complained about: nothing of it can be read as a description."""
+    before = text[: len(text) - len(text.lstrip())]
+    if not text[len(before) :].startswith("<"):
+        return False
+    span = Span(before.count("\n") + 1, len(before) - (before.rfind("\n") + 1) + 1)
+    hint = "a robot's file (URDF, MJCF) is made into one by 'mbsym convert'"
+    complaints.error("xml", "this is XML, not a description", span, hint)
+    return True
 
 
 def placed_tree(text: str, filename: str = "<string>") -> tuple[Node | None, bool]:
