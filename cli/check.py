@@ -101,8 +101,14 @@ def _check(path: Path) -> int:
 def _size(system: System) -> str:
     """What it consists of, in its language."""
     say, count = Language(system.language).say, len(system.coordinates)
-    title = "State variables" if system.linear is not None and system.linear.of_first_order else "Coordinates"
-    told = [f"{say(title)}: {f'{count}: ' if count > 1 else ''}{', '.join(system.coordinates)}"]
+    names = ", ".join(system.coordinates)
+    if system.linear is not None and system.linear.of_first_order:
+        title = Message("state variables: [[names]]", names=names)
+    elif count == 1:
+        title = Message("coordinates: [[names]]", names=names)
+    else:
+        title = Message("coordinates ([[count]]): [[names]]", count=count, names=names)
+    told = [say(title)]
     if system.linear is not None:
         given = ", ".join(one.key for one in system.linear.matrices)
         return "; ".join([*told, f"{say('given by its matrices')}: {given}"])

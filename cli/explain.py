@@ -40,20 +40,21 @@ def command(topic: tuple[str, ...]) -> None:
     """
     from mbsym.analysis import PROBLEMS
 
-    word = " ".join(topic)
+    word = " ".join(topic).removeprefix("problem ")
     if not word:
         width = max(map(len, TOPICS))
         for problem in PROBLEMS.values():
             click.echo(f"{problem.number:<{width}}  {problem.title}")
         for name, meaning in TOPICS.items():
             click.echo(f"{name:<{width}}  {meaning}")
-    elif texts := explanations(word):
+    elif texts := explanations(word) or explanations(_as_known(word)):
         click.echo("\n\n".join(map(_narrowed, texts)))
     else:
-        near = get_close_matches(word, known_words(), 1)
-        known = f"did you mean {near[0]}?" if near else f"problems are numbered {ranges()}"
+        near = _near(word)
+        known = f"did you mean {' or '.join(near)}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
-        click.echo(f"there is no problem or topic {word}; {known}", err=True)
+        message = f"nothing is called {word}: no problem, topic, command, verdict, theorem, key or kind; {known}"
+        click.echo(message, err=True)
         sys.exit(BAD_INPUT)
 
 
@@ -67,6 +68,17 @@ def explanations(word: str) -> list[str]:
     if word.isdigit() and int(word) in PROBLEMS:
         return [PROBLEMS[int(word)].explanation]
     return [*_command(word), *_verdict(word), *_theorem(word), *meanings(word)]
+
+
+def _as_known(word: str) -> str:
+    """The word as it is written, whatever its capitals; nothing where there is none."""
+    return next((one for one in known_words() if one.casefold() == word.casefold()), "")
+
+
+def _near(word: str) -> list[str]:
+    """Names that hold the word, or the one that resembles it."""
+    holding = [one for one in known_words() if word.casefold() in one.casefold().replace("-", " ").split()]
+    return holding[:3] or get_close_matches(word, known_words(), 1)
 
 
 def known_words() -> list[str]:
@@ -97,7 +109,7 @@ def _verdict(word: str) -> Iterator[str]:
 
     meaning = {
         Word.ASYMPTOTIC: "disturbed motions stay near and come back",
-        Word.ASYMPTOTIC_BUT_TURNED: "they come back to the same motion, turned in space",
+        Word.ASYMPTOTIC_BUT_TURNED: "disturbed motions stay near and come back to the same motion, turned in space",
         Word.ASYMPTOTIC_BUT_CYCLIC: (
             "everything else comes back, or to a steady motion near by where momenta were changed; cyclic "
             "coordinates may drift"
@@ -119,7 +131,8 @@ def _verdict(word: str) -> Iterator[str]:
         Word.DEPENDS: "the cases are told with their conditions",
         Word.UNSTABLE: "some disturbed motions leave",
         Word.UNSTABLE_BUT_BORDERS: (
-            "so wherever no condition is an equality, whatever the parameters; about the border nothing is said"
+            "some disturbed motions leave wherever no condition is an equality, whatever the parameters; about the "
+            "border nothing is said"
         ),
     }
     yield from (f"A verdict of problem 6: {text}." for verdict, text in meaning.items() if verdict.value == word)
@@ -132,6 +145,8 @@ def _theorem(word: str) -> Iterator[str]:
     for one in THEOREMS:
         if one.name.casefold() == word.casefold():
             needs = "".join(f"\n    {fact.value}" for fact in type(next(iter(one.needs))) if fact in one.needs)
+            if one.name == "Routh":  # it is Lagrange-Dirichlet's theorem on what ignoring coordinates leaves
+                needs += "\n    cyclic coordinates left out, their momenta kept"
             gives = "instability" if one.gives is None else "stability"
             if one.gives is Ground.DECAYS:
                 gives = "asymptotic stability (where a family is named: to a member of it)"

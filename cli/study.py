@@ -232,8 +232,9 @@ class _Run:
 
 def _json(answer: Answer) -> str:
     """What the file says that is JSON; nothing where what ended early has none."""
-    texts = (text for name, text in answer.files.items() if name.endswith(".json"))
-    text = next(texts, "")
+    text = next((text for name, text in answer.files.items() if name.endswith(".json")), "")
+    if isinstance(text, bytes):
+        return text.decode()
     return text if isinstance(text, str) else "".join(map(str, text))
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 KEPT = ("auto", "energy", "period", "nothing")
 
 #: What is said without a period.
-ABSENT = ("about how long a period is is not said", "for example --period 2")
+ABSENT = (Message("the period to begin with is not said"), Message("for example --period 2"))
 
 
 @dataclass(frozen=True)

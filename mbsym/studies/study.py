@@ -186,7 +186,7 @@ class Study(Generic[R, F]):
     refusal: Callable[[Exception, Asked, R], Refusal | None]
     unfit: Callable[[R, System, Collection[str]], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
-    json_help: str = "Print JSON instead of a table."
+    json_help: str = "Print JSON instead of a summary."
     constraints: bool = False
     matrices: bool = False
     bodies: Callable[[Mapping[str, Any]], bool] = lambda texts: False

@@ -234,7 +234,7 @@ def test_a_result_that_cannot_be_had_is_said_not_raised(tmp_path: Path) -> None:
 def test_check_says_what_it_read() -> None:
     done = mbsym("check", SYSTEMS / "satellite.yaml", SYSTEMS / "satellite.txt")
     assert done.exit_code == 0
-    assert done.stdout.count("; Coordinates: 5: psi, theta, phi, delta, sigma; bodies and frames: 4") == 2
+    assert done.stdout.count("; coordinates (5): psi, theta, phi, delta, sigma; bodies and frames: 4") == 2
 
 
 def test_convert_there_and_back(tmp_path: Path) -> None:
@@ -276,6 +276,9 @@ def test_explain_knows_every_command_verdict_theorem_and_key() -> None:
     assert "Usage: mbsym floquet" in mbsym("explain", "floquet").stdout
     assert mbsym("explain", "gyroscopically", "stabilised", "only").exit_code == 0
     assert "did you mean inertia about?" in mbsym("explain", "inertia abut").stderr
+    assert mbsym("explain", "STABLE").stdout == mbsym("explain", "stable").stdout != ""
+    assert mbsym("explain", "problem", "6").stdout == mbsym("explain", "6").stdout != ""
+    assert "did you mean Arnold-Moser" in mbsym("explain", "moser").stderr
 
 
 @pytest.mark.parametrize("topic", TOPICS)

@@ -76,10 +76,11 @@ def test_english_is_found(folder: Path) -> None:
     assert "bodies" in strange(said("check", str(SHIPPED / "simple-pendulum.yaml")))
 
 
-def test_programs_read_complaints_in_the_language_of_the_description(folder: Path) -> None:
+def test_programs_read_complaints_in_english(folder: Path) -> None:
     (row,) = (json.loads(line) for line in said("check", "in/bad.yaml", "--output-format", "json").splitlines())
     assert row["code"] == "unknown-key"
-    assert not strange(row["message"] + row["hint"])
+    assert row["message"].startswith("unknown key")
+    assert row["hint"].startswith("did you mean")
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

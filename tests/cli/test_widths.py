@@ -86,8 +86,8 @@ def test_complaints_are_wrapped_but_what_they_quote(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("language", "said"),
     [
-        ("ru", "верно: P; Координаты: x; тела и системы координат: 1"),
-        ("es", "correcto: P; Coordenadas: x; cuerpos y sistemas de referencia: 1"),
+        ("ru", "верно: P; координаты: x; тела и системы координат: 1"),
+        ("es", "correcto: P; coordenadas: x; cuerpos y sistemas de referencia: 1"),
     ],
 )
 def test_check_speaks_the_language_of_the_description(language: str, said: str, tmp_path: Path) -> None:

@@ -180,7 +180,8 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
     if led is not None and limits is not None:
         reader.leave_out("limits of a joint that mimics another")
     effort = "0" if limit is None else reader.number(limit, "effort")
-    if limit is not None and float(reader.number(limit, "velocity")) > 0:
+    moves = element.get("type") in ("revolute", "prismatic", "continuous")
+    if limit is not None and moves and limit.get("velocity", "0").strip() not in ("", "0", "0.0"):  # not read at all
         reader.leave_out("limit of the velocity of a joint")
     return (
         Joint(
