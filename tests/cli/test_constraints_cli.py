@@ -45,7 +45,7 @@ def test_contradictions_end_with_2_and_nothing_written(tmp_path: Path) -> None:
 def test_a_check_counts_coordinates_and_constraints(tmp_path: Path) -> None:
     done = mbsym("check", written(tmp_path, TEXT))
     assert done.exit_code == 0
-    assert "Coordinates: 3: x, y, phi; constraints: 1;" in done.stdout
+    assert "coordinates (3): x, y, phi; constraints: 1;" in done.stdout
     assert "degree" not in done.stdout
 
 
