@@ -83,7 +83,7 @@ def test_it_makes_no_difference_how_many_threads_there_are_or_into_which_blocks_
     second = run(given, grid, times, threads=3)
     assert np.array_equal(first.final, second.final)
     found = first.members
-    made = side_by_side.compiled(found.dynamics.right_hand_side, side_by_side.TABLEAUX["dop853"], len(found.starts))
+    made = side_by_side.compiled(found.dynamics, side_by_side.TABLEAUX["dop853"])
     whole, pieces = (side_by_side.SideBySide(made, Setting(1e-10), found.starts, found.parameters) for _ in range(2))
     together = whole.block(times[1:])
     apart = np.concatenate([pieces.block(times[a : a + 3]) for a in range(1, 41, 3)])

@@ -208,7 +208,7 @@ def beginning(found: Members, method: str, threads: int | None) -> Beginning:
     if not found.dynamics.features.none or found.dynamics.correction is not None:
         whole = WithParameters(found.dynamics)
         return lambda setting, some: OneByOne(whole, method, setting, found.starts[:, some], found.parameters[:, some])
-    made = compiled(found.dynamics.right_hand_side, TABLEAUX[method], len(found.starts))
+    made = compiled(found.dynamics, TABLEAUX[method])
     return lambda setting, some: SideBySide(made, setting, found.starts[:, some], found.parameters[:, some], threads)
 
 

@@ -181,13 +181,13 @@ def fixed_text(tableau: Tableau, size: int, parameters: int, lanes: int) -> str:
 
 
 def adaptive_text(tableau: Tableau, size: int, parameters: int, lanes: int) -> str:
-    """``i64 @adaptive(x, carry, old, k, clock, index, p, shared, times, out, first, last, width, budget)``.
+    """``i64 @adaptive(x, carry, old, k, clock, index, p, sizes, shared, times, out, first, last, width, budget)``.
 
     Fills ``out`` (rows from ``first`` to ``last`` - 1, 2n numbers each, ``width`` numbers apart) with the states at
     ``times``, each lane's in its column; ``index`` says at which row each lane is.  DONE when all lanes are at ``last``
     or dead, PAUSED after ``budget`` attempts.
     """
-    pointers = ("x", "carry", "old", "k", "clock", "index", "p", "shared", "times", "out")
+    pointers = ("x", "carry", "old", "k", "clock", "index", "p", "sizes", "shared", "times", "out")
     whole = ("first", "last", "width", "budget")
     f = Lanes("adaptive", [(name, POINTER) for name in pointers] + [(name, INTEGER) for name in whole], lanes)
     return _Adaptive(f, tableau, size, parameters).text()
@@ -366,7 +366,8 @@ class _Adaptive:
         for i in f.each(self.size):
             before = f.magnitude(f.load(self.kind, f["x"], i))
             after = f.magnitude(f.load(self.kind, self.candidate, i))
-            scale = self.absolute + self.relative * f.select(f.below(before, "<", after), after, before)
+            largest = f.load(self.kind, f["sizes"], i)
+            scale = self.absolute * largest + self.relative * f.select(f.below(before, "<", after), after, before)
             inverse = 1 / scale
             for total, row in zip(totals, tableau.errors, strict=True):
                 one = s.combination(f["k"], row, i) * inverse
@@ -396,6 +397,9 @@ class _Adaptive:
             f.store(f.select(good, before, f.load(self.kind, f["old"], i)), self.kind, f["old"], i)
             new = add_compensated(f, self.kind, x, f["carry"], i, f.load(self.kind, self.change, i))
             f.store(f.select(good, new, before), self.kind, x, i)
+            size, largest = f.magnitude(new), f.load(self.kind, f["sizes"], i)
+            larger = f.value(f.mask, f"and {f.mask} {good.text}, {f.below(largest, '<', size).text}")
+            f.store(f.select(larger, size, largest), self.kind, f["sizes"], i)
             f.store(f.select(good, f.load(self.kind, f["carry"], i), carried), self.kind, f["carry"], i)
         self.set(START, f.select(good, time, self.row(START)))
         self.set(LAST, f.select(good, step, self.row(LAST)))

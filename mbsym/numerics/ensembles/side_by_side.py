@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 import llvmlite.binding as llvm
 import numpy as np
 
+from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.ensemble_text import (
     ABSOLUTE,
     DEAD,
@@ -39,9 +40,10 @@ from mbsym.numerics.ensembles.ensemble_text import (
     library,
     rows_of,
 )
-from mbsym.numerics.kernels.interface import FLOAT64, Code
+from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import Library, kernel
 from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, STEP_LIMIT, STUCK, Setting
+from mbsym.numerics.methods.magnitudes import Magnitudes, Variables, first_steps, magnitudes, variables
 from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME
 from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address, aligned
 
@@ -72,10 +74,15 @@ class Compiled:
 
     code: Code
     tableau: Tableau
-    size: int
+    kinds: Variables
     parameters: int
     lanes: int
     library: Library
+
+    @property
+    def size(self) -> int:
+        """Numbers of a state."""
+        return len(self.kinds.angles)
 
     @property
     def driver(self) -> Any:
@@ -83,16 +90,16 @@ class Compiled:
         pointer, whole = ctypes.c_void_p, ctypes.c_int64
         if not self.tableau.errors:
             return self.library.function("fixed", *[pointer] * 4, whole, result=whole)
-        return self.library.function("adaptive", *[pointer] * 10, *[whole] * 4, result=whole)
+        return self.library.function("adaptive", *[pointer] * 11, *[whole] * 4, result=whole)
 
 
-def compiled(code: Code, tableau: Tableau, size: int) -> Compiled:
-    """``size``: numbers of a state; what the code's inputs have behind (t, x) are parameters."""
-    lanes = lanes_here()
+def compiled(dynamics: Dynamics, tableau: Tableau) -> Compiled:
+    """What the inputs of the rates have behind (t, x) are parameters."""
+    lanes, code, size = lanes_here(), dynamics.right_hand_side, dynamics.dimension
     parameters = len(code.inputs) - 1 - size
     text = adaptive_text if tableau.errors else fixed_text
     made = library(code, text(tableau, size, parameters, lanes), lanes)
-    return Compiled(code, tableau, size, parameters, lanes, made)
+    return Compiled(code, tableau, variables(dynamics), parameters, lanes, made)
 
 
 class SideBySide:
@@ -140,12 +147,34 @@ class SideBySide:
         self.shared[[RELATIVE, ABSOLUTE]] = relative, tolerance
         self.shared[LONGEST] = 1e30 if setting.longest is None else setting.longest
         self.clock[:, PREVIOUS] = log(1e-4)
-        steps, slopes = first_steps(
-            made.code, made.tableau.order, self._flat(self.x), self._flat(self.p), relative, tolerance
-        )
+        starts, parameters = self._flat(self.x), self._flat(self.p)
+        rhs = kernel(made.code, FLOAT64)
+
+        def rates(times: Any, states: Any) -> Any:
+            return rhs(np.vstack([times, states, parameters]))
+
+        begin = np.zeros(starts.shape[1])
+        known = self._magnitudes(rhs, begin, starts, parameters)
+        self.sizes = aligned(shape, float)
+        floor = known.floor(tolerance, float(np.finfo(float).eps))
+        self.sizes[:] = _grouped(np.maximum(np.abs(starts), floor), made.lanes)
+        steps, slopes = first_steps(rates, made.tableau.order, known, begin, starts, tolerance, relative)
         self.clock[:, STEP] = np.minimum(steps, self.shared[LONGEST]).reshape(self.groups, made.lanes)
         self.k[:, : made.size] = _grouped(slopes, made.lanes)
         self.evaluations += 2 * self.members
+
+    def _magnitudes(self, rhs: Kernel, begin: Any, starts: Any, parameters: Any) -> Magnitudes:
+        """Those of each member, whose parameters stay: as constants behind its state."""
+        kinds, still = self.made.kinds, len(parameters)
+
+        def rates(times: Any, whole: Any) -> Any:
+            self.evaluations += len(times) * self.members // starts.shape[1]
+            return np.vstack([rhs(np.vstack([times, whole])), np.zeros((still, len(times)))])
+
+        masks = kinds.angles, kinds.velocities, kinds.constant
+        behind = Variables(*(np.append(mask, np.full(still, mask is kinds.constant)) for mask in masks))
+        found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
+        return Magnitudes(found.sizes[: self.made.size], found.times)
 
     def _flat(self, grouped: Any) -> Any:
         """(rows, members and what fills the last group)."""
@@ -187,7 +216,7 @@ class SideBySide:
         budget = max(1, min(OPERATIONS_AT_A_TIME // cost, self.setting.step_limit))
 
         def work(group: int) -> None:
-            arrays = (self.x, self.carry, self.old, self.k, self.clock, self.index, self.p)
+            arrays = (self.x, self.carry, self.old, self.k, self.clock, self.index, self.p, self.sizes)
             pointers = [address(array[group]) for array in arrays]
             pointers += [address(self.shared), address(times), address(out) + 8 * group * made.lanes]
             while self._driver(*pointers, 0, rows, width, budget) == PAUSED and not self.stopped.is_set():
@@ -292,28 +321,3 @@ def _taken(waiting: Iterator[int], lock: threading.Lock) -> Iterator[int]:
 def _grouped(rows: Any, lanes: int) -> Any:
     """(rows, m) as (m / lanes, rows, lanes)."""
     return rows.reshape(rows.shape[0], -1, lanes).transpose(1, 0, 2)
-
-
-def first_steps(
-    code: Code, order: int, starts: Any, parameters: Any, relative: float, absolute: float
-) -> tuple[Any, Any]:
-    """The first step of every member, and its slopes: Hairer, Norsett & Wanner, II.4, as for a run of its own."""
-    f = kernel(code, FLOAT64)
-
-    def size(values: Any) -> Any:
-        return np.sqrt(np.mean((values / scale) ** 2, axis=0)) if len(values) else np.zeros(starts.shape[1])
-
-    def rates(times: Any, states: Any) -> Any:
-        return f(np.vstack([times, states, parameters]))
-
-    with np.errstate(all="ignore"):
-        scale = absolute + np.abs(starts) * relative
-        slopes = rates(np.zeros(starts.shape[1]), starts)
-        position, speed = size(starts), size(slopes)
-        slow = (position < 1e-5) | (speed < 1e-5)
-        first = np.where(slow, 1e-6, np.maximum(0.01 * position / speed, 1e-100))
-        bend = size(rates(first, starts + first * slopes) - slopes) / first
-        largest = np.maximum(speed, bend)
-        second = np.where(largest <= 1e-15, np.maximum(1e-6, first * 1e-3), (0.01 / largest) ** (1 / order))
-        steps = np.where(np.isfinite(speed) & np.isfinite(bend), np.minimum(100 * first, second), 1e-6)
-    return steps, slopes

@@ -27,13 +27,14 @@ from mbsym.numerics.methods.interface import (
     compiled_kernel,
 )
 from mbsym.numerics.methods.led import lead, nearly_singular, refuse
+from mbsym.numerics.methods.magnitudes import first_steps, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
 
 #: SciPy warns below this relative tolerance and takes it instead.
 LEAST_TOLERANCE = 2.3e-14
 
-#: The first step of LSODA from a state of rest, as SciPy's other methods take it there.
-FIRST_STEP = 1e-6
+#: Methods of many orders begin with a low one.
+LEAST_ORDER = 2
 
 
 class LibraryRun(Stepping):
@@ -45,7 +46,15 @@ class LibraryRun(Stepping):
         self._n = dynamics.dimension
         self.work = Work()
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
-        self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE), "atol": tolerance}
+        self._tolerance = tolerance
+        self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE)}
+
+        def rates(times: Any, states: Any) -> Any:
+            self.work.evaluations += len(times)
+            return self._rhs_kernel(np.vstack([times, states]))
+
+        self._rates = rates
+        self._kinds = variables(dynamics)
         self._led = lead(dynamics)
         if method.traits.name == "lsoda":
             refuse(dynamics, method.traits.name)  # ODEPACK keeps its history to itself
@@ -61,6 +70,10 @@ class LibraryRun(Stepping):
         """Go on from another state; the solver is made anew when it is first needed."""
         self.time, self.state = float(time), np.array(state, dtype=float)
         self._first = self.time, self.state
+        begin, states = np.array([self.time]), self.state[:, None]
+        self._magnitudes = magnitudes(self._rates, self._kinds, begin, states)
+        floor = self._magnitudes.floor(self._tolerance, float(np.finfo(float).eps))[:, 0]
+        self._sizes = np.maximum(np.abs(self.state), floor)
         self._solver: Any = None
         self._dense: Any = None
 
@@ -78,9 +91,15 @@ class LibraryRun(Stepping):
         """The solver, which looks at the right-hand side as soon as it is made."""
         time, state = self._first
         options = dict(self._options)
-        if self._method.traits.name == "lsoda" and not np.any(self._rhs_kernel(np.concatenate(([time], state)))):
-            # Where everything rests at first, ODEPACK takes the whole time, here without end, for its first step.
-            options["first_step"] = FIRST_STEP
+        options["atol"] = self._tolerance * self._sizes
+        begin, order = np.array([time]), self._method.traits.order or LEAST_ORDER
+        steps, rates = first_steps(
+            self._rates, order, self._magnitudes, begin, state[:, None], self._tolerance, options["rtol"]
+        )
+        # SciPy's own choice depends on the unit of time; ODEPACK's does not, but where everything rests at first it
+        # takes the whole time, here without end.
+        if self._method.traits.name != "lsoda" or not np.any(rates):
+            options["first_step"] = min(float(steps[0]), options.get("max_step", np.inf))
         return self._guarded(lambda: self._method.solver(self._rhs, time, state, np.inf, **options))
 
     def _rhs(self, t: float, x: Any) -> Any:
@@ -134,6 +153,16 @@ class LibraryRun(Stepping):
         self._dense = None
         if self._led is not None:
             self._kept_on(solver)
+        self._measured(solver)
+
+    def _measured(self, solver: Any) -> None:
+        """The next step's errors are measured by the largest values so far (``magnitudes``)."""
+        if np.any(np.abs(solver.y) > self._sizes):
+            self._sizes = np.maximum(self._sizes, np.abs(solver.y))
+            if self._method.traits.name == "lsoda":
+                solver._lsoda_solver._integrator.call_args[1] = self._tolerance * self._sizes
+            else:
+                solver.atol = self._tolerance * self._sizes
 
     def _kept_on(self, solver: Any) -> None:
         """The end of the step is led to the constraints, before the solver goes on from there."""

@@ -1,10 +1,11 @@
 """Machine code that steps: ``march`` of a tableau, with steps of one length or with steps chosen by an error estimate.
 
-    i64 @march(x, carry, old, k, clock, count)
+    i64 @march(x, carry, old, k, clock, count, sizes)
 
 makes steps until clock[UNTIL] is reached or passed; it returns REACHED, PAUSED (after count[LEFT] attempted steps) or
 STOPPED (the step has become too small, or a value is no longer finite).  ``old`` is the state before the last step,
-``k`` its stages, and then the slopes at its end, where they are known.
+``k`` its stages, and then the slopes at its end, where they are known; by ``sizes`` errors of steps that are chosen are
+measured (``magnitudes``).
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ GROWTH, SHRINKAGE, SAFETY = 6.0, 0.2, 0.75
 #: The exponent of the integral part, by the order of the method.
 INTEGRAL = {5: Fraction(4, 100), 8: Fraction(3, 100)}
 
-ARGUMENTS = ("x", "carry", "old", "k", "clock", "count")
+ARGUMENTS = ("x", "carry", "old", "k", "clock", "count", "sizes")
 
 
 def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = False) -> str:
@@ -228,7 +229,9 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     f.place(good)
     for i in f.each(size):
         f.store(f.load(s.kind, x, i), s.kind, f["old"], i)
-        add_compensated(f, s.kind, x, f["carry"], i, f.load(s.kind, unchanged, i))
+        new = add_compensated(f, s.kind, x, f["carry"], i, f.load(s.kind, unchanged, i)).absolute()
+        largest = f.load(s.kind, f["sizes"], i)
+        f.store(largest.compare("<", new).choose(new, largest), s.kind, f["sizes"], i)
     f.store(time, s.clock, clock, START)
     f.store(step, s.clock, clock, LAST)
     add_compensated(f, s.clock, clock, f.at(s.clock, clock, TIME_CARRY), TIME, step)
@@ -272,14 +275,15 @@ def _error(
 ) -> Value:
     """The estimated error of a step, 1 where it is just tolerable.
 
-    One estimate e:  h |e|;  two, as in DOP853:  h e5^2 / sqrt(e5^2 + e3^2/100)  (root mean squares, scaled).
+    One estimate e:  h |e|;  two, as in DOP853:  h e5^2 / sqrt(e5^2 + e3^2/100)  (root mean squares, e_i in units of
+    ``absolute`` L_i + ``relative`` |x_i|, the L_i being the sizes).
     """
     totals = [f.slot("double") for _ in tableau.errors]
     for total in totals:
         f.store(0, "double", total)
     for i in f.each(size := s.size):
         before, after = f.load(s.kind, x, i).absolute(), f.load(s.kind, new, i).absolute()
-        scale = absolute + relative * before.compare("<", after).choose(after, before)
+        scale = absolute * f.load(s.kind, f["sizes"], i) + relative * before.compare("<", after).choose(after, before)
         inverse = 1 / scale
         for total, row in zip(totals, tableau.errors, strict=True):
             one = (s.combination(k, row, i) * inverse).converted("double")

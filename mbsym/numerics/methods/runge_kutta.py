@@ -38,6 +38,7 @@ from mbsym.numerics.methods.interface import (
     once,
 )
 from mbsym.numerics.methods.led import nearly_singular
+from mbsym.numerics.methods.magnitudes import first_steps, magnitudes, variables
 from mbsym.numerics.methods.marching import ARGUMENTS, adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.stepping import Stepping
@@ -216,7 +217,8 @@ def _rows_text(terms: int, size: int, scalar: Scalar) -> str:
 
 
 def _fill_text(scalar: Scalar) -> str:
-    """``i64 @fill(x, carry, old, k, clock, count, terms, times, out, first, last, stride)``: rows, and steps for them.
+    """``i64 @fill(x, carry, old, k, clock, count, sizes, terms, times, out, first, last, stride)``: rows, and steps
+    for them.
 
     Returns the number of the first row that is not filled; where that is not ``last``, count[REPLY] says why.
     """
@@ -308,19 +310,19 @@ class CompiledRun(Stepping):
         self.dtype, self.clock_type = chosen.dtype, clock_dtype(clock_kind(chosen))
         self._library = library = driver(dynamics, tableau, scalar)
         pointer, whole = ctypes.c_void_p, ctypes.c_int64
-        self._march = library.function("march", *[pointer] * 6, result=whole)
+        self._march = library.function("march", *[pointer] * 7, result=whole)
         self._prepare = library.function("prepare", *[pointer] * 6, result=whole)
-        self._fill = library.function("fill", *[pointer] * 9, whole, whole, whole, result=whole)
-        self.x, self.carry, self.old = (aligned(size, self.dtype) for _ in range(3))
+        self._fill = library.function("fill", *[pointer] * 10, whole, whole, whole, result=whole)
+        self.x, self.carry, self.old, self.sizes = (aligned(size, self.dtype) for _ in range(4))
         rows = len(tableau.stages) + 2 + len(tableau.extra)
         self.k = aligned((rows, size), self.dtype)
         self.terms = aligned((terms_of(tableau), size), self.dtype)
         self.clock = aligned(12, self.clock_type)
         self.count = aligned(11, np.int64)
-        arrays = (self.x, self.carry, self.old, self.k, self.clock, self.count)
+        arrays = (self.x, self.carry, self.old, self.k, self.clock, self.count, self.sizes)
         self._pointers = tuple(address(array) for array in arrays)
-        arrays = (self.x, self.old, self.k, self.terms, self.clock, self.count)
-        self._for_terms = tuple(address(array) for array in arrays)
+        for_terms = (self.x, self.old, self.k, self.terms, self.clock, self.count)
+        self._for_terms = tuple(address(array) for array in for_terms)
         self.work = Work()
         self._at_once = max(1, OPERATIONS_AT_A_TIME // (rows * (dynamics.right_hand_side.operations + 10)))
 
@@ -350,7 +352,7 @@ class CompiledRun(Stepping):
 
     @property
     def _memory(self) -> tuple[Any, ...]:
-        return self.x, self.carry, self.old, self.k, self.terms, self.clock, self.count
+        return self.x, self.carry, self.old, self.k, self.terms, self.clock, self.count, self.sizes
 
     @property
     def reached(self) -> Any:
@@ -499,15 +501,29 @@ class AdaptiveRun(CompiledRun):
         smallest = 4 * float(np.finfo(self.dtype).eps)
         self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
         self.clock[LONGEST] = 1e30 if setting.longest is None else setting.longest
-        self._rhs = compiled_kernel(dynamics, "right_hand_side", scalar)
+        rhs = compiled_kernel(dynamics, "right_hand_side", scalar)
+
+        def rates(times: Any, states: Any) -> Any:
+            self.work.evaluations += len(times)
+            return rhs(np.vstack([times, states]))
+
+        self._rates = rates
+        self._kinds = variables(dynamics)
         self.restart(at, initial)
 
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state, with a step found anew."""
         super().restart(time, state)
         self.clock[PREVIOUS] = log(1e-4)
-        first = self._first_step(float(self.clock[RELATIVE]), float(self.clock[ABSOLUTE]))
-        self.clock[STEP] = min(first, float(self.clock[LONGEST]))
+        absolute, relative = float(self.clock[ABSOLUTE]), float(self.clock[RELATIVE])
+        begin, state = np.array([time], self.dtype), self.x[:, None].copy()
+        self._magnitudes = magnitudes(self._rates, self._kinds, begin, state)
+        floor = self._magnitudes.floor(absolute, float(np.finfo(self.dtype).eps))[:, 0]
+        self.sizes[:] = np.maximum(np.abs(self.x), floor)
+        order = self.tableau.order
+        steps, slopes = first_steps(self._rates, order, self._magnitudes, begin, state, absolute, relative)
+        self.k[0] = slopes[:, 0]
+        self.clock[STEP] = min(float(steps[0]), float(self.clock[LONGEST]))
 
     def one(self, until: float | None = None) -> None:
         """One step that is accepted; where ``until`` shortens it, the next one is as long as it would have been."""
@@ -537,34 +553,14 @@ class AdaptiveRun(CompiledRun):
         self.clock[LAST] = 1
         self.count[PREPARED] = self.count[STEPS]
 
-    def _first_step(self, relative: float, absolute: float) -> float:
-        """Hairer, Norsett & Wanner, II.4, starting step size."""
-
-        def size(values: Any) -> float:
-            return float(np.sqrt(np.mean((values / scale) ** 2))) if self.size else 0.0
-
-        f, time = self._rhs, self.clock[TIME]
-        with np.errstate(all="ignore"):
-            scale = absolute + np.abs(self.x) * relative
-            slope = self.k[0] = f(np.concatenate(([self.dtype(time)], self.x)))
-            position, speed = size(self.x), size(slope)
-            if not isfinite(speed):
-                return 1e-6
-            first = 1e-6 if position < 1e-5 or speed < 1e-5 else max(0.01 * position / speed, 1e-100)
-            there = f(np.concatenate(([self.dtype(time + first)], self.x + self.dtype(first) * slope)))
-            bend = size(there - slope) / first
-            self.work.evaluations += 2
-            if not isfinite(bend):
-                return 1e-6
-            largest = max(speed, bend)
-            second = max(1e-6, first * 1e-3) if largest <= 1e-15 else (0.01 / largest) ** (1 / self.tableau.order)
-            return float(min(100 * first, second))
-
     def _stopped(self) -> Breakdown:
-        size = float(np.max(np.abs(self.x), initial=0.0))
-        steep = float(np.max(np.abs(self.k[0]), initial=0.0))
+        usual, unit = self._magnitudes.sizes[:, 0], float(self._magnitudes.times[0])
+        size = float(np.max(np.abs(self.x) / usual, initial=0.0))
+        steep = float(np.max(np.abs(self.k[0]) / usual, initial=0.0)) * unit
         if self.count[INFINITE] or not size < LARGEST or not steep < LARGEST:
-            message = Message("values or rates grow too large to go on (largest rate [[rate]])", rate=f"{steep:.2g}")
+            fastest = float(np.max(np.abs(self.k[0]), initial=0.0))
+            text = "values or rates grow too large to go on (largest rate [[rate]])"
+            message = Message(text, rate=f"{fastest:.2g}")
             return self._fail(BLOW_UP, message, self.clock[TIME], self.x)
         return self._fail(
             STUCK, Message("step [[step]]", step=f"{float(self.clock[STEP]):.2g}"), self.clock[TIME], self.x

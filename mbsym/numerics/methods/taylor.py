@@ -5,12 +5,15 @@ derives the recurrences of the Taylor coefficients from them and compiles them. 
 (about -ln(tol)/2 + 1), the step from the decay of the coefficients; times between steps come from the series itself.
 
 heyoka's tolerance bounds the remainder of each step, relative to the largest component of the state if that exceeds 1.
+So it integrates y_i = x_i/s_i, where s_i is the size that the scene gives x_i (``magnitudes``), or |x_i| where a run
+begins if that is more: the unit of a length or of the time changes nothing.  The s_i are powers of 2, so that no digit
+is lost.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -32,9 +35,11 @@ from mbsym.numerics.methods.interface import (
     Traits,
     Unusable,
     Work,
+    compiled_kernel,
     once,
 )
 from mbsym.numerics.methods.led import lead, nearly_singular
+from mbsym.numerics.methods.magnitudes import magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import exact_number, initial_state
 
@@ -56,8 +61,8 @@ def _heyoka() -> Any:
     return heyoka
 
 
-def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
-    """The outputs as heyoka expressions; the input ``t`` is heyoka's time."""
+def expressions(code: Code, heyoka: Any, dtype: Any, scales: Mapping[str, Any] | None = None) -> list[Any]:
+    """The outputs as heyoka expressions; the input ``t`` is heyoka's time, one with a scale that times its variable."""
     program = code.program
     values: dict[int, Any] = {}
     for number in program.live(code.outputs):
@@ -71,6 +76,7 @@ def expressions(code: Code, heyoka: Any, dtype: Any) -> list[Any]:
                 name = str(instruction.payload)
                 cell = None if name in code.inputs else place_of(name)
                 found = heyoka.time if name == "t" else heyoka.expression(name) if cell is None else heyoka.par[cell]
+                found = scales[name] * found if scales is not None and name in scales else found
             case "negative", [a]:
                 found = -a
             case "add", [a, b]:
@@ -102,8 +108,10 @@ def _integrator(dynamics: Dynamics, tolerance: float, scalar: str) -> Any:
     code = dynamics.right_hand_side
 
     def make() -> Any:
-        right = expressions(code, heyoka, dtype)
-        equations = list(zip((heyoka.expression(name) for name in code.inputs[1:]), right, strict=True))
+        cells = _cells(dynamics)
+        scales = {name: heyoka.par[cells + place] for place, name in enumerate(code.inputs[1:])}
+        right = expressions(code, heyoka, dtype, scales)
+        equations = [(heyoka.expression(name), rate / scales[name]) for name, rate in zip(scales, right, strict=True)]
         kind = float if scalar == FLOAT64 else dtype
         try:
             return heyoka.taylor_adaptive(
@@ -120,6 +128,11 @@ def _integrator(dynamics: Dynamics, tolerance: float, scalar: str) -> Any:
             raise Unusable(Message(text, scalar=scalar, why=missing)) from None
 
     return copy.deepcopy(once(dynamics, ("taylor", tolerance, scalar), make))
+
+
+def _cells(dynamics: Dynamics) -> int:
+    """How many of heyoka's parameters are cells; the scales stand behind them."""
+    return len(dynamics.cells.values) if isinstance(dynamics, Frozen) else 0
 
 
 @dataclass(frozen=True)
@@ -159,7 +172,15 @@ class TaylorRun(Stepping):
         self._cells = dynamics.cells if isinstance(dynamics, Frozen) else None
         self.order: int = self._taylor.order
         self.work = Work()
-        self.restart(at, self._taylor.state if initial is None else initial)
+        state = initial_state(dynamics, self._dtype) if initial is None else np.array(initial, self._dtype)
+        rhs = compiled_kernel(dynamics, "right_hand_side")
+
+        def rates(times: Any, states: Any) -> Any:
+            self.work.evaluations += len(times)
+            return rhs(np.vstack([times, states]))
+
+        self._rates, self._kinds = rates, variables(dynamics)
+        self.restart(at, state)
 
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state.
@@ -168,11 +189,15 @@ class TaylorRun(Stepping):
         of one that ended there, rows may lie in between.
         """
         self._taylor.time = self._dtype(time)
-        self._taylor.state[:] = state
-        if self._cells is not None:
-            self._taylor.pars[:] = self._cells.values[: len(self._taylor.pars)]
+        state = np.array(state, self._dtype)
+        begin, states = np.array([float(time)]), state[:, None].astype(float)
+        sizes = magnitudes(self._rates, self._kinds, begin, states).sizes[:, 0]
+        self._scales = self._dtype(2) ** np.ceil(np.log2(sizes)).astype(self._dtype)
+        self._taylor.state[:] = state / self._scales
+        cells = np.zeros(0) if self._cells is None else self._cells.values
+        self._taylor.pars[:] = np.concatenate([cells, self._scales])[: len(self._taylor.pars)]
         self._start: Any = None
-        self.time, self.state = time, np.array(self._taylor.state)
+        self.time, self.state = time, state
 
     @property
     def reached(self) -> Any:
@@ -183,14 +208,14 @@ class TaylorRun(Stepping):
     @property
     def end(self) -> Any:
         """Its state."""
-        return self._taylor.state
+        return self._taylor.state * self._scales
 
     def curve(self) -> Callable[[Any], Any]:
         """The series of the last step."""
-        arrived = np.array(self._taylor.state)
+        arrived = self.end
         if self._start is None:
             return Series(self.reached, self.reached, arrived, arrived[:, None])
-        return Series(self._start, self.reached, arrived, np.array(self._taylor.tc))
+        return Series(self._start, self.reached, arrived, self._taylor.tc * self._scales[:, None])
 
     def far(self, until: float) -> None:
         """Steps until ``until`` is reached or passed; the last one keeps its series."""
@@ -208,7 +233,7 @@ class TaylorRun(Stepping):
         goal = until - 2 * last
         while last > 0 and goal - taylor.time > 8 * last:
             if work.steps >= self._limit:
-                raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, taylor.state)
+                raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
@@ -223,8 +248,8 @@ class TaylorRun(Stepping):
         """One step that keeps its series."""
         taylor, work = self._taylor, self.work
         if work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, taylor.state)
-        now, before = taylor.time, np.array(taylor.state)
+            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
+        now, before = taylor.time, self.end
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
         room = self._dtype(FAR * (1 + abs(now))) if until is None else self._dtype(until) - now  # at rest: no bound
@@ -237,14 +262,14 @@ class TaylorRun(Stepping):
             self._judge(outcome not in (self._success, self._bounded), step, now, before)
         self._start = now
         if self._led is not None:
-            taylor.state[:] = self._led(taylor.time, np.array(taylor.state))
+            taylor.state[:] = self._led(taylor.time, self.end) / self._scales
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:
             raise self._fail(BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
         if step > self._least * max(1.0, abs(now)):
             return
-        if not np.all(np.abs(self._taylor.state) < LARGEST):
+        if not np.all(np.abs(self._taylor.state) < LARGEST):  # in units of the scene's sizes
             bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")
             raise self._fail(BLOW_UP, bound, now, before)
         raise self._fail(STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)

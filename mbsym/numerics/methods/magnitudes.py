@@ -1,0 +1,161 @@
+"""What errors of steps are measured by: sizes of the state's components that change with the units as these do.
+
+A step's error in x_i is held against
+
+    tolerance (L_i + |x_i|),        L_i = max |x_i| so far, at least floor_i,
+
+so that whatever unit a length, a mass or the time is written in, the same steps are taken, but for rounding.  The floor
+is what keeps a component that rests but for rounding from ruling the steps: a small part of the size that the scene
+would give it.  That size is found where a run begins, by evaluating the rates beside its state:
+
+    q:   S_i = |q_i|, of angles at least 1
+    v:   V_j = max(|v_j|, F_j tau_j),   F_j = max |v_j'| where one coordinate is displaced by S_i/8,
+         tau_j = min sqrt(S_i / (A_ij F_j)) over the coordinates that v_j moves, q_i' = A_ij v_j
+
+A coordinate at 0 that is no angle has the size that its velocity would give it, max_j A_ij F_j tau_j^2; what is neither
+(columns of derivatives) the size of its rate times the shortest tau.  Where nothing tells a time or a size these are 1:
+all rests then, or begins from rest at 0 by a push that has no other measure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mbsym.mechanics.variables import angle_denominators
+from mbsym.model.states import described
+from mbsym.numerics.dynamics import Dynamics
+
+#: A coordinate is displaced by this part of its size.
+DISPLACED = 1 / 8
+
+#: No component counts for less than this part of the size that the scene would give it.
+LEAST = 1e-4
+
+#: Nor for so little that its tolerance is below so many roundings of that size.
+ROUNDINGS = 16.0
+
+#: Nor for less than short floats can divide by.
+SMALLEST = 1e-30
+
+#: States are looked about together, so many at once.
+COLUMNS = 20_000
+
+#: (times (m,), states (d, m)) -> rates (d, m).
+Rates = Callable[[Any, Any], Any]
+
+
+@dataclass(frozen=True)
+class Variables:
+    """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,)."""
+
+    angles: Any
+    velocities: Any
+    constant: Any
+
+
+def variables(dynamics: Dynamics) -> Variables:
+    """Those of a Dynamics; what stands behind positions and velocities is neither."""
+    system = dynamics.system
+    names = dynamics.inputs[1 : 1 + dynamics.dimension]
+    bounded = set(angle_denominators(system))
+    if dynamics.in_states:
+        bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
+    bounded &= set(system.coordinates)
+    groups = bounded, set(system.velocities), set(system.parameter_names)
+    return Variables(*(np.array([name in group for name in names], dtype=bool) for group in groups))
+
+
+@dataclass(frozen=True)
+class Magnitudes:
+    """``sizes`` (d, m) that a scene gives the components of m states, and ``times`` (m,) in which it moves them."""
+
+    sizes: Any
+    times: Any
+
+    def floor(self, tolerance: float, precision: float) -> Any:
+        """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""
+        part = max(LEAST, ROUNDINGS * precision / tolerance) if tolerance > 0 else 1.0
+        return np.maximum(part * self.sizes, SMALLEST)
+
+
+def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
+    """The magnitudes of the scene about ``states`` (d, m) at the times ``begin`` (m,).  Costs up to 3 d evaluations."""
+    at_once = max(1, COLUMNS // max(1, 2 * len(states)))
+    parts = range(0, states.shape[1], at_once)
+    with np.errstate(all="ignore"):
+        found = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
+    return Magnitudes(np.hstack([one.sizes for one in found]), np.concatenate([one.times for one in found]))
+
+
+def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
+    moving, placed = (np.flatnonzero(mask) for mask in (kinds.velocities, ~(kinds.velocities | kinds.constant)))
+    given = np.abs(states).astype(float)
+    sizes = np.where(kinds.angles[:, None], np.maximum(given, 1.0), given)
+    base = rates(begin, states)
+    reach = (DISPLACED * sizes[placed]).astype(states.dtype)
+    largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
+    largest = np.maximum(largest, _finite(base))
+    still = states.copy()
+    still[moving] = 0
+    pushed = _beside(rates, begin, still, moving, largest[moving].astype(states.dtype))
+    ways = _finite(pushed - rates(begin, still)[:, None])[placed]  # A_ij F_j, shape (positions, velocities, m)
+    ratios = np.where(ways > 0, sizes[placed][:, None] / np.where(ways > 0, ways, 1.0), np.inf)
+    times = np.sqrt(np.min(np.where(ratios > 0, ratios, np.inf), axis=0, initial=np.inf))
+    moves = largest[placed]
+    passing = np.where((moves > 0) & (sizes[placed] > 0), sizes[placed] / np.where(moves > 0, moves, 1.0), np.inf)
+    shortest = np.min(times, axis=0, initial=np.inf)
+    shortest = np.where(np.isfinite(shortest), shortest, np.min(passing, axis=0, initial=np.inf))
+    shortest = np.where(np.isfinite(shortest) & (shortest > 0), shortest, 1.0)
+    times = np.where(np.isfinite(times), times, shortest)
+    sizes[moving] = np.maximum(sizes[moving], largest[moving] * times)
+    reached = np.maximum(np.max(ways * times**2, axis=1, initial=0.0), moves * shortest)
+    sizes[placed] = np.where(sizes[placed] > 0, sizes[placed], reached)
+    return Magnitudes(np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0), shortest)
+
+
+def _beside(rates: Rates, begin: Any, states: Any, places: Any, changes: Any) -> Any:
+    """The rates (d, k, m) at states (d, m) with one component changed: that at ``places`` (k,) by ``changes`` (k, m)."""
+    (d, m), k = states.shape, len(places)
+    moved = np.repeat(states[:, None], k, axis=1)
+    moved[places, np.arange(k)] += changes
+    return rates(np.tile(begin, k), moved.reshape(d, k * m)).reshape(d, k, m) if k else np.zeros((d, 0, m))
+
+
+def _finite(values: Any) -> Any:
+    """|values|, 0 where one is no number."""
+    found = np.abs(values).astype(float)
+    return np.where(np.isfinite(found), found, 0.0)
+
+
+def first_steps(
+    rates: Rates, order: int, known: Magnitudes, begin: Any, states: Any, tolerance: float, relative: float
+) -> tuple[Any, Any]:
+    """The first step (m,) of a method for each of m states (d, m), and the rates there: two evaluations.
+
+    Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, II.4, in units of the scene's sizes and times.
+    """
+    scale = tolerance * known.sizes + relative * np.abs(states).astype(float)
+    unit = known.times
+
+    def size(values: Any) -> Any:
+        if not len(values):
+            return np.zeros(states.shape[1])
+        return np.sqrt(np.mean(((values / scale).astype(float)) ** 2, axis=0))
+
+    with np.errstate(all="ignore"):
+        slopes = rates(begin, states)
+        position, speed = size(states), unit * size(slopes)
+        slow = (position < 1e-5) | (speed < 1e-5)
+        first = unit * np.where(slow, 1e-6, np.maximum(0.01 * position / speed, 1e-100))
+        moved = states + first.astype(states.dtype) * slopes
+        bend = unit**2 * size(rates(begin + first.astype(begin.dtype), moved) - slopes) / first
+        largest = np.maximum(speed, bend)
+        second = np.where(
+            largest <= 1e-15, np.maximum(1e-6 * unit, first * 1e-3), unit * (0.01 / largest) ** (1 / order)
+        )
+        usable = np.isfinite(speed) & np.isfinite(bend)
+        return np.where(usable, np.minimum(100 * first, second), 1e-6 * unit), slopes

@@ -1,0 +1,240 @@
+"""The units of mass, length and time that a description is written in change nothing of a run but its numbers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction as F
+from math import sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mbsym.expressions.rates import velocity_name
+from mbsym.model.system import System
+from mbsym.model.units import TIME, Dimension, times
+from mbsym.numerics.accuracy import ErrorEstimate
+from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.ensembles import side_by_side
+from mbsym.numerics.events.switching import rates
+from mbsym.numerics.kernels.arrays import kernel
+from mbsym.numerics.methods.interface import Setting
+from mbsym.numerics.methods.magnitudes import Magnitudes, magnitudes, variables
+from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.simulation import Request, Simulation, simulate
+from mbsym.source import read
+from tests.source.test_units_of_systems import SYSTEMS, UNITS
+
+#: How many of each unit kg, m and s are: mm, g and ms; lengths in microns and in thousands of kilometres; nanoseconds.
+OTHER = {
+    "mm-g-ms": (F(1000), F(1000), F(1000)),
+    "microns": (F(1), F(10**6), F(1)),
+    "megametres": (F(1), F(1, 10**6), F(1)),
+    "milliseconds": (F(1), F(1), F(1000)),
+}
+
+#: Estimated errors below this are roundings, which differ from unit to unit.
+ROUNDINGS = 1e-13
+
+
+def described(name: str) -> System:
+    """A system that comes with mbsym, with the units of its quantities."""
+    given = "".join(f"  {symbol}: {unit}\n" for symbol, unit in UNITS[name].items())
+    system, complaints = read(f"{(SYSTEMS / f'{name}.yaml').read_text('utf-8')}\nunits:\n{given}", f"{name}.yaml")
+    assert system is not None, complaints
+    return system
+
+
+def factor(of: Dimension, units: tuple[F, F, F]) -> float | F:
+    """How many of the other unit one of SI's is."""
+    found: Any = F(1)
+    for base, exponent in of:
+        value = units[("kg", "m", "s").index(base)] ** exponent
+        found = found * (value if isinstance(value, F) else F(value))
+    return found
+
+
+def factors(system: System, units: tuple[F, F, F]) -> dict[str, Any]:
+    """By name of a quantity, and of its rate."""
+    known = dict(system.units.inferred)
+    names = [*system.coordinates, *system.parameter_names, *(one.name for one in system.prescribed)]
+    missing = [name for name in names if name not in known]
+    if missing:
+        pytest.skip(f"no dimension follows for {', '.join(missing)}")
+    found = {name: factor(known[name], units) for name in names}
+    return found | {velocity_name(name): factor(times(known[name], TIME, -1), units) for name in names}
+
+
+def rescaled(given: Scenario, units: tuple[F, F, F]) -> Scenario:
+    """The same numbers in other units."""
+    by, system = factors(given.system, units), given.system
+    return replace(
+        given,
+        parameters={name: value * by[name] for name, value in given.parameters.items()},
+        positions=tuple(x * by[name] for name, x in zip(system.coordinates, given.positions, strict=True)),
+        velocities=tuple(
+            x * by[velocity_name(name)] for name, x in zip(system.coordinates, given.velocities, strict=True)
+        ),
+        prescribed={
+            name: (value * by[name], rate * by[velocity_name(name)]) for name, (value, rate) in given.prescribed.items()
+        },
+        typed={},
+    )
+
+
+def run(given: Scenario, time: Any, method: str = "auto", **more: Any) -> Simulation:
+    return simulate(given, Request(time=float(time), samples=101, method=method, **more))
+
+
+def assert_alike(one: Simulation, other: Simulation, steps: float = 0.02) -> None:
+    """The same method, steps, digits and what is said of the energy."""
+    assert other.chosen.method.traits.name == one.chosen.method.traits.name
+    assert other.conservation.standing == one.conservation.standing
+    made = one.trajectory.work.steps, other.trajectory.work.steps
+    assert abs(made[0] - made[1]) <= 1 + steps * max(made), made
+    assert isinstance(one.error, ErrorEstimate) == isinstance(other.error, ErrorEstimate)
+    if isinstance(one.error, ErrorEstimate) and isinstance(other.error, ErrorEstimate):
+        first, second = one.error.largest, other.error.largest
+        assert max(first, ROUNDINGS) <= 2 * max(second, ROUNDINGS), (first, second)
+        assert max(second, ROUNDINGS) <= 2 * max(first, ROUNDINGS), (first, second)
+
+
+@pytest.mark.parametrize("units", OTHER)
+@pytest.mark.parametrize("name", sorted(UNITS))
+def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
+    system = described(name)
+    given = scenario(system)
+    other = rescaled(given, OTHER[units])
+    assert_alike(run(given, 2), run(other, 2 * OTHER[units][2]))
+
+
+SPRING = described("spring-pendulum")
+
+
+@pytest.mark.parametrize("units", OTHER)
+@pytest.mark.parametrize("method", [name for name in METHODS if not METHODS[name].traits.fixed])
+def test_every_method_takes_the_same_steps(method: str, units: str) -> None:
+    """ODEPACK's order and steps hang on roundings more than others do."""
+    given, tolerance = scenario(SPRING), 1e-8 if METHODS[method].traits.implicit else 1e-10
+    found = [METHODS[method].start(Dynamics(one), Setting(tolerance)) for one in (given, rescaled(given, OTHER[units]))]
+    ends = [one.advance(float(3 * unit)) for one, unit in zip(found, (F(1), OTHER[units][2]), strict=True)]
+    by = factors(SPRING, OTHER[units])
+    names = (*SPRING.coordinates, *map(velocity_name, SPRING.coordinates))
+    far = 1e-4 if METHODS[method].traits.implicit else 1e-8
+    assert ends[1] / np.array([float(by[name]) for name in names]) == pytest.approx(ends[0], rel=far, abs=far)
+    steps = [one.work.steps for one in found]
+    assert abs(steps[0] - steps[1]) <= (0.3 if method == "lsoda" else 0.02) * max(steps), steps
+
+
+@pytest.mark.parametrize("power", [-40, 40])
+def test_powers_of_two_change_no_digit(power: int) -> None:
+    """All is exact then: the states are the same bit for bit but for the unit."""
+    given, unit = scenario(SPRING), F(2) ** power
+    other = rescaled(given, (unit, unit, F(1)))
+    ends = [METHODS["dop853"].start(Dynamics(one), Setting(1e-10)).advance(3.0) for one in (given, other)]
+    by = factors(SPRING, (unit, unit, F(1)))
+    names = (*SPRING.coordinates, *map(velocity_name, SPRING.coordinates))
+    assert (ends[1] / np.array([float(by[name]) for name in names]) == ends[0]).all()
+
+
+# --- sizes ---
+
+
+def of_scene(given: Scenario) -> Magnitudes:
+    dynamics = Dynamics(given)
+    rhs = kernel(dynamics.right_hand_side)
+    state = np.array([float(x) for x in given.state])[:, None]
+    return magnitudes(lambda t, x: rhs(np.vstack([t, x])), variables(dynamics), np.zeros(1), state)
+
+
+def from_text(text: str) -> Scenario:
+    system, complaints = read(text)
+    assert system is not None, complaints
+    return scenario(system)
+
+
+OSCILLATOR = """
+mbsym: 1
+name: oscillator
+parameters: {m: positive, k: positive}
+bodies: [{name: mass, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{spring: {coordinate: x, stiffness: k}}]
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e9])
+def test_sizes_follow_from_rates(unit: float) -> None:
+    """x'' = -25 x, displaced to 9/8 x0:  F = 25 9/8 x0,  tau = sqrt(x0/F),  V = F tau."""
+    known = _known({"x": unit})
+    (size, speed), (time,) = known.sizes[:, 0], known.times
+    assert size == unit
+    assert speed == pytest.approx(5 * sqrt(9 / 8) * unit, rel=1e-12)
+    assert time == pytest.approx(1 / (5 * sqrt(9 / 8)), rel=1e-12)
+
+
+def _known(initial: dict[str, float]) -> Magnitudes:
+    values = "".join(f"{name}: {value!r}, " for name, value in initial.items())
+    return of_scene(from_text(f"{OSCILLATOR}values: {{m: 4, k: 100}}\ninitial: {{{values}}}\n"))
+
+
+def test_what_rests_where_nothing_pushes_it_is_measured_by_1() -> None:
+    assert _known({"x": 0}).sizes.tolist() == [[1], [1]]
+
+
+AGAINST = """
+mbsym: 1
+name: two pendulums on a cart
+parameters: {M: positive, m: positive, l: positive, g: positive}
+bodies:
+  - {name: cart, attached to: 0, mass: M, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: left, attached to: cart, mass: m, connection point: [l*sin(a), -l*cos(a), 0], coordinates: [a]}
+  - {name: right, attached to: cart, mass: m, connection point: [l*sin(b), -l*cos(b), 0], coordinates: [b]}
+loads: [{uniform gravity: {acceleration: g, direction: [0, -1, 0]}}]
+motion: {x: 0, a: 0, b: 0}
+values: {M: 1, m: 1, l: 1, g: 9.81}
+initial: {x: 0, a: 1, b: -1}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "rk45", "taylor", "scipy-dop853"])
+def test_a_cart_that_rests_but_for_rounding_rules_no_step(method: str) -> None:
+    """One pendulum of the same motion, its point of suspension held, takes as many steps."""
+    given = from_text(AGAINST)
+    run = METHODS[method].start(Dynamics(given), Setting(1e-10))
+    x, *_ = run.advance(20.0)
+    assert abs(x) < 1e-12
+    alone = from_text(AGAINST.replace("b: -1", "b: 0").replace("M: 1,", "M: 1e15,"))
+    beside = METHODS[method].start(Dynamics(alone), Setting(1e-10))
+    beside.advance(20.0)
+    assert run.work.steps + run.work.rejected < 1.5 * (beside.work.steps + beside.work.rejected)
+
+
+# --- members side by side; choices ---
+
+
+def test_members_side_by_side_take_the_same_steps() -> None:
+    given, units = scenario(SPRING), (F(1000), F(1, 10**6), F(1000))
+    made = side_by_side.compiled(Dynamics(given), side_by_side.TABLEAUX["dop853"])
+    steps = []
+    for one, unit in ((given, F(1)), (rescaled(given, units), units[2])):
+        made = side_by_side.compiled(Dynamics(one), side_by_side.TABLEAUX["dop853"])
+        starts = np.array([[float(x) for x in one.state]]).T * np.array([[1, 1.25, 0.75]])
+        run = side_by_side.SideBySide(made, Setting(1e-10), starts, np.zeros((0, 3)), threads=1)
+        run.block(np.array([float(3 * unit)]))
+        alone = METHODS["dop853"].start(Dynamics(one), Setting(1e-10), initial=starts[:, 1])
+        alone.far(float(3 * unit))
+        assert run.steps[0][1] == alone.work.steps
+        steps.append(run.steps[0])
+    assert steps[0] == pytest.approx(steps[1], abs=1)
+
+
+@pytest.mark.parametrize("units", OTHER.values())
+@pytest.mark.parametrize("name", ["spring-pendulum", "ziegler-damped"])
+def test_rates_of_decay_and_oscillation_scale_with_the_time(name: str, units: tuple[F, F, F]) -> None:
+    given = scenario(described(name))
+    decay, frequency = rates(Dynamics(given))
+    other = rates(Dynamics(rescaled(given, units)))
+    assert decay + frequency > 0.1
+    assert [x * float(units[2]) for x in other] == pytest.approx([decay, frequency], rel=1e-5, abs=1e-6)
