@@ -40,8 +40,12 @@ ROUNDINGS = 1e-13
 
 def described(name: str) -> System:
     """A system that comes with mbsym, with the units of its quantities."""
-    given = "".join(f"  {symbol}: {unit}\n" for symbol, unit in UNITS[name].items())
-    system, complaints = read(f"{(SYSTEMS / f'{name}.yaml').read_text('utf-8')}\nunits:\n{given}", f"{name}.yaml")
+    text = (SYSTEMS / f"{name}.yaml").read_text("utf-8")
+    plain, _ = read(text, f"{name}.yaml")
+    assert plain is not None
+    speeds = set(plain.variables) - set(plain.coordinates)  # their units follow
+    given = "".join(f"  {symbol}: {unit}\n" for symbol, unit in UNITS[name].items() if symbol not in speeds)
+    system, complaints = read(f"{text}\nunits:\n{given}", f"{name}.yaml")
     assert system is not None, complaints
     return system
 

@@ -172,7 +172,8 @@ class SideBySide:
             return np.vstack([rhs(np.vstack([times, whole])), np.zeros((still, len(times)))])
 
         masks = kinds.angles, kinds.velocities, kinds.constant
-        behind = Variables(*(np.append(mask, np.full(still, mask is kinds.constant)) for mask in masks))
+        longer = (np.append(mask, np.full(still, mask is kinds.constant)) for mask in masks)
+        behind = Variables(*longer, kinds.masses)
         found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
         return Magnitudes(found.sizes[: self.made.size], found.times)
 

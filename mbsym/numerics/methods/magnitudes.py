@@ -8,13 +8,14 @@ so that whatever unit a length, a mass or the time is written in, the same steps
 is what keeps a component that rests but for rounding from ruling the steps: a small part of the size that the scene
 would give it.  That size is found where a run begins, by evaluating the rates beside its state:
 
-    q:   S_i = |q_i|, of angles at least 1
+    q:   S_i = |q_i|, of angles at least 1; of others, which may be at 0 as they pass, at least 1e-4 q_i'^2/|q_i''|
     v:   V_j = max(|v_j|, F_j tau_j),   F_j = max |v_j'| where one coordinate is displaced by S_i/8,
-         tau_j = min sqrt(S_i / (A_ij F_j)) over the coordinates that v_j moves, q_i' = A_ij v_j
+         tau_j = sqrt(D_j / F_j),   D_j = min S_i/A_ij over the coordinates that v_j moves, q_i' = A_ij v_j
 
-A coordinate at 0 that is no angle has the size that its velocity would give it, max_j A_ij F_j tau_j^2; what is neither
-(columns of derivatives) the size of its rate times the shortest tau.  Where nothing tells a time or a size these are 1:
-all rests then, or begins from rest at 0 by a push that has no other measure.
+Of what is at 0 and rests sizes are those that the same kinetic energy gives it: D_j sqrt(M_jj) and V_j sqrt(M_jj) are
+the largest of the others, and S_i = max A_ij D_j.  Columns of derivatives that are 0 have the size of their rate times
+the shortest tau.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by a push
+that has no other measure.
 """
 
 from __future__ import annotations
@@ -25,9 +26,12 @@ from typing import Any
 
 import numpy as np
 
+from mbsym.algebra.failures import Failure
 from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels import arrays
+from mbsym.numerics.kernels.interface import Code, Kernel
 
 #: A coordinate is displaced by this part of its size.
 DISPLACED = 1 / 8
@@ -41,6 +45,9 @@ ROUNDINGS = 16.0
 #: Nor for less than short floats can divide by.
 SMALLEST = 1e-30
 
+#: The mass matrix of systems with more velocities is not looked at.
+MOST_WEIGHED = 40
+
 #: States are looked about together, so many at once.
 COLUMNS = 20_000
 
@@ -50,11 +57,24 @@ Rates = Callable[[Any, Any], Any]
 
 @dataclass(frozen=True)
 class Variables:
-    """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,)."""
+    """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,).
+
+    ``masses`` makes the kernel of the diagonal of the mass matrix.
+    """
 
     angles: Any
     velocities: Any
     constant: Any
+    masses: Callable[[], Kernel] | None = None
+
+    def weights(self, begin: Any, states: Any) -> Any:
+        """sqrt(M_jj) of the velocities (n, m); zeros where they are not known."""
+        if self.masses is not None:
+            try:
+                return np.sqrt(_finite(self.masses()(np.vstack([begin, states]).astype(float))))
+            except Failure:
+                pass
+        return np.zeros((int(np.sum(self.velocities)), states.shape[1]))
 
 
 def variables(dynamics: Dynamics) -> Variables:
@@ -66,7 +86,14 @@ def variables(dynamics: Dynamics) -> Variables:
         bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
     bounded &= set(system.coordinates)
     groups = bounded, set(system.velocities), set(system.parameter_names)
-    return Variables(*(np.array([name in group for name in names], dtype=bool) for group in groups))
+    n = len(system.velocities)
+
+    def masses() -> Kernel:
+        whole = dynamics.mass_matrix
+        return arrays.kernel(Code(whole.program, whole.inputs, whole.outputs[:: n + 1]))
+
+    masks = (np.array([name in group for name in names], dtype=bool) for group in groups)
+    return Variables(*masks, masses if n <= MOST_WEIGHED else None)
 
 
 @dataclass(frozen=True)
@@ -99,26 +126,48 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reach = (DISPLACED * sizes[placed]).astype(states.dtype)
     largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
     largest = np.maximum(largest, _finite(base))
-    still = states.copy()
+    rate, still = largest[moving], states.copy()
     still[moving] = 0
-    pushed = _beside(rates, begin, still, moving, largest[moving].astype(states.dtype))
-    ways = _finite(pushed - rates(begin, still)[:, None])[placed]  # A_ij F_j, shape (positions, velocities, m)
-    ratios = np.where(ways > 0, sizes[placed][:, None] / np.where(ways > 0, ways, 1.0), np.inf)
-    times = np.sqrt(np.min(np.where(ratios > 0, ratios, np.inf), axis=0, initial=np.inf))
-    moves = largest[placed]
-    passing = np.where((moves > 0) & (sizes[placed] > 0), sizes[placed] / np.where(moves > 0, moves, 1.0), np.inf)
+    push = np.where(rate > 0, rate, 1.0)
+    pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
+    ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
+    bends = np.max(ways * rate, axis=1, initial=0.0)
+    bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
+    sizes[placed] = np.maximum(sizes[placed], LEAST * _finite(base)[placed] ** 2 / bends)
+    path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
+    path = np.where(np.isfinite(path), path, 0.0)
+    times = np.sqrt(_ratio(path, rate))
+    speeds = np.maximum(given[moving], np.where(np.isfinite(times), rate * times, 0.0))
+    if not (np.all(path > 0) and np.all(speeds > 0)):
+        weights = kinds.weights(begin, states)
+        path, speeds = _weighed(path, weights), _weighed(speeds, weights)
+        times = np.minimum(np.sqrt(_ratio(path, rate)), _ratio(path, speeds))
+        speeds = _weighed(np.maximum(speeds, np.where(np.isfinite(times), rate * times, 0.0)), weights)
     shortest = np.min(times, axis=0, initial=np.inf)
+    passing = _ratio(np.where(sizes > 0, sizes, np.inf)[placed], largest[placed])
     shortest = np.where(np.isfinite(shortest), shortest, np.min(passing, axis=0, initial=np.inf))
     shortest = np.where(np.isfinite(shortest) & (shortest > 0), shortest, 1.0)
-    times = np.where(np.isfinite(times), times, shortest)
-    sizes[moving] = np.maximum(sizes[moving], largest[moving] * times)
-    reached = np.maximum(np.max(ways * times**2, axis=1, initial=0.0), moves * shortest)
+    sizes[moving] = np.where(speeds > 0, speeds, rate * shortest)
+    path = np.where(path > 0, path, rate * shortest**2)
+    reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
     sizes[placed] = np.where(sizes[placed] > 0, sizes[placed], reached)
     return Magnitudes(np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0), shortest)
 
 
+def _ratio(a: Any, b: Any) -> Any:
+    """a/b, infinite where b is 0."""
+    return np.where(b > 0, a / np.where(b > 0, b, 1.0), np.inf)
+
+
+def _weighed(values: Any, weights: Any) -> Any:
+    """The values, those that are 0 replaced by what the same kinetic energy makes of the largest of the others."""
+    largest = np.max(values * weights, axis=0, initial=0.0)
+    found = np.where(values > 0, values, _ratio(largest, weights))
+    return np.where(np.isfinite(found), found, 0.0)
+
+
 def _beside(rates: Rates, begin: Any, states: Any, places: Any, changes: Any) -> Any:
-    """The rates (d, k, m) at states (d, m) with one component changed: that at ``places`` (k,) by ``changes`` (k, m)."""
+    """The rates (d, k, m) at states (d, m) with one component changed: at ``places`` (k,) by ``changes`` (k, m)."""
     (d, m), k = states.shape, len(places)
     moved = np.repeat(states[:, None], k, axis=1)
     moved[places, np.arange(k)] += changes
@@ -158,4 +207,5 @@ def first_steps(
             largest <= 1e-15, np.maximum(1e-6 * unit, first * 1e-3), unit * (0.01 / largest) ** (1 / order)
         )
         usable = np.isfinite(speed) & np.isfinite(bend)
-        return np.where(usable, np.minimum(100 * first, second), 1e-6 * unit), slopes
+        steps = np.where(usable, np.minimum(100 * first, second), 1e-6 * unit)
+        return np.maximum(steps, ROUNDINGS * np.finfo(begin.dtype).eps * np.abs(begin)), slopes

@@ -197,12 +197,18 @@ class TaylorRun(Stepping):
         cells = np.zeros(0) if self._cells is None else self._cells.values
         self._taylor.pars[:] = np.concatenate([cells, self._scales])[: len(self._taylor.pars)]
         self._start: Any = None
+        self._until: float | None = None
         self.time, self.state = time, state
 
     @property
     def reached(self) -> Any:
-        """Where heyoka is; a short float as a long one, which it is exactly: sums with others shall not be rounded."""
+        """Where heyoka is; a short float as a long one, which it is exactly: sums with others shall not be rounded.
+
+        Where a step was to end at a time whose nearest short float that is, this time itself.
+        """
         found = self._taylor.time
+        if self._until is not None and self._dtype(self._until) == found:
+            return self._until
         return float(found) if isinstance(found, np.float32) else found
 
     @property
@@ -256,8 +262,9 @@ class TaylorRun(Stepping):
         outcome, step = taylor.step(room, write_tc=True)
         work.steps += 1
         work.evaluations += self.order
+        self._until = None
         if outcome == self._bounded and until is not None:
-            taylor.time = self._dtype(until)
+            taylor.time, self._until = self._dtype(until), until
         else:
             self._judge(outcome not in (self._success, self._bounded), step, now, before)
         self._start = now
