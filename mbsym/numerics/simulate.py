@@ -35,6 +35,7 @@ from mbsym.numerics.methods.interface import (
     met_by,
     up_to,
 )
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.planning.prices import Meter
 
 if TYPE_CHECKING:
@@ -393,7 +394,7 @@ def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Break
     point = np.concatenate(([begin], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
-    singular = _vanishing(dynamics, begin, initial, _neighbours(initial, begin), SINGULAR_AT_ONCE)
+    singular = _vanishing(dynamics, begin, initial, _neighbours(dynamics, initial, begin), SINGULAR_AT_ONCE)
     if singular:
         return Breakdown(SINGULAR, singular, begin, initial)
     if np.all(np.isfinite(rates)):
@@ -422,11 +423,12 @@ def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
     return Message(text, usual=usual, rank=rank)
 
 
-def _neighbours(state: Any, time: float) -> Any:
+def _neighbours(dynamics: Dynamics, state: Any, time: float) -> Any:
     """(t, q, q') in columns: some states not far from a state, the same ones every time."""
     n = len(state)
     moved = np.sin(np.outer(np.arange(1, n + 1), np.arange(1, 5)))  # any numbers between -1 and 1
-    return np.vstack([np.full(4, time), state[:, None] + 0.1 * moved * (1 + np.abs(state[:, None]))])
+    sizes = about(dynamics, time, state).sizes + np.abs(state[:, None])
+    return np.vstack([np.full(4, time), state[:, None] + 0.1 * moved * sizes])
 
 
 def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:

@@ -17,9 +17,8 @@ from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles import side_by_side
 from mbsym.numerics.events.switching import rates
-from mbsym.numerics.kernels.arrays import kernel
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.methods.magnitudes import Magnitudes, magnitudes, variables
+from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, Simulation, simulate
@@ -146,10 +145,7 @@ def test_powers_of_two_change_no_digit(power: int) -> None:
 
 
 def of_scene(given: Scenario) -> Magnitudes:
-    dynamics = Dynamics(given)
-    rhs = kernel(dynamics.right_hand_side)
-    state = np.array([float(x) for x in given.state])[:, None]
-    return magnitudes(lambda t, x: rhs(np.vstack([t, x])), variables(dynamics), np.zeros(1), state)
+    return about(Dynamics(given), 0.0, [float(x) for x in given.state])
 
 
 def from_text(text: str) -> Scenario:

@@ -171,9 +171,9 @@ class SideBySide:
             self.evaluations += len(times) * self.members // starts.shape[1]
             return np.vstack([rhs(np.vstack([times, whole])), np.zeros((still, len(times)))])
 
-        masks = kinds.angles, kinds.velocities, kinds.constant
-        longer = (np.append(mask, np.full(still, mask is kinds.constant)) for mask in masks)
-        behind = Variables(*longer, kinds.masses)
+        angles, moving = (np.append(mask, np.zeros(still, bool)) for mask in (kinds.angles, kinds.velocities))
+        constant = np.append(kinds.constant, np.ones(still, bool))
+        behind = Variables(angles, moving, constant, kinds.masses)
         found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
         return Magnitudes(found.sizes[: self.made.size], found.times)
 

@@ -30,6 +30,7 @@ from mbsym.numerics.events.crossings import NODES, Sign, free_of_zeros, nodes, p
 from mbsym.numerics.events.surfaces import Action, Direction, Event, slopes_code, values_code
 from mbsym.numerics.kernels.llvm import kernel, kernels
 from mbsym.numerics.methods.interface import Piece
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.nested import states_on
 
 #: Pieces are looked at so many at a time.
@@ -122,12 +123,14 @@ class Watcher:
         self._found: list[Occurrence] = []
         self._beyond = 0
         self._sizes = np.zeros(len(self.events))
+        self._dynamics, self._state_sizes = dynamics, np.zeros((dynamics.dimension, 1))
         self._start = 0.0
         self.ended: Occurrence | None = None
 
     def begin(self, state: Any, time: float = 0.0) -> bool:
         """Looks at the initial state; whether a condition that stops the run holds there already."""
         self._start = time
+        self._state_sizes = about(self._dynamics, time, state).sizes
         for place, event in enumerate(self.events):
             value = float(self._slopes[place](np.concatenate(([time], state)))[0])
             holds = value * event.side > 0 or (event.closed and value == 0)
@@ -232,12 +235,15 @@ class Watcher:
         return self._slopes[event](np.vstack([times, np.asarray(piece(times), dtype=float)]))
 
     def _blur(self, event: int, piece: Piece) -> float:
-        """tol sum |dg/dx_i| (1 + |x_i|) and what g changes by within the rounding of the time, at worst."""
+        """tol sum |dg/dx_i| (S_i + |x_i|) and what g changes by within the rounding of the time, at worst.
+
+        S_i are the sizes of the scene about the state where the run began.
+        """
         times = nodes(piece.start, piece.end)
         states = np.asarray(piece(times), dtype=float)
         _, rates, _, *derivatives = self._slopes[event](np.vstack([times, states]))
         with np.errstate(all="ignore"):
-            sizes = self._tolerance * np.sum(np.abs(derivatives) * (1 + np.abs(states)), axis=0)
+            sizes = self._tolerance * np.sum(np.abs(derivatives) * (self._state_sizes + np.abs(states)), axis=0)
             sizes += ROUNDINGS * np.finfo(float).eps * np.abs(times * rates)
         return float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
 

@@ -40,7 +40,7 @@ from mbsym.numerics.methods.interface import (
     compiled_kernel,
     once,
 )
-from mbsym.numerics.methods.magnitudes import magnitudes, variables
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.stepping import Stepping
 
@@ -77,14 +77,10 @@ def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float,
     x = np.array([float(x) for x in (dynamics.scenario.state if state is None else state)])
     dynamics = _on_one_side(dynamics, t, x)
     n, rhs = len(x), compiled_kernel(dynamics, "right_hand_side")
-
-    def slopes_at(times: Any, states: Any) -> Any:
-        return rhs(np.vstack([times, states]))
-
-    step = 1e-6 * magnitudes(slopes_at, variables(dynamics), np.array([t]), x[:, None]).sizes[:, 0]
+    step = 1e-6 * np.maximum(about(dynamics, t, x).sizes[:, 0], np.abs(x))
     moved = np.hstack([np.diag(step), -np.diag(step)]) + x[:, None]
     with np.errstate(all="ignore"):
-        slopes = slopes_at(np.full(2 * n, t), moved)
+        slopes = rhs(np.vstack([np.full(2 * n, t), moved]))
         matrix = (slopes[:, :n] - slopes[:, n:]) / (2 * step)
     if not np.all(np.isfinite(matrix)):
         return 0.0, 0.0

@@ -27,7 +27,7 @@ from mbsym.numerics.methods.interface import (
     compiled_kernel,
 )
 from mbsym.numerics.methods.led import lead, nearly_singular, refuse
-from mbsym.numerics.methods.magnitudes import first_steps, magnitudes, variables
+from mbsym.numerics.methods.magnitudes import counted, first_steps, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
 
 #: SciPy warns below this relative tolerance and takes it instead.
@@ -48,12 +48,7 @@ class LibraryRun(Stepping):
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         self._tolerance = tolerance
         self._options: dict[str, Any] = {"rtol": max(tolerance, LEAST_TOLERANCE)}
-
-        def rates(times: Any, states: Any) -> Any:
-            self.work.evaluations += len(times)
-            return self._rhs_kernel(np.vstack([times, states]))
-
-        self._rates = rates
+        self._rates = counted(self._rhs_kernel, self.work)
         self._kinds = variables(dynamics)
         self._led = lead(dynamics)
         if method.traits.name == "lsoda":

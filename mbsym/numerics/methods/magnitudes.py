@@ -32,6 +32,7 @@ from mbsym.model.states import described
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code, Kernel
+from mbsym.numerics.methods.interface import Work, compiled_kernel
 
 #: A coordinate is displaced by this part of its size.
 DISPLACED = 1 / 8
@@ -92,8 +93,8 @@ def variables(dynamics: Dynamics) -> Variables:
         whole = dynamics.mass_matrix
         return arrays.kernel(Code(whole.program, whole.inputs, whole.outputs[:: n + 1]))
 
-    masks = (np.array([name in group for name in names], dtype=bool) for group in groups)
-    return Variables(*masks, masses if n <= MOST_WEIGHED else None)
+    angles, moving, constant = (np.array([name in group for name in names], dtype=bool) for group in groups)
+    return Variables(angles, moving, constant, masses if n <= MOST_WEIGHED else None)
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,22 @@ def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magni
     with np.errstate(all="ignore"):
         found = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
     return Magnitudes(np.hstack([one.sizes for one in found]), np.concatenate([one.times for one in found]))
+
+
+def about(dynamics: Dynamics, time: float, state: Any) -> Magnitudes:
+    """The magnitudes of the scene about one state (d,), in float64."""
+    rates = counted(compiled_kernel(dynamics, "right_hand_side"), Work())
+    return magnitudes(rates, variables(dynamics), np.array([float(time)]), np.asarray(state, dtype=float)[:, None])
+
+
+def counted(rhs: Kernel, work: Work) -> Rates:
+    """The rates by a kernel, each evaluation counted."""
+
+    def rates(times: Any, states: Any) -> Any:
+        work.evaluations += len(times)
+        return rhs(np.vstack([times, states]))
+
+    return rates
 
 
 def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:

@@ -38,7 +38,7 @@ from mbsym.numerics.methods.interface import (
     once,
 )
 from mbsym.numerics.methods.led import nearly_singular
-from mbsym.numerics.methods.magnitudes import first_steps, magnitudes, variables
+from mbsym.numerics.methods.magnitudes import counted, first_steps, magnitudes, variables
 from mbsym.numerics.methods.marching import ARGUMENTS, adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.stepping import Stepping
@@ -501,13 +501,7 @@ class AdaptiveRun(CompiledRun):
         smallest = 4 * float(np.finfo(self.dtype).eps)
         self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
         self.clock[LONGEST] = 1e30 if setting.longest is None else setting.longest
-        rhs = compiled_kernel(dynamics, "right_hand_side", scalar)
-
-        def rates(times: Any, states: Any) -> Any:
-            self.work.evaluations += len(times)
-            return rhs(np.vstack([times, states]))
-
-        self._rates = rates
+        self._rates = counted(compiled_kernel(dynamics, "right_hand_side", scalar), self.work)
         self._kinds = variables(dynamics)
         self.restart(at, initial)
 

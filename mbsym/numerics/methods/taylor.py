@@ -39,7 +39,7 @@ from mbsym.numerics.methods.interface import (
     once,
 )
 from mbsym.numerics.methods.led import lead, nearly_singular
-from mbsym.numerics.methods.magnitudes import magnitudes, variables
+from mbsym.numerics.methods.magnitudes import counted, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import exact_number, initial_state
 
@@ -173,13 +173,8 @@ class TaylorRun(Stepping):
         self.order: int = self._taylor.order
         self.work = Work()
         state = initial_state(dynamics, self._dtype) if initial is None else np.array(initial, self._dtype)
-        rhs = compiled_kernel(dynamics, "right_hand_side")
-
-        def rates(times: Any, states: Any) -> Any:
-            self.work.evaluations += len(times)
-            return rhs(np.vstack([times, states]))
-
-        self._rates, self._kinds = rates, variables(dynamics)
+        self._rates = counted(compiled_kernel(dynamics, "right_hand_side"), self.work)
+        self._kinds = variables(dynamics)
         self.restart(at, state)
 
     def restart(self, time: float, state: Any) -> None:

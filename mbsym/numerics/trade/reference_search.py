@@ -31,6 +31,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import FOLLOWED, LOOKED_AT, Meter, Working, precise_cost
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
@@ -83,8 +84,10 @@ class Extrapolation:
         self.tolerance = tolerance
         self.columns = columns
         self.dynamics, self.limit, self.evaluations = dynamics, limit, 0
-        self.step_size = 1e-3
-        self.scale = [max(abs(float(x)), 1e-3) for x in dynamics.scenario.state]
+        known = about(dynamics, 0.0, self.floats())
+        self.unit = float(known.times[0])
+        self.step_size = 1e-3 * self.unit
+        self.scale = np.maximum(np.abs(self.floats()), 1e-3 * known.sizes[:, 0]).tolist()
 
     def advance(self, until: float) -> None:
         """Steps up to ``until``; the last one ends there exactly.  Raises Breakdown."""
@@ -106,7 +109,7 @@ class Extrapolation:
             if accepted:
                 self.time, self.state = now, new
                 self.scale = [max(s, abs(float(x))) for s, x in zip(self.scale, new, strict=True)]
-            if not self.step_size > 1e-12 * max(1.0, self.time):
+            if not self.step_size > 1e-12 * max(self.unit, self.time):
                 raise Breakdown(BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
             if self.spent > self.limit:
                 raise Breakdown(STEP_LIMIT, "it costs more than it may", self.time, self.floats())
