@@ -175,7 +175,7 @@ class SideBySide:
         constant = np.append(kinds.constant, np.ones(still, bool))
         behind = Variables(angles, moving, constant, kinds.masses)
         found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
-        return Magnitudes(found.sizes[: self.made.size], found.times)
+        return Magnitudes(found.sizes[: self.made.size], found.times, found.natural[: self.made.size])
 
     def _flat(self, grouped: Any) -> Any:
         """(rows, members and what fills the last group)."""

@@ -40,6 +40,9 @@ DISPLACED = 1 / 8
 #: No component counts for less than this part of the size that the scene would give it.
 LEAST = 1e-4
 
+#: The least part of a size where the rates at the state itself tell less.
+SHARE = 1 / 32
+
 #: Nor for so little that its tolerance is below so many roundings of that size.
 ROUNDINGS = 16.0
 
@@ -99,10 +102,15 @@ def variables(dynamics: Dynamics) -> Variables:
 
 @dataclass(frozen=True)
 class Magnitudes:
-    """``sizes`` (d, m) that a scene gives the components of m states, and ``times`` (m,) in which it moves them."""
+    """``sizes`` (d, m) that a scene gives the components of m states, and ``times`` (m,) in which it moves them.
+
+    ``natural`` are those with the rates at the states themselves, at least ``SHARE`` of the others: a displacement may
+    lead to where forces are much larger.
+    """
 
     sizes: Any
     times: Any
+    natural: Any
 
     def floor(self, tolerance: float, precision: float) -> Any:
         """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""
@@ -116,7 +124,8 @@ def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magni
     parts = range(0, states.shape[1], at_once)
     with np.errstate(all="ignore"):
         found = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
-    return Magnitudes(np.hstack([one.sizes for one in found]), np.concatenate([one.times for one in found]))
+    sizes, natural = (np.hstack([getattr(one, name) for one in found]) for name in ("sizes", "natural"))
+    return Magnitudes(sizes, np.concatenate([one.times for one in found]), natural)
 
 
 def about(dynamics: Dynamics, time: float, state: Any) -> Magnitudes:
@@ -150,7 +159,8 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
     bends = np.max(ways * rate, axis=1, initial=0.0)
     bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
-    sizes[placed] = np.maximum(sizes[placed], LEAST * _finite(base)[placed] ** 2 / bends)
+    arcs = _finite(base)[placed] ** 2 / bends
+    sizes[placed] = np.maximum(sizes[placed], LEAST * arcs)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
     times = np.sqrt(_ratio(path, rate))
@@ -168,7 +178,12 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     path = np.where(path > 0, path, rate * shortest**2)
     reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
     sizes[placed] = np.where(sizes[placed] > 0, sizes[placed], reached)
-    return Magnitudes(np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0), shortest)
+    sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0)
+    natural = sizes.copy()
+    own = np.maximum(given[moving], np.sqrt(_finite(base)[moving] * path))
+    natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
+    natural[moving] = np.minimum(sizes[moving], np.maximum(own, SHARE * sizes[moving]))
+    return Magnitudes(sizes, shortest, natural)
 
 
 def _ratio(a: Any, b: Any) -> Any:

@@ -5,9 +5,8 @@ derives the recurrences of the Taylor coefficients from them and compiles them. 
 (about -ln(tol)/2 + 1), the step from the decay of the coefficients; times between steps come from the series itself.
 
 heyoka's tolerance bounds the remainder of each step, relative to the largest component of the state if that exceeds 1.
-So it integrates y_i = x_i/s_i, where s_i is the size that the scene gives x_i (``magnitudes``), or |x_i| where a run
-begins if that is more: the unit of a length or of the time changes nothing.  The s_i are powers of 2, so that no digit
-is lost.
+So it integrates y_i = x_i/s_i, where s_i is the size that x_i has about where a run begins (``magnitudes``): the unit
+of a length or of the time changes nothing.  The s_i are powers of 2, so that no digit is lost.
 """
 
 from __future__ import annotations
@@ -186,7 +185,7 @@ class TaylorRun(Stepping):
         self._taylor.time = self._dtype(time)
         state = np.array(state, self._dtype)
         begin, states = np.array([float(time)]), state[:, None].astype(float)
-        sizes = magnitudes(self._rates, self._kinds, begin, states).sizes[:, 0]
+        sizes = magnitudes(self._rates, self._kinds, begin, states).natural[:, 0]
         self._scales = self._dtype(2) ** np.ceil(np.log2(sizes)).astype(self._dtype)
         self._taylor.state[:] = state / self._scales
         cells = np.zeros(0) if self._cells is None else self._cells.values
