@@ -7,6 +7,7 @@ from fractions import Fraction as F
 from math import sqrt
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -17,6 +18,7 @@ from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles import side_by_side
 from mbsym.numerics.events.switching import rates
+from mbsym.numerics.methods import runge_kutta
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
@@ -238,3 +240,66 @@ def test_rates_of_decay_and_oscillation_scale_with_the_time(name: str, units: tu
     other = rates(Dynamics(rescaled(given, units)))
     assert decay + frequency > 0.1
     assert [x * float(units[2]) for x in other] == pytest.approx([decay, frequency], rel=1e-5, abs=1e-6)
+
+
+def test_a_size_of_1_in_whatever_unit_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def careless(rates: Any, kinds: Any, begin: Any, states: Any) -> Magnitudes:
+        return Magnitudes(np.ones(states.shape), np.ones(len(begin)), np.ones(states.shape))
+
+    monkeypatch.setattr(runge_kutta, "magnitudes", careless)
+    given, steps = scenario(SPRING), []
+    for unit in (F(1), F(1, 10**6)):
+        found = METHODS["dop853"].start(Dynamics(rescaled(given, (F(1), unit, F(1)))), Setting(1e-10))
+        found.advance(3.0)
+        steps.append(found.work.steps)
+    assert steps[1] < 0.9 * steps[0]
+
+
+# --- extremes, against a solution by hand ---
+
+PAIR = """
+mbsym: 1
+name: a mass on a mass
+parameters: {m1: positive, m2: positive, k1: positive, k2: positive}
+bodies:
+  - {name: a, attached to: 0, mass: m1, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: b, attached to: a, mass: m2, connection point: [y, 0, 0], coordinates: [y]}
+loads: [{spring: {coordinate: x, stiffness: k1}}, {spring: {coordinate: y, stiffness: k2}}]
+motion: {x: 0, y: 0}
+"""
+
+#: m1, k1, m2, k2, x(0), y(0), time.
+EXTREMES = {
+    "of order 1": ("1", "1", "1", "2", "1", "0.5", 10.0),
+    "masses 1e12 and 1e-12": ("1e12", "1e12", "1e-12", "1e-12", "1", "0.5", 10.0),
+    "masses 1e-12 and 1e12": ("1e-12", "1", "1e12", "1e12", "1e-12", "0.5", 1e-11),
+    "lengths of 1e-9": ("1e-15", "1e-3", "1e-15", "2e-3", "1e-9", "0.5e-9", 1e-5),
+    "lengths of 1e9": ("1e20", "1e6", "1e20", "1e6", "1e9", "0.5e9", 1e8),
+    "a stiff spring at its rest": ("1", "1e8", "1", "1", "0", "1", 0.1),
+}
+
+
+def by_hand(m1: str, k1: str, m2: str, k2: str, x: str, y: str, times: Any) -> Any:
+    """M q'' + K q = 0 from rest with M = [[m1 + m2, m2], [m2, m2]]: a sum of two cosines, in 60 digits."""
+    with mpmath.workdps(60):
+        a, b, c, d = (mpmath.mpf(value) for value in (m1, k1, m2, k2))
+        rates, modes = mpmath.eig(mpmath.inverse(mpmath.matrix([[a + c, c], [c, c]])) * mpmath.diag([b, d]))
+        shares = mpmath.lu_solve(modes, mpmath.matrix([mpmath.mpf(x), mpmath.mpf(y)]))
+        found = [[shares[i] * mpmath.cos(mpmath.sqrt(rates[i]) * t) for i in range(2)] for t in times]
+        return np.array([[float(mpmath.re(z)) for z in modes * mpmath.matrix(row)] for row in found]).T
+
+
+@pytest.mark.parametrize("method", ["dop853", "taylor"])
+@pytest.mark.parametrize("case", EXTREMES)
+def test_estimates_are_true_at_extremes(case: str, method: str) -> None:
+    """Of default runs, and within 1000 of the error."""
+    *numbers, time = EXTREMES[case]
+    m1, k1, m2, k2, x, y = numbers
+    values = f"values: {{m1: {m1}, k1: {k1}, m2: {m2}, k2: {k2}}}\ninitial: {{x: {x}, y: {y}}}\n"
+    found = run(from_text(PAIR + values), time, method)
+    exact = by_hand(*numbers, found.trajectory.times.tolist())
+    error = np.max(np.abs(found.trajectory.states[:2] - exact), axis=1) / np.max(np.abs(exact), axis=1)
+    assert isinstance(found.error, ErrorEstimate)
+    assert np.max(error) <= 2 * found.error.largest
+    assert found.error.largest <= 1000 * max(np.max(error), ROUNDINGS)
+    assert np.max(error) < (1e-4 if "stiff" in case else 1e-10), "its own size is 1e-8 of the other's"
