@@ -110,8 +110,8 @@ class Refusal:
     more: Sequence[str] = ()
 
 
-#: In place of an option where the description is at fault, or what was given for it.
-FILE, DESCRIPTION = "FILE", ""
+#: In place of an option where the description is at fault: complaints begin with its name.
+DESCRIPTION = ""
 
 
 @dataclass(frozen=True)

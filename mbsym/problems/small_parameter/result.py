@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.algebra.quotients import Series
+from mbsym.algebra.quotients import Quotient, Series
 
 
 class Outcome(Enum):
@@ -18,6 +18,15 @@ class Outcome(Enum):
     FAILS = "fails"
     CONDITIONAL = "conditional"
     UNDECIDED = "undecided"
+
+
+class Choice(Enum):
+    """Which root of the lowest order an expansion begins at."""
+
+    ONLY = "only"
+    ON_MOTION = "on the motion"
+    ATTRACTING = "attracting"
+    FIRST = "first"
 
 
 @dataclass(frozen=True)
@@ -61,11 +70,26 @@ class SteadyStates:
 
 
 @dataclass(frozen=True)
+class Adjoined:
+    """rho = sqrt(``square``) under the name ``label`` at ``place``, where the generator ``instead`` stood before.
+
+    ``square`` is over the context without rho, ``value`` what ``instead`` is in that with rho.
+    """
+
+    label: str
+    place: int
+    instead: str
+    square: Polynomial
+    value: Quotient
+
+
+@dataclass(frozen=True)
 class SlowManifold:
     """z = h(s, eps) = sum_k h_k(s) eps^k, k <= order, with s' = flow(s, eps) on it.
 
     ``functions``: h by name of the fast variables; ``flow`` by name of the slow ones; ``residuals``: for each fast
     variable the order of eps that is left when h, cut off, is put into the equations exactly (None: nothing is left).
+    ``root``: the square root in the coefficients, which ``field`` holds as one of its generators.
     """
 
     field: ScaledField
@@ -76,6 +100,7 @@ class SlowManifold:
     flow: tuple[Series, ...]
     residuals: tuple[int | None, ...]
     steady: SteadyStates | None = None
+    root: Adjoined | None = None
 
     @property
     def verified(self) -> bool:

@@ -6,7 +6,7 @@ from typing import Annotated, Generic, TypeVar
 
 from msgspec import UNSET, UnsetType, field
 
-from mbsym.problems.small_parameter.result import Outcome
+from mbsym.problems.small_parameter.result import Choice, Outcome
 from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
 
 #: Text, or in results.json text or its length.
@@ -73,6 +73,15 @@ class Measured(Part, frozen=True):
     expected: Annotated[int | UnsetType, "the order that is expected where eps is small enough"] = UNSET
 
 
+class Roots(Part, Generic[F], frozen=True, kw_only=True):
+    """solutions of the lowest order for the fast variables, where there are several"""
+
+    chosen: Annotated[Choice, "which of them the expansion begins with"]
+    others: Annotated[list[dict[str, F]], "the fast variables at the others"]
+    unknown: Annotated[int, "how many are neither rational nor square roots"]
+    positive: Annotated[list[F], "what stands under the square root and is positive where it is real"]
+
+
 class SlowManifold(Part, Generic[F], frozen=True, kw_only=True):
     """the slow integral manifold"""
 
@@ -86,6 +95,7 @@ class SlowManifold(Part, Generic[F], frozen=True, kw_only=True):
     flow: Annotated[
         list[SlowVariable[F]], "derivatives of the slow variables on the manifold", told_apart_by("variable")
     ]
+    roots: Roots[F] | UnsetType = UNSET
     missing: Annotated[str | UnsetType, "why nothing is said of a steady state"] = UNSET
     steady: Steady[F] | UnsetType = UNSET
 

@@ -13,7 +13,7 @@ from mbsym.analysis.small import Averaging, SmallParameters
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.result import Outcome
+from mbsym.problems.small_parameter.result import Choice, Outcome
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 SERIES = (
     "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]] as functions of the slow "
     "ones [[slow]], and the flow on it. The coefficient of the power $k$ of [[small]] has the index $(k)$."
+)
+CONSTANTS = (
+    "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]], which depend on no slow "
+    "one. The coefficient of the power $k$ of [[small]] has the index $(k)$."
 )
 NOTHING = (
     "The description names no small parameter, and no prescribed quantity has a parameter as its rate: nothing is "
@@ -124,7 +128,8 @@ def opening(found: Expansion) -> Iterator[Said]:
     small = Name(manifold.field.small)
     yield from scaled(manifold.field.powers, manifold.field.small)
     fast, slow = (tuple(_variable(found, name) for name in names) for names in (manifold.fast, manifold.slow))
-    yield say(SERIES, order=str(manifold.order), small=small, fast=fast, slow=slow)
+    gaps: Gaps = {"order": str(manifold.order), "small": small, "fast": fast}
+    yield Said(SERIES, gaps | {"slow": slow}) if slow else Said(CONSTANTS, gaps)
 
 
 def _variable(found: Expansion, name: str) -> Name:
@@ -150,6 +155,9 @@ def sentences(found: Expansion) -> Iterator[Said]:
         )
     else:
         yield Said("Put into the equations at a random rational state, it leaves nothing (verified).", values)
+    yield from _choice(found)
+    if found.real:
+        yield say("It is real where [[conditions]].", conditions=_told(found, found.real))
     if found.provided:
         yield say(
             "It holds where these are not zero, which were divided by: [[provided]].",
@@ -184,6 +192,34 @@ def sentences(found: Expansion) -> Iterator[Said]:
         "from this: at given values problem 6 decides.",
         values,
     )
+
+
+_CHOICE = {
+    Choice.ON_MOTION: "At the lowest order the fast variables have solutions; their number: [[count]]. This one holds "
+    "the unperturbed motion.",
+    Choice.ATTRACTING: "At the lowest order the fast variables have solutions; their number: [[count]]. This one "
+    "attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the fast rate by [[fast]] is "
+    "negative there).",
+    Choice.FIRST: "At the lowest order the fast variables have solutions; their number: [[count]]. This is the first; "
+    "which of them attract is not decided.",
+}
+
+
+def _choice(found: Expansion) -> Iterator[Said]:
+    """Which solution of the lowest order this one begins with, and the others."""
+    if found.choice is Choice.ONLY:
+        return
+    fast = [_variable(found, name) for name in found.manifold.fast]
+    count = str(1 + len(found.others) + found.unknown)
+    small = Name(found.manifold.field.small)
+    gaps: Gaps = {"count": count, "small": small, "fast": tuple(fast)}
+    yield Said(_CHOICE[found.choice], {k: x for k, x in gaps.items() if f"[[{k}]]" in _CHOICE[found.choice]})
+    for values in found.others:
+        shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
+        yield say("Another one begins with [[values]].", values=shown)
+    if found.unknown:
+        text = "Solutions that are neither rational nor square roots are not expanded; their number: [[count]]."
+        yield say(text, count=str(found.unknown))
 
 
 def of_measured(small: str, told: Measured | str) -> Iterator[Said]:

@@ -235,8 +235,8 @@ def test_a_lowest_order_that_is_solved_by_elimination():
     [
         ((lambda eps, s, z: eps * z, lambda eps, s, z: -s), "no variable is fast"),
         ((lambda eps, s, z: -s * eps, lambda eps, s, z: 1 * s), "does not determine fast variables"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**2), "does not determine fast variables"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: z * (s - z)), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**3), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: (s - z) ** 2), "does not determine fast variables"),
     ],
 )
 def test_where_there_is_none_it_is_said(rows, reason):
