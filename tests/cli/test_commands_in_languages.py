@@ -76,6 +76,17 @@ def test_english_is_found(folder: Path) -> None:
     assert "bodies" in strange(said("check", str(SHIPPED / "simple-pendulum.yaml")))
 
 
+@pytest.mark.parametrize("form", ["sarif", "github", "json"])
+def test_programs_read_the_same_complaints_from_check_and_batch(form: str, folder: Path) -> None:
+    """Batches wrote them in the language of the description, checks in English; people read theirs all the same."""
+    wrong = ("in/bad.yaml", "--output-format", form)
+    check, batch = (CliRunner().invoke(main, [*x, *wrong]).stdout for x in (("check",), ("batch", "--out", "out")))
+    assert check == batch
+    (row,) = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["systems"]
+    assert row["complaints"][0]["message"].startswith("unknown key")
+    assert "неизвестный ключ" in said("batch", "in/bad.yaml", "--out", "out")
+
+
 def test_programs_read_complaints_in_english(folder: Path) -> None:
     (row,) = (json.loads(line) for line in said("check", "in/bad.yaml", "--output-format", "json").splitlines())
     assert row["code"] == "unknown-key"
