@@ -54,9 +54,7 @@ def read_finished(text: str | bytes) -> Finished:
     files = {str(name): _read_content(content) for name, content in found["files"].items()}
     row, said = read_row(found["row"]), {str(one): _read_sentence(data) for one, data in found["sentences"].items()}
     complaints = tuple(
-        structs.replace(
-            one, message=said.get(one.message, one.message), hint=one.hint and said.get(one.hint, one.hint)
-        )
+        structs.replace(one, message=said.get(one.message, one.message), hint=one.hint and said.get(one.hint, one.hint))
         for one in row.complaints
     )
     return Finished(replace(row, complaints=complaints), files, str(found["meaning"]), bool(found["same"]))
