@@ -209,9 +209,9 @@ MOST_CHANGES, LONGEST = 40, 120
 
 #: Properties of results.json that are called otherwise in words; what is empty is not said.
 WORDS = {
-    "system": "", "kinematics": "", "bodies": "", "energy": "", "equations": "", "rotation": Message("direction cosines"),
-    "A2": Message("A2 of T"), "A1": Message("A1 of T"), "A0": Message("A0 of T"),
-    "at_values": Message("at the values"), "linearisation": Message("linear form"),
+    "system": "", "kinematics": "", "bodies": "", "energy": "", "equations": "",
+    "rotation": Message("direction cosines"), "A2": Message("A2 of T"), "A1": Message("A1 of T"),
+    "A0": Message("A0 of T"), "at_values": Message("at the values"), "linearisation": Message("linear form"),
     "velocity_origin": Message("velocity of the joint"), "velocity_mass_centre": Message("velocity of the mass centre"),
     "parameters": Message("parameter"), "checks": Message("self-check"), "subsystems": Message("subsystem"),
     "claims": Message("claim"), "initial": Message("initial state"), "motion": Message("unperturbed motion"),
