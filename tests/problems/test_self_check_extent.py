@@ -30,7 +30,7 @@ bodies:
   - {name: aside, attached to: 0, rotation: {axes: [2], angles: [q4]}, mass: m, mass centre: [a, 0, b],
      coordinates: [q4]}
 loads:
-  - uniform gravity: {acceleration: 9.81, direction: [0, 0, -1]}
+  - uniform gravity: {vector: [1, 2, -9]}
 """
 
 
