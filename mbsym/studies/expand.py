@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -22,7 +22,6 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
-    from mbsym.model.system import System
     from mbsym.simulation.expanded import Measured
 
 
@@ -54,7 +53,8 @@ class Request:
     ] = None
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     small = system.small
     if small is None:
         hint = "add 'small parameter: eps'"

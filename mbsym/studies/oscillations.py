@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
@@ -99,7 +99,8 @@ class Request:
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     small, leading = system.small, request.of
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
@@ -119,7 +120,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         yield from _unscaled(request.scale, system)
     if request.integral is not None:
         yield from _no_rates(request.integral, system)
-    if "language" in typed and "format" not in typed:
+    if "language" in asked.typed and "format" not in asked.typed:
         yield Unfit("--language", *UNWRITTEN)
 
 
