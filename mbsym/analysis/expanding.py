@@ -56,6 +56,13 @@ class Expansion(Shown):
     unknown: int = 0
     real: tuple[Condition, ...] = ()
 
+    @property
+    def stabilizable(self) -> tuple[Outcome, tuple[Condition, ...]]:
+        """Whether all roots but the zero ones have negative real parts for all sufficiently small eps > 0."""
+        outcomes = {self.fast[0], self.slow[0]}
+        worst = next(x for x in (Outcome.FAILS, Outcome.UNDECIDED, Outcome.CONDITIONAL, Outcome.HOLDS) if x in outcomes)
+        return worst, (*self.fast[1], *self.slow[1])
+
     def formula(self, c: Quotient) -> Formula:
         """A coefficient as a formula of the description."""
         ring, root = self.transfer.ring, self.manifold.root

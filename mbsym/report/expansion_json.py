@@ -63,6 +63,8 @@ def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
             divided_up_to=steady.remainder - 1,
             attracts=_hurwitz(found, steady.fast, *found.fast, write),
             flow=_hurwitz(found, steady.slow, *found.slow, write),
+            free=list(steady.free),
+            stabilizable=found.stabilizable[0] if steady.free else None,
         ),
     )
 

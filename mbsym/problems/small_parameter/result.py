@@ -61,12 +61,19 @@ class SteadyStates:
     """The first approximation about a steady state on the manifold.
 
     det(S - A) = S^zeros slow(S) fast(S); ``remainder``: the order of eps to which slow(S) is seen to divide it.
+
+    ``free``: variables that may have any values while the others keep theirs, where every such state is steady and
+    they are as many as roots are zero: a set Omega of steady states.  Empty where none is seen.  By Lyapunov and Malkin
+    Omega is then asymptotically stable with respect to the other variables, and stabilizable, where all roots but the
+    zero ones have negative real parts: disturbed motions tend to points of Omega (V. V. Rumyantsev, A. S. Oziraner,
+    Stability and stabilization of motion with respect to a part of the variables, 1987).
     """
 
     zeros: int
     slow: Hurwitz
     fast: Hurwitz
     remainder: int
+    free: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,16 @@ class Steady(Part, Generic[F], frozen=True):
     divided_up_to: Annotated[int, "up to this order the polynomial of the flow is seen to divide that of all variables"]
     attracts: Hurwitz[F]
     flow: Annotated[Hurwitz[F], "the roots of the flow on the manifold but those that are zero"]
+    free: Annotated[
+        list[str],
+        "variables that may have any values while the others keep theirs: then the state is steady; as many as roots "
+        "are zero, or none",
+    ]
+    stabilizable: Annotated[
+        Outcome | None,
+        "whether this set of steady states is asymptotically stable with respect to the other variables and disturbed "
+        "motions tend to its points (Rumyantsev), under the conditions of attracts and flow; null: no set is seen",
+    ]
 
 
 class Measured(Part, frozen=True):

@@ -100,6 +100,18 @@ _SLOW = {
     Outcome.UNDECIDED: "Whether the roots of the flow on it have negative real parts is undecided: a Hurwitz minor "
     "vanishes to the order of the expansion, or has no sign.",
 }
+#: Of a set of steady states.
+_OMEGA = {
+    Outcome.HOLDS: "For all sufficiently small $[[small]] > 0$ it is asymptotically stable with respect to [[others]] "
+    "near this motion, and stabilizable (Rumyantsev): disturbed motions tend to points of $\\Omega$ "
+    "(Lyapunov-Malkin).",
+    Outcome.CONDITIONAL: "For all sufficiently small $[[small]] > 0$ it is asymptotically stable with respect to "
+    "[[others]] near this motion, and stabilizable (Rumyantsev), where [[conditions]]: disturbed motions tend to "
+    "points of $\\Omega$ (Lyapunov-Malkin).",
+    Outcome.FAILS: "It is not stable with respect to [[others]] near this motion for any sufficiently small "
+    "$[[small]] > 0$: a root has a positive real part.",
+    Outcome.UNDECIDED: "Whether it is stable with respect to [[others]] near this motion is undecided.",
+}
 
 
 def coefficients(found: Expansion) -> Iterator[Coefficient]:
@@ -173,6 +185,8 @@ def sentences(found: Expansion) -> Iterator[Said]:
         outcome, conditions = found.slow
         told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
         yield Said(told[outcome], values | {"conditions": _told(found, conditions)})
+    elif manifold.steady.free:
+        yield Said("All roots of the flow on it are zero.")
     elif manifold.steady.zeros:
         yield Said("All roots of the flow on it are zero: the first approximation decides nothing there.")
     yield Said(
@@ -180,6 +194,7 @@ def sentences(found: Expansion) -> Iterator[Said]:
         "[[known]] (verified).",
         values | {"known": str(manifold.steady.remainder - 1)},
     )
+    yield from _of_set(found, manifold.steady.free, values)
     if found.fast[0] is Outcome.FAILS:  # a negative minor: a root to the right, whatever the flow on the manifold does
         yield Said(
             "A fast root has a positive real part: this motion is unstable for all sufficiently small $[[small]] > 0$.",
@@ -220,6 +235,27 @@ def _choice(found: Expansion) -> Iterator[Said]:
     if found.unknown:
         text = "Solutions that are neither rational nor square roots are not expanded; their number: [[count]]."
         yield say(text, count=str(found.unknown))
+
+
+def _of_set(found: Expansion, free: Sequence[str], values: Gaps) -> Iterator[Said]:
+    """The set of steady states, in the words of Rumyantsev."""
+    known = {*found.manifold.fast, *found.manifold.slow}
+    order = [name for name in found.transfer.variables if name in known]
+    others = [name for name in order if name not in free]
+    if not (free and others):
+        return
+    outcome, conditions = found.stabilizable
+    values = values | {
+        "free": tuple(_variable(found, name) for name in free),
+        "others": tuple(_variable(found, name) for name in others),
+        "conditions": _told(found, conditions),
+    }
+    yield Said(
+        "Every state near this motion with any [[free]], and with [[others]] as on the motion, is steady: a set "
+        "$\\Omega$ of as many dimensions as roots are zero.",
+        values,
+    )
+    yield Said(_OMEGA[outcome], values)
 
 
 def of_measured(small: str, told: Measured | str) -> Iterator[Said]:
