@@ -1,4 +1,4 @@
-"""Problem 9 of systems whose velocities are tied: the equations without multipliers as a polynomial field."""
+"""Problems 9 and 10 of systems whose velocities are tied: the equations without multipliers as a polynomial field."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from mbsym.analysis.constrained import integrals_check
 from mbsym.analysis.polynomial import setting
 from mbsym.formulas.formula import Formula
 from mbsym.problems.integrals import Integral
+from mbsym.problems.invariant_sets import Definiteness
 
 #: u' = a w^2,  (J + m a^2) w' = -m a u w  (S. A. Chaplygin, 1911).
 SLEIGH = """
@@ -95,6 +96,16 @@ def test_an_integral_that_no_symmetry_says_is_found_and_checked():
     check = found.check("polynomial integrals")
     assert check.outcome == "exact"
     assert "multipliers" in check.first
+
+
+def test_steady_motions_and_manifolds_of_the_particle():
+    """x' = 0 is kept, with y'' = -(k/m) y on it: both integrals together are m/2 (1 + y^2) x'^2, definite across it."""
+    families = mbsym.loads(PARTICLE).invariant_sets.families
+    rest, manifold = families[0].sets
+    assert {(name, str(x)) for name, x in rest.solved} == {("x_dot", "0"), ("y_dot", "0"), ("y", "0")}
+    assert [(name, str(x)) for name, x in manifold.solved] == [("x_dot", "0")]
+    assert ("y_dot", "-k*y/m") in [(name, str(x)) for name, x in manifold.motion]
+    assert all(one.variation.outcome is Definiteness.STABLE for one in (rest, manifold))
 
 
 def test_a_wrong_integral_is_seen():
