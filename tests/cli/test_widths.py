@@ -55,9 +55,9 @@ def test_a_table_in_an_explanation_keeps_its_columns(topic: str) -> None:
     """Rows were broken twice, and began in the line of the row before; a key has its meaning beside it or below."""
     narrow, wide = (called(("explain", topic), Path(), columns).split("\n") for columns in (str(WIDTH), "1000"))
     row = re.compile(r"( {4}\w[\w ]*?  +)(?=\S)")
-    begun = [match[1] for line in wide if (match := row.match(line))]
+    begun, rows = ([match[1] for match in map(row.match, lines) if match] for lines in (wide, narrow))
     assert len(begun) > 10
-    assert [match[1] for line in narrow if (match := row.match(line))] == begun
+    assert rows == begun
     under = [line for line, before in zip(narrow[1:], narrow, strict=False) if row.match(before) and line[:5].isspace()]
     assert under
     assert {len(line) - len(line.lstrip()) for line in under} <= {len(x) for x in begun}
