@@ -163,6 +163,18 @@ def unfit(name):
     assert [one.text for one in module.texts] == ["nobody says this"]
 
 
+def test_what_is_said_of_an_option_that_is_absent_is_found() -> None:
+    """Negative control: a tuple, one that has a name, and one that is put together."""
+    study = """
+ABSENT = ("nobody says this", "nor this")
+period: Annotated[float, Number("T", "The period.", absent=ABSENT)]
+time: Annotated[float, Number("T", "The time.", absent=("how long?", f"take {name}"))]
+"""
+    module = said.Module("studies/planted.py", ast.parse(study), frozenset())
+    assert {one.text for one in module.texts} == {"nobody says this", "nor this", "how long?"}
+    assert [place.partition(": ")[0] for place in module.open] == ["studies/planted.py:4"]
+
+
 def test_words_that_a_command_prints_in_english_are_found() -> None:
     """Negative control: a complaint, a line and a question of a command, and reasons against an earlier run."""
     command = """
