@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from mbsym.algebra.program import Node
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.names import free_name
-from mbsym.formulas.straight_line import Dialect, Listing, listing
+from mbsym.formulas.straight_line import Dialect, short_listing
 from mbsym.formulas.wolfram import (
     WolframNames,
     wolfram_call,
@@ -211,11 +210,11 @@ def _code(analysis: Analysis) -> dict[str, Any] | None:
         return None
     names = wolfram_names(analysis.ring)
     inputs = {name: names[name] for name in programs.environment}
-    nodes: list[Node] = [x for row in programs.mass_matrix for x in row]
+    nodes = [*(x for row in programs.mass_matrix for x in row), *programs.forcing]
     n = len(system.coordinates)
-    body: Listing = listing(programs.program, [*nodes, *programs.forcing], inputs, DIALECT)
-    if len(body.assignments) > FILE_PROGRAM:
-        return {"omitted": Writer().said(program_not_printed(len(body.assignments)))}
+    body = short_listing(programs.program, nodes, inputs, DIALECT, FILE_PROGRAM)
+    if body is None:
+        return {"omitted": Writer().said(program_not_printed(programs.program, nodes))}
     prescribed = {names[item.name]: prescribed_value(item) for item in system.prescribed if item.name in body.inputs}
     return {
         "positions": [names[name] for name in system.coordinates],

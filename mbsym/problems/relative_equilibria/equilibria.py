@@ -301,7 +301,7 @@ class _ChartSearch(SearchInBoxes):
             self._add_free_point()
             return
         if self.reason:
-            self.remarks.append(Message("not solved exactly: [[why]]", why=self.reason))
+            self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
             self._search_numerically(bisect=True)
             return
         self._solve_exactly()
