@@ -8,7 +8,7 @@ from __future__ import annotations
 import inspect
 import sys
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -23,9 +23,23 @@ from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Folder,
+    Line,
+    NotFit,
+    Remember,
+    Single,
+    Study,
+    Unfit,
+    unremembered,
+)
+from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
     BAD_INPUT,
+    BROKEN_DOWN,
     FAILED,
     INTERRUPTED,
     OK,
@@ -50,13 +64,18 @@ Found = TypeVar("Found")
 def command_of(study: Study[Any, Any]) -> click.Command:
     """The command; its help is what the request says of itself."""
 
-    def called(file: Path, **texts: Any) -> None:
-        leave(file, lambda: _Run(study, file, texts).code())
+    def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
+        if not isinstance(file, tuple):
+            leave(file, lambda: _Run(study, file, texts).code())
+        if len(file) == 1:
+            leave(file[0], lambda: _Run(study, file[0], texts).code())
+        leave(file[0], lambda: _together(study, file, texts))
 
+    count = 1 if study.together is None else -1
     return click.Command(
         study.name,
         params=[
-            click.Argument(["file"], type=click.Path(path_type=Path)),
+            click.Argument(["file"], type=click.Path(path_type=Path), nargs=count, required=True),
             *(option_of(field) for field in fields_of(study.request)),
             *_further(study),
         ],
@@ -81,12 +100,32 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
             yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
 
 
+def _together(study: Study[Any, Any], files: Sequence[Path], texts: Mapping[str, Any]) -> int:
+    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code."""
+    assert study.together is not None
+    runs = [_Run(study, file, texts, folder_for(file, None).name) for file in files]
+    if len({run.folder for run in runs}) < len(runs):
+        text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
+        complain(files[0], Message(text))
+        return BAD_INPUT
+    codes = [run.code() for run in runs]
+    known = [run.told for run in runs if run.told is not None]
+    if known:
+        show(study.together(known), known[0][0].system.language)
+    return max(codes, key=[OK, FAILED, BROKEN_DOWN, BAD_INPUT, INTERRUPTED].index)
+
+
 class _Run:
     """One command at work: everything is read and complained about, then derived, written and told."""
 
-    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any]) -> None:
-        self.study, self.file, self.texts = study, file, texts
+    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], among: str = "") -> None:
+        """``among``: it is one of several, and has a folder of this name in that of all."""
+        self.study, self.file, self.texts, self.among = study, file, texts, among
         self.out: Path | None = texts.get("out")
+        if among and self.out is not None:
+            self.out = self.out / among
+        self.folder = folder_for(file, self.out)
+        self.told: tuple[Asked, Any, Any] | None = None
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
         self.options = Options()
@@ -111,7 +150,7 @@ class _Run:
         code = prevented(file, folder_for(file, self.out) if kept else None, system is not None, self.options)
         if code or system is None:
             return code or BAD_INPUT
-        asked = Asked(system, given, printable(file), folder_for(file, self.out), write_whole)
+        asked = Asked(system, given, printable(file), self.folder, write_whole, _memory())
         return self._answered(asked, request)
 
     @contextmanager
@@ -183,7 +222,9 @@ class _Run:
             for text in (refusal.text, *refusal.more):
                 complain(file, text, self.say)
             return refusal.code
-        if self.as_json:
+        if self.among:
+            self.told = asked, request, found
+        elif self.as_json:
             click.echo(_json(answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
@@ -228,6 +269,15 @@ class _Run:
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
+
+
+def _memory() -> Remember:
+    """What was measured before counts for a command in a process of its own."""
+    if not Beside.allowed:
+        return unremembered
+    from mbsym_cli.remembered import remembered
+
+    return remembered
 
 
 def _json(answer: Answer) -> str:

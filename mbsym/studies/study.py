@@ -57,11 +57,30 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
     """Nobody looks on."""
 
 
+class Remember(Protocol):
+    """``measure()`` answers the ``question``, or an earlier answer does, unless it is asked ``anew``.
+
+    Returns the answer, and whether it is an earlier one; only ``sound`` answers are kept for later.
+    """
+
+    def __call__(
+        self, question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+    ) -> tuple[Any, bool]: ...
+
+
+def unremembered(
+    question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+) -> tuple[Any, bool]:
+    """Nobody remembers anything."""
+    return measure(), False
+
+
 @dataclass(frozen=True)
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
-    ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
+    ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole;
+    ``remember`` knows what was measured before.
     """
 
     system: System
@@ -69,6 +88,7 @@ class Asked:
     file: str = ""
     folder: Path = Path()
     write: Callable[[Path, bytes], object] = Path.write_bytes
+    remember: Remember = unremembered
 
     @property
     def motion(self) -> Scenario:
@@ -176,7 +196,8 @@ class Study(Generic[R, F]):
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
+    results of several descriptions, where they may be asked about at once.
     """
 
     name: str
@@ -196,6 +217,7 @@ class Study(Generic[R, F]):
     document: Callable[[Asked, R, F], Document] | None = None
     timed: bool = False
     letters: bool = False
+    together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
