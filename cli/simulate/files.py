@@ -131,23 +131,21 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
     if not {"html", "gif"} & set(formats):
         return {}
-    from mbsym.report.figures.animation import animation
-
-    found = animation(run)
-    if found is None:
-        told = Message("no animation: no body has a place that could be drawn")
-        print(Language(run.system.language).say(told), file=sys.stderr)
-        return {}
-    files: dict[str, bytes] = {}
+    files: dict[str, bytes | None] = {}
     if "html" in formats:
-        from mbsym.report.figures.animation_page import animation_page
+        from mbsym.report.viewer.page import animation_page
 
-        files["animation.html"] = animation_page(found, run).encode()
+        page = animation_page(run)
+        files["animation.html"] = None if page is None else page.encode()
     if "gif" in formats:
         from mbsym.report.figures.animation_gif import animation_gif
 
-        files["animation.gif"] = animation_gif(found)
-    return files
+        files["animation.gif"] = animation_gif(run)
+    for name, data in files.items():
+        if data is None:
+            told = Message("no [[file]]: no body has a place that could be drawn", file=name)
+            print(Language(run.system.language).say(told), file=sys.stderr)
+    return {name: data for name, data in files.items() if data is not None}
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

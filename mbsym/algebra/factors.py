@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import compress, count
 from typing import Any
 
-from flint import fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.expressions.message import Message
@@ -93,6 +93,20 @@ def rational_ratio(x: Any, y: Any) -> Any:
         return None
     ratio = x.coefficient(0) / y.coefficient(0)
     return ratio if x == y * ratio else None
+
+
+def square_root_of(x: Polynomial) -> Polynomial | None:
+    """The polynomial whose square x is, of either sign; None where there is none."""
+    content, factors = x.factor_squarefree()
+    top, bottom = abs(content.p).isqrt(), content.q.isqrt()
+    if content < 0 or top * top != content.p or bottom * bottom != content.q:
+        return None
+    found = x.context().constant(fmpq(top, bottom))
+    for factor, exponent in factors:
+        if exponent % 2:
+            return None
+        found = found * factor ** (int(exponent) // 2)
+    return found
 
 
 # Which generators stand in polynomials.

@@ -20,6 +20,7 @@ from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
+from mbsym.algebra.factors import square_root_of
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.rationals import value_at
 from mbsym.expressions.angles import LinearForm
@@ -186,18 +187,7 @@ class Tower(Algebra[Element]):
 
     def _square_root(self, x: fmpq_mpoly) -> fmpq_mpoly | None:
         """The polynomial whose square x is, where x holds no root; None where there is none."""
-        if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]):
-            return None
-        content, factors = x.factor_squarefree()
-        top, bottom = abs(content.p).isqrt(), content.q.isqrt()
-        if content < 0 or top * top != content.p or bottom * bottom != content.q:
-            return None
-        found = self.context.constant(fmpq(top, bottom))
-        for factor, exponent in factors:
-            if exponent % 2:
-                return None
-            found = found * factor ** (int(exponent) // 2)
-        return found
+        return None if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]) else square_root_of(x)
 
     def rational(self, x: Element) -> fmpq | None:
         """The number that x is, if it is written as one."""

@@ -104,14 +104,6 @@ class Scenario:
         return (*self.positions, *self.velocities)
 
 
-def identity(given: Scenario) -> str:
-    """A text that two scenarios share only if they are the same motion of the same description."""
-    from mbsym.source.yaml_writer import meaning
-
-    numbers = {name: getattr(given, name) for name in given.__dataclass_fields__ if name != "system"}
-    return repr((meaning(given.system), numbers))
-
-
 def scenario(
     system: System,
     overrides: Mapping[str, Expression] | None = None,

@@ -272,6 +272,17 @@ def fields_of(request: type) -> tuple[Field, ...]:
     return tuple(found)
 
 
+def options_typed(request: type, typed: Mapping[str, Any]) -> frozenset[str]:
+    """The options with these texts, and ``--option text`` of those that have one."""
+    names = {field.name: field.option for field in fields_of(request)}
+    options = set()
+    for name, text in typed.items():
+        option = names.get(name, f"--{name.removeprefix('as_')}")
+        options.add(f"--no-{option.removeprefix('--')}" if text is False else option)
+        options |= {f"{option} {text.lower()}"} if isinstance(text, str) else set()
+    return frozenset(options)
+
+
 def wrong(request: Any) -> Iterator[str]:
     """What of a request is out of its bounds, a sentence each."""
     for field in fields_of(type(request)):

@@ -26,6 +26,7 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.trade import tradeoff as trade_study
     from mbsym.numerics.trade.tradeoff import Measured
     from mbsym.report.content import Block
@@ -88,7 +89,6 @@ class Found:
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotClosed, Breakdown where there is no reference solution, Failure where the equations have no program."""
     from mbsym.numerics.methods import table
-    from mbsym.numerics.scenario import identity
     from mbsym.numerics.trade.tradeoff import studied
 
     given, notes = closed_motion(asked.motion, declared=True)
@@ -102,6 +102,14 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
         ("tradeoff", identity(given), how), measure, lambda found: not found.trade.interrupted, request.anew
     )
     return Found(measured, notes, before)
+
+
+def identity(given: Scenario) -> str:
+    """A text that two scenarios share only if they are the same motion of the same description."""
+    from mbsym.source.yaml_writer import meaning
+
+    numbers = {name: getattr(given, name) for name in given.__dataclass_fields__ if name != "system"}
+    return repr((meaning(given.system), numbers))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:

@@ -354,9 +354,22 @@ def test_long_conditions_are_told_by_the_letters_of_the_paper(tmp_path: Path) ->
     """
     lines = told(tmp_path, (SHIPPED / "satellite.yaml").read_text(encoding="utf-8"), "--problems", "6")
     stabilised = "otherwise gyroscopically stabilised only, if v4 > 0, v2 > 0, v0 > 0, discriminant > 0"
-    assert f"{stabilised} (characteristic polynomial)" in lines
+    assert f"{stabilised} (characteristic polynomial, problem 6)" in lines
     first = "otherwise unstable (Lyapunov's first method) if v4 < 0 or v2 < 0 or discriminant < 0"
-    assert f"{first} (characteristic polynomial)" in lines
+    assert f"{first} (characteristic polynomial, problem 6)" in lines
+
+
+def test_the_letters_of_conditions_are_explained_beside_them(tmp_path: Path) -> None:
+    """Those in use, and those that they are made of; none that no condition holds; long ones where they are told."""
+    text = (
+        "mbsym: 1\nname: letters\nparameters: {m: positive, k: real, p: real, c: positive}\n"
+        "bodies: [{name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}]\n"
+        "loads: [{potential: (k - p)*x**2/2}, {damper: {coordinate: x, coefficient: c}}]\nmotion: {}\n"
+    )
+    assert not [x for x in told(tmp_path, text) if x.startswith("where ")]
+    assert "where s = k - p" in told(tmp_path, text + "notation: {s: k - p, other: c/m}\n")
+    long = " + ".join(["k - p", *["m - m"] * 40])
+    assert "s: letters of problem 5" in told(tmp_path, text + f"notation: {{s: {long}, other: c/m}}\n")
 
 
 def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> None:

@@ -11,8 +11,9 @@ from conftest import SHIPPED
 
 from mbsym.expressions.tree import Number
 from mbsym.numerics.kernels import stored
-from mbsym.numerics.scenario import identity, scenario
+from mbsym.numerics.scenario import scenario
 from mbsym.source import load
+from mbsym.studies.tradeoff import identity
 from mbsym_cli.beside import Beside
 from mbsym_cli.main import main
 from mbsym_cli.remembered import remembered

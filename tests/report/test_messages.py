@@ -43,9 +43,11 @@ from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
+from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
 from mbsym.source.starter import JOINTS
+from mbsym_cli.diff import called
 from mbsym_cli.simulate.options import APART, NEEDED
 from tests.report import said
 
@@ -220,9 +222,21 @@ def words_of_types() -> set[str]:
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
     found |= {one for one in because.values() if isinstance(one, str)}
+    found |= {str(called(key)) for key in properties(schema("results"))}
     found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
     found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
     return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
+
+
+def properties(part: object) -> Iterator[str]:
+    """What is compared of a document of this schema, by its keys; symbols are called the same everywhere."""
+    inner = part if isinstance(part, list) else list(part.values()) if isinstance(part, dict) else []
+    if isinstance(part, dict) and "x-aside" in part:
+        return
+    if isinstance(part, dict) and isinstance(part.get("properties"), dict):
+        yield from (key for key, one in part["properties"].items() if "x-aside" not in one and key != "a0")
+    for one in inner:
+        yield from properties(one)
 
 
 def of_runs() -> Iterator[str]:
