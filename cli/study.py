@@ -35,6 +35,7 @@ from mbsym_cli.console import (
     OutPath,
     asked_width,
     complain,
+    diagnose,
     printable,
     read_description,
     read_held,
@@ -199,16 +200,14 @@ class _Run:
             refusal = study.refusal(error, asked, request)
             if refusal is None:
                 raise
-            for text in (refusal.text, *refusal.more):
-                complain(file, text, self.say)
+            self._complaints((refusal.text, *refusal.more))
             return refusal.code
         if self.as_json:
             click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
-        for text in answer.complaints:
-            complain(file, text, self.say)
+        self._complaints(answer.complaints)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -229,11 +228,20 @@ class _Run:
             show(with_meanings((), asked.system, self.used | used), asked.system.language)
         if answer.files and loud:
             show_files(asked.folder, answer.files, asked.system.language, answer.more)
+        for one in answer.last if loud else ():
+            tell(*one.parts, whole=one.whole)
+
+    def _complaints(self, texts: Iterable[str]) -> None:
+        """On standard error; what goes on, indented, without the name of the file."""
+        for text in texts:
+            if text.startswith("  "):
+                diagnose(self.say(text))
+            else:
+                complain(self.file, text, self.say)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
-        for text in document.complaints:
-            complain(self.file, text, self.say)
+        self._complaints(document.complaints)
         if document.text is None:
             return FAILED
         try:

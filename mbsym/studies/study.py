@@ -86,7 +86,8 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.  ``owner``: the command whose set
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
+    the names of files.  ``owner``: the command whose set
     the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
     off the making of some of them, which is raised when the others have been written.
     """
@@ -97,6 +98,7 @@ class Answer:
     code: Exit = Exit.OK
     after: str = ""
     brief: Iterable[Block] = ()
+    last: Iterable[Line] = ()
     owner: str = ""
     more: str = ""
     stopped: BaseException | None = None
