@@ -1,7 +1,4 @@
-"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
-
-``attempted`` and ``leave`` are the same for commands that are written out.
-"""
+"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C."""
 
 from __future__ import annotations
 
@@ -18,10 +15,10 @@ from typing import Any, NoReturn, TypeVar
 import click
 from click.core import ParameterSource
 
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
 from mbsym.model.system import System
-from mbsym.report.content import Block, facts
+from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
@@ -322,31 +319,6 @@ def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = 
         sys.exit(INTERRUPTED)
 
 
-def attempted(
-    file: Path,
-    work: Callable[[], Found],
-    expected: Mapping[type[Exception], str] | None = None,
-) -> Found | None:
-    """What ``work`` finds and writes; None where it fails, and a word about why.
-
-    ``expected`` are failures of its own, with what to say before their message.
-    """
-    from mbsym.algebra.failures import Failure, message_of
-
-    own = dict(expected or {})
-    try:
-        return work()
-    except tuple(own) as error:
-        before = next(text for kind, text in own.items() if isinstance(error, kind))
-        complain(file, f"{before}: {error}")
-    except Failure as error:
-        told = Message("error[no-program]: there is no program for these equations")
-        complain(file, joined((told, message_of(error)), ": "))
-    except OSError as error:
-        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
-    return None
-
-
 # What a command has found, in the language of the description, and where the files are.
 
 
@@ -365,13 +337,3 @@ def show_files(folder: Path, names: Iterable[str], language: str, more: str = ""
     say = Language(language).say
     listed = f": {', '.join(names)}" + (f" ({say(more)})" if more else "")
     tell(f"  {say(Message('files in'))} ", (printable(folder), "bold"), listed)
-
-
-def show_result(
-    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
-) -> None:
-    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
-    about = f": {Language(system.language).say(after)}" if after else ""
-    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
-    show([facts(lines)], system.language)
-    show_files(folder, names, system.language)
