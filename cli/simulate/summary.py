@@ -51,6 +51,7 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
     """What happened, when, and in which state."""
     from mbsym.numerics.methods.interface import (
         BLOW_UP,
+        OUT_OF_REACH,
         SINGULAR,
         SINGULAR_CONSTRAINTS,
         STEP_LIMIT,
@@ -79,6 +80,10 @@ def broken(file: Path, ended: Breakdown, found: Trajectory, paths: Sequence[Path
         SINGULAR_CONSTRAINTS: Message(
             "a mechanism in a singular position (links in line, branches that meet): the accelerations do not follow "
             "from the constraints there; start beside it"
+        ),
+        OUT_OF_REACH: Message(
+            "what moves the constraints leads the mechanism to the end of its reach (links stretched out, or blocked): "
+            "stop earlier, or let it move less far"
         ),
         STEP_LIMIT: Message(
             "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau"
