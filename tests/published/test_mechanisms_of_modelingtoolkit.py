@@ -1,4 +1,4 @@
-"""Mechanisms whose index reduction failed elsewhere (ModelingToolkit's issues 4115, 4117, 4471), each against a solution
+"""Mechanisms whose index reduction failed elsewhere (ModelingToolkit's issues 4115, 4117, 4471), against solutions
 by hand in independent coordinates: pendulums whose bodies are free and tied, turning over; Furuta's; a loop.
 
 https://github.com/SciML/ModelingToolkit.jl/issues
