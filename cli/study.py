@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import sys
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
@@ -23,9 +23,23 @@ from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of, options_typed
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Folder,
+    Line,
+    NotFit,
+    Remember,
+    Single,
+    Study,
+    Unfit,
+    unremembered,
+)
+from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
     BAD_INPUT,
+    BROKEN_DOWN,
     FAILED,
     INTERRUPTED,
     OK,
@@ -51,16 +65,19 @@ Found = TypeVar("Found")
 def command_of(study: Study[Any, Any]) -> click.Command:
     """The command; its help is what the request says of itself."""
 
-    def called(file: Path, **texts: Any) -> None:
+    def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
         context = click.get_current_context()
         typed = {name for name in texts if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-        run = _Run(study, file, texts, typed)
-        leave(file, run.code, lambda: run.delivered)
+        files = file if isinstance(file, tuple) else (file,)
+        runs = [_Run(study, one, texts, typed, len(files) > 1) for one in files]
+        command = runs[0].code if len(runs) == 1 else lambda: _together(study, runs)
+        leave(files[0], command, lambda: any(run.delivered for run in runs))
 
+    count = 1 if study.together is None else -1
     return click.Command(
         study.name,
         params=[
-            click.Argument(["file"], type=click.Path(path_type=Path)),
+            click.Argument(["file"], type=click.Path(path_type=Path), nargs=count, required=True),
             *(option_of(field) for field in fields_of(study.request)),
             *_further(study),
         ],
@@ -85,14 +102,35 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
             yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
 
 
+def _together(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
+    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code."""
+    assert study.together is not None
+    if len({run.folder for run in runs}) < len(runs):
+        text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
+        complain(runs[0].file, Message(text))
+        return BAD_INPUT
+    codes = [run.code() for run in runs]
+    known = [run.told for run in runs if run.told is not None]
+    if known:
+        show(study.together(known), known[0][0].system.language)
+    return max(codes, key=[OK, FAILED, BROKEN_DOWN, BAD_INPUT, INTERRUPTED].index)
+
+
 class _Run:
     """One command at work: everything is read and complained about, then derived, written and told."""
 
-    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str]) -> None:
-        self.study, self.file, self.texts = study, file, texts
+    def __init__(
+        self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str], among: bool
+    ) -> None:
+        """``among``: it is one of several, and has a folder of its own in that of all."""
+        self.study, self.file, self.texts, self.among = study, file, texts, among
         self.typed = {name: text for name, text in texts.items() if name in typed}
         self.delivered = False
         self.out: Path | None = texts.get("out")
+        if among and self.out is not None:
+            self.out = self.out / folder_for(file, None).name
+        self.folder = folder_for(file, self.out)
+        self.told: tuple[Asked, Any, Any] | None = None
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
         self.options = Options()
@@ -109,13 +147,14 @@ class _Run:
         values, given, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
-        request, folder = study.request(**values), folder_for(file, self.out)
+        request, folder = study.request(**values), self.folder
         self.writes = isinstance(study.out, Folder) and study.writes(self.typed)
         with ExitStack() as stack:
             asked = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
-                asked = Asked(system, given, printable(file), folder, write_whole, self.typed, store, self.letters)
+                known = (self.typed, store, _memory(), self.letters)
+                asked = Asked(system, given, printable(file), folder, write_whole, *known)
             self._complain(request, asked)
             kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
             code = prevented(file, folder if kept else None, system is not None, self.options)
@@ -199,7 +238,9 @@ class _Run:
                 raise
             self._complaints((refusal.text, *refusal.more))
             return refusal.code
-        if self.as_json:
+        if self.among:
+            self.told = asked, request, found
+        elif self.as_json:
             click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
@@ -255,6 +296,15 @@ class _Run:
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
+
+
+def _memory() -> Remember:
+    """What was measured before counts for a command in a process of its own."""
+    if not Beside.allowed:
+        return unremembered
+    from mbsym_cli.remembered import remembered
+
+    return remembered
 
 
 def _json(asked: Asked, answer: Answer) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Number, Numbers, Whole
 from mbsym.studies.study import (
-    FILE,
+    DESCRIPTION,
     Answer,
     Asked,
     Exit,
@@ -58,7 +58,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     small = system.small
     if small is None:
         hint = "add 'small parameter: eps'"
-        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+        yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
         return
     for name in request.values:
         if name == small.name or name in dict(small.powers):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
 from mbsym.studies.study import (
-    FILE,
+    DESCRIPTION,
     Answer,
     Asked,
     Exit,
@@ -104,7 +104,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     small, leading = system.small, request.of
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
-        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+        yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
     known = (*system.coordinates, *system.velocities, *system.variables)
     if leading and leading not in known:
         told = Message("there is no variable called [[name]]", name=repr(leading[:60]))

@@ -58,14 +58,33 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
     """Nobody looks on."""
 
 
+class Remember(Protocol):
+    """``measure()`` answers the ``question``, or an earlier answer does, unless it is asked ``anew``.
+
+    Returns the answer, and whether it is an earlier one; only ``sound`` answers are kept for later.
+    """
+
+    def __call__(
+        self, question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+    ) -> tuple[Any, bool]: ...
+
+
+def unremembered(
+    question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+) -> tuple[Any, bool]:
+    """Nobody remembers anything."""
+    return measure(), False
+
+
 @dataclass(frozen=True)
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
     ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
-    ``letters``: the author's, in which formulas are written, None where nothing was said of them;
-    ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory.
+    ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
+    knows what was measured before; ``letters``: the author's, in which formulas are written, None where nothing was
+    said of them.
     """
 
     system: System
@@ -75,6 +94,7 @@ class Asked:
     write: Callable[[Path, bytes], object] = Path.write_bytes
     typed: Mapping[str, Any] = field(default_factory=dict)
     store: Callable[[], BinaryIO | None] = lambda: None
+    remember: Remember = unremembered
     letters: tuple[str, ...] | None = None
 
     @property
@@ -126,8 +146,8 @@ class Refusal:
     more: Sequence[str] = ()
 
 
-#: In place of an option where the description is at fault, or what was given for it.
-FILE, DESCRIPTION = "FILE", ""
+#: In place of an option where the description is at fault: complaints begin with its name.
+DESCRIPTION = ""
 
 
 @dataclass(frozen=True)
@@ -229,7 +249,8 @@ class Study(Generic[R, F]):
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
+    results of several descriptions, where they may be asked about at once.
     """
 
     name: str
@@ -250,6 +271,7 @@ class Study(Generic[R, F]):
     timed: bool = False
     letters: bool = False
     pairs: Sequence[Apart | Needed] = ()
+    together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:

@@ -175,21 +175,22 @@ def _animation(run: Simulation, formats: Sequence[str]) -> tuple[dict[str, bytes
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
     if not {"html", "gif"} & set(formats):
         return {}, ()
-    from mbsym.report.figures.animation import animation
-
-    moving = animation(run)
-    if moving is None:
-        return {}, (Message("no animation: no body has a place that could be drawn"),)
-    files: dict[str, bytes] = {}
+    files: dict[str, bytes | None] = {}
     if "html" in formats:
-        from mbsym.report.figures.animation_page import animation_page
+        from mbsym.report.viewer.page import animation_page
 
-        files["animation.html"] = animation_page(moving, run).encode()
+        page = animation_page(run)
+        files["animation.html"] = None if page is None else page.encode()
     if "gif" in formats:
         from mbsym.report.figures.animation_gif import animation_gif
 
-        files["animation.gif"] = animation_gif(moving)
-    return files, ()
+        files["animation.gif"] = animation_gif(run)
+    none = tuple(
+        Message("no [[file]]: no body has a place that could be drawn", file=name)
+        for name, data in files.items()
+        if data is None
+    )
+    return {name: data for name, data in files.items() if data is not None}, none
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 #: What an option that goes with coordinates only is answered with.
 WAY_OUT = "--variables coordinates integrates coordinates and their velocities, angles among them"
 
-#: Formats that show bodies, whose places are known in coordinates.
-OF_BODIES = {"bodies-csv": "--bodies", "html": "--animate", "gif": "--animate"}
+#: Formats that tell what bodies do, which is known in coordinates.
+OF_BODIES = {"bodies-csv": "--bodies"}
 
 #: A first try of a fixed step is the whole time divided by this.
 TRIAL_STEPS = 10_000
