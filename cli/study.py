@@ -1,14 +1,11 @@
-"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
-
-``attempted`` and ``leave`` are the same for commands that are written out.
-"""
+"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C."""
 
 from __future__ import annotations
 
 import inspect
 import sys
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
@@ -18,23 +15,38 @@ from typing import Any, NoReturn, TypeVar
 import click
 from click.core import ParameterSource
 
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
 from mbsym.model.system import System
-from mbsym.report.content import Block, facts
+from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
 from mbsym.studies.request import fields_of, options_typed
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Folder,
+    Line,
+    NotFit,
+    Remember,
+    Single,
+    Study,
+    Unfit,
+    unremembered,
+)
+from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
     BAD_INPUT,
+    BROKEN_DOWN,
     FAILED,
     INTERRUPTED,
     OK,
     OutPath,
     asked_width,
     complain,
+    diagnose,
     printable,
     read_description,
     read_held,
@@ -53,16 +65,19 @@ Found = TypeVar("Found")
 def command_of(study: Study[Any, Any]) -> click.Command:
     """The command; its help is what the request says of itself."""
 
-    def called(file: Path, **texts: Any) -> None:
+    def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
         context = click.get_current_context()
         typed = {name for name in texts if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
-        run = _Run(study, file, texts, typed)
-        leave(file, run.code, lambda: run.delivered)
+        files = file if isinstance(file, tuple) else (file,)
+        runs = [_Run(study, one, texts, typed, len(files) > 1) for one in files]
+        command = runs[0].code if len(runs) == 1 else lambda: _together(study, runs)
+        leave(files[0], command, lambda: any(run.delivered for run in runs))
 
+    count = 1 if study.together is None else -1
     return click.Command(
         study.name,
         params=[
-            click.Argument(["file"], type=click.Path(path_type=Path)),
+            click.Argument(["file"], type=click.Path(path_type=Path), nargs=count, required=True),
             *(option_of(field) for field in fields_of(study.request)),
             *_further(study),
         ],
@@ -87,14 +102,35 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
             yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
 
 
+def _together(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
+    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code."""
+    assert study.together is not None
+    if len({run.folder for run in runs}) < len(runs):
+        text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
+        complain(runs[0].file, Message(text))
+        return BAD_INPUT
+    codes = [run.code() for run in runs]
+    known = [run.told for run in runs if run.told is not None]
+    if known:
+        show(study.together(known), known[0][0].system.language)
+    return max(codes, key=[OK, FAILED, BROKEN_DOWN, BAD_INPUT, INTERRUPTED].index)
+
+
 class _Run:
     """One command at work: everything is read and complained about, then derived, written and told."""
 
-    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str]) -> None:
-        self.study, self.file, self.texts = study, file, texts
+    def __init__(
+        self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str], among: bool
+    ) -> None:
+        """``among``: it is one of several, and has a folder of its own in that of all."""
+        self.study, self.file, self.texts, self.among = study, file, texts, among
         self.typed = {name: text for name, text in texts.items() if name in typed}
         self.delivered = False
         self.out: Path | None = texts.get("out")
+        if among and self.out is not None:
+            self.out = self.out / folder_for(file, None).name
+        self.folder = folder_for(file, self.out)
+        self.told: tuple[Asked, Any, Any] | None = None
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
         self.options = Options()
@@ -111,13 +147,13 @@ class _Run:
         values, given = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
-        request, folder = study.request(**values), folder_for(file, self.out)
+        request, folder = study.request(**values), self.folder
         self.writes = isinstance(study.out, Folder) and study.writes(self.typed)
         with ExitStack() as stack:
             asked = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
-                asked = Asked(system, given, printable(file), folder, write_whole, self.typed, store)
+                asked = Asked(system, given, printable(file), folder, write_whole, self.typed, store, _memory())
             self._complain(request, asked)
             kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
             code = prevented(file, folder if kept else None, system is not None, self.options)
@@ -199,16 +235,16 @@ class _Run:
             refusal = study.refusal(error, asked, request)
             if refusal is None:
                 raise
-            for text in (refusal.text, *refusal.more):
-                complain(file, text, self.say)
+            self._complaints((refusal.text, *refusal.more))
             return refusal.code
-        if self.as_json:
+        if self.among:
+            self.told = asked, request, found
+        elif self.as_json:
             click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
-        for text in answer.complaints:
-            complain(file, text, self.say)
+        self._complaints(answer.complaints)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -229,11 +265,20 @@ class _Run:
             show(with_meanings((), asked.system, self.used | used), asked.system.language)
         if answer.files and loud:
             show_files(asked.folder, answer.files, asked.system.language, answer.more)
+        for one in answer.last if loud else ():
+            tell(*one.parts, whole=one.whole)
+
+    def _complaints(self, texts: Iterable[str]) -> None:
+        """On standard error; what goes on, indented, without the name of the file."""
+        for text in texts:
+            if text.startswith("  "):
+                diagnose(self.say(text))
+            else:
+                complain(self.file, text, self.say)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
-        for text in document.complaints:
-            complain(self.file, text, self.say)
+        self._complaints(document.complaints)
         if document.text is None:
             return FAILED
         try:
@@ -247,6 +292,15 @@ class _Run:
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
         return OK
+
+
+def _memory() -> Remember:
+    """What was measured before counts for a command in a process of its own."""
+    if not Beside.allowed:
+        return unremembered
+    from mbsym_cli.remembered import remembered
+
+    return remembered
 
 
 def _json(asked: Asked, answer: Answer) -> str:
@@ -263,31 +317,6 @@ def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = 
         whole = written()
         complain(file, "interrupted; what has been written is whole" if whole else "interrupted; nothing was written")
         sys.exit(INTERRUPTED)
-
-
-def attempted(
-    file: Path,
-    work: Callable[[], Found],
-    expected: Mapping[type[Exception], str] | None = None,
-) -> Found | None:
-    """What ``work`` finds and writes; None where it fails, and a word about why.
-
-    ``expected`` are failures of its own, with what to say before their message.
-    """
-    from mbsym.algebra.failures import Failure, message_of
-
-    own = dict(expected or {})
-    try:
-        return work()
-    except tuple(own) as error:
-        before = next(text for kind, text in own.items() if isinstance(error, kind))
-        complain(file, f"{before}: {error}")
-    except Failure as error:
-        told = Message("error[no-program]: there is no program for these equations")
-        complain(file, joined((told, message_of(error)), ": "))
-    except OSError as error:
-        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
-    return None
 
 
 # What a command has found, in the language of the description, and where the files are.
@@ -308,13 +337,3 @@ def show_files(folder: Path, names: Iterable[str], language: str, more: str = ""
     say = Language(language).say
     listed = f": {', '.join(names)}" + (f" ({say(more)})" if more else "")
     tell(f"  {say(Message('files in'))} ", (printable(folder), "bold"), listed)
-
-
-def show_result(
-    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
-) -> None:
-    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
-    about = f": {Language(system.language).say(after)}" if after else ""
-    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
-    show([facts(lines)], system.language)
-    show_files(folder, names, system.language)

@@ -255,7 +255,8 @@ def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: 
 def _attracts(analysis: Analysis, plain: Expansion, start: Root) -> bool:
     """Whether the only fast variable returns to the root: L/D < 0 for all parameters, D the denominator there."""
     manifold = plain.manifold
-    if len(manifold.fast) != 1:
+    scale = manifold.field.scales[manifold.field.field.variables.index(manifold.fast[0])]
+    if len(manifold.fast) != 1 or scale <= 0:
         return False
     there, root = manifold.field, manifold.root
     place = len(there.field.parameters) + there.field.variables.index(manifold.fast[0])

@@ -58,13 +58,32 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
     """Nobody looks on."""
 
 
+class Remember(Protocol):
+    """``measure()`` answers the ``question``, or an earlier answer does, unless it is asked ``anew``.
+
+    Returns the answer, and whether it is an earlier one; only ``sound`` answers are kept for later.
+    """
+
+    def __call__(
+        self, question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+    ) -> tuple[Any, bool]: ...
+
+
+def unremembered(
+    question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+) -> tuple[Any, bool]:
+    """Nobody remembers anything."""
+    return measure(), False
+
+
 @dataclass(frozen=True)
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
     ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
-    ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory.
+    ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
+    knows what was measured before.
     """
 
     system: System
@@ -74,6 +93,7 @@ class Asked:
     write: Callable[[Path, bytes], object] = Path.write_bytes
     typed: Mapping[str, Any] = field(default_factory=dict)
     store: Callable[[], BinaryIO | None] = lambda: None
+    remember: Remember = unremembered
 
     @property
     def motion(self) -> Scenario:
@@ -86,7 +106,8 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.  ``owner``: the command whose set
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
+    the names of files.  ``owner``: the command whose set
     the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
     off the making of some of them, which is raised when the others have been written.
     """
@@ -97,6 +118,7 @@ class Answer:
     code: Exit = Exit.OK
     after: str = ""
     brief: Iterable[Block] = ()
+    last: Iterable[Line] = ()
     owner: str = ""
     more: str = ""
     stopped: BaseException | None = None
@@ -223,7 +245,8 @@ class Study(Generic[R, F]):
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
+    results of several descriptions, where they may be asked about at once.
     """
 
     name: str
@@ -244,6 +267,7 @@ class Study(Generic[R, F]):
     timed: bool = False
     letters: bool = False
     pairs: Sequence[Apart | Needed] = ()
+    together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:

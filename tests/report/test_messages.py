@@ -47,8 +47,9 @@ from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
 from mbsym.source.starter import JOINTS
+from mbsym.studies.simulate import PAIRS
+from mbsym.studies.study import Apart
 from mbsym_cli.diff import called
-from mbsym_cli.simulate.options import APART, NEEDED
 from tests.report import said
 
 OTHERS = [name for name in LANGUAGES if name != "en"]
@@ -197,7 +198,7 @@ print(f"{printable(file)}: {say(text)}")
 @pytest.mark.parametrize("name", OTHERS)
 def test_why_options_of_a_run_do_not_go_together_is_translated(name: str) -> None:
     known = {english for _, english in messages(name)}
-    asked = {text for one in APART for text in (one.why, one.hint)} | {one.hint for one in NEEDED}
+    asked = {one.why for one in PAIRS if isinstance(one, Apart)} | {one.hint for one in PAIRS}
     assert not {text for text in asked if text is not None} - known
 
 
