@@ -59,7 +59,7 @@ LONG = 20_000
 PLACES, PRECISELY, PRECISE_COST = 150, 1e-22, 2.0
 
 #: Who witnesses for a method that is judged by itself.
-WITNESSES = {"dop853": "rk45", "radau": "bdf", "bdf": "radau", "lsoda": "radau"}
+WITNESSES = {"dop853": "rk45", "rodas5p": "radau", "radau": "rodas5p", "bdf": "radau", "lsoda": "radau"}
 
 #: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case.
 CLEARLY, BESIDE, LITTLE = 3.0, 2.0, 0.05
@@ -72,6 +72,7 @@ EARLY, FAR_TOO_LONG = 0.2, 1.5
 
 #: A relative tolerance below this many roundings is not taken by the methods themselves.
 LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
+OWN = ("dop853", "rk45", "rodas5p", "taylor")
 
 
 class Lacking(StrEnum):
@@ -352,7 +353,7 @@ def _rounding(scalar: str) -> float:
 def _taken(name: str, scalar: str, tolerance: float) -> float:
     """The relative tolerance that a method takes where one is asked for."""
     roundings = LEAST_ROUNDINGS * 2 * _rounding(scalar)
-    return max(tolerance, roundings if name in ("dop853", "rk45", "taylor") else LEAST_OF_SCIPY)
+    return max(tolerance, roundings if name in OWN else LEAST_OF_SCIPY)
 
 
 def contradicted(estimate: ErrorEstimate | NoEstimate, drift: float) -> bool:

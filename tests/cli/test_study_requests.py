@@ -64,7 +64,7 @@ def planted(outcome: Any = None, **more: Any) -> Study[Request, float]:
         usual = Answer((line(f"  found {found:g}"), line("  kept", always=True)), {"found.txt": f"{found:g}\n"})
         return outcome if isinstance(outcome, Answer) else usual
 
-    def unfit(request: Request, system: Any, typed: Any) -> Any:
+    def unfit(asked: Asked, request: Request) -> Any:
         if request.rows == 5:
             yield Unfit("--rows", "five", "five are no rows", "take four")
 

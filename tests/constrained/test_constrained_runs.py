@@ -158,7 +158,7 @@ initial: {phi: asin35}
 """.replace("asin35", "643501108793284386802809228717/10**30")
 
 
-@pytest.mark.parametrize("method", ["dop853", "rk45", "radau", "bdf", "scipy-dop853", "scipy-rk45"])
+@pytest.mark.parametrize("method", ["dop853", "rk45", "rodas5p", "radau", "bdf", "scipy-dop853", "scipy-rk45"])
 def test_a_pendulum_in_two_forms(method: str) -> None:
     """By every method the motion is that of the angle, and is on the circle at every row."""
     angle = simulate(scenario(described(MINIMAL)), Request(time=10.0, tolerance=1e-13, samples=57))["phi"]

@@ -26,7 +26,7 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.words.expansion_measured import SLACK
-from mbsym.report.words.expansion_words import Coefficient, scaled
+from mbsym.report.words.expansion_words import Coefficient, Sums, scaled, summed
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
@@ -129,6 +129,11 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
     for order, x in enumerate((found.tower.one, *found.corrections)):
         if not x.is_zero():
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
+
+
+def as_function(told: Oscillating) -> Sums:
+    """The solution as a function of the time."""
+    return summed("periodic_solution", told.found.small, coefficients(told), told.found.powers, told.phase)
 
 
 def collected(told: Oscillating) -> Iterator[Relation]:
