@@ -61,6 +61,9 @@ PLACES, PRECISELY, PRECISE_COST = 150, 1e-22, 2.0
 #: Who witnesses for a method that is judged by itself.
 WITNESSES = {"dop853": "rk45", "rodas5p": "radau", "radau": "rodas5p", "bdf": "radau", "lsoda": "radau"}
 
+#: The better method of stiff motions.
+STIFF = "rodas5p"
+
 #: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case.
 CLEARLY, BESIDE, LITTLE = 3.0, 2.0, 0.05
 
@@ -326,6 +329,11 @@ def _candidates(
         longest = min(longest, SHORTER * setting.longest)
     explicit = completed(METHODS["dop853"])
     wanted = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
+    own = _taken(name, scalar, setting.tolerance or 0.0)
+    turned = any(METHODS[change.method].traits.implicit for change in found.work.changes)
+    stiff = (method.traits.implicit or turned) and not method.traits.fixed and scalar == FLOAT64
+    if stiff and _taken(STIFF, scalar, wanted) <= LEAST_RATIO * own:  # explicit steps would be too many
+        yield completed(METHODS[STIFF]), scalar, Setting(wanted, None, setting.step_limit, longest)
     more = [kind for kind in (EXTENDED, FLOAT64) if available(kind) and _rounding(kind) < _rounding(scalar)]
     if more and operations <= LONG:
         # Explicit steps in more digits; where stability asks for too many of them, the limit ends it.
@@ -337,7 +345,6 @@ def _candidates(
             replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * found.work.steps)),
         )
         return
-    own = _taken(name, scalar, setting.tolerance or 0.0)
     if _taken(name, scalar, wanted) <= LEAST_RATIO * own:
         yield method, scalar, Setting(wanted, None, setting.step_limit, longest)
     elif _taken("dop853", scalar, wanted) <= LEAST_RATIO * own:
