@@ -1,4 +1,7 @@
-"""``mbsym diff``: what changed between two results, or between a description and the results that are kept of it."""
+"""``mbsym diff``: what changed between two results, or between a description and the results that are kept of it.
+
+No study: it is about two files, or two folders of them, most of which are no descriptions.
+"""
 
 from __future__ import annotations
 
@@ -70,17 +73,17 @@ def command(a: Path, b: Path, check: bool, as_json: bool, everything: bool, lang
         sys.exit(BAD_INPUT)
     if len(sides[0]) == len(sides[1]) == 1:
         common = [(next(iter(sides[1])), next(iter(sides[0].values())), next(iter(sides[1].values())))]
-        lacking: list[tuple[str, bool]] = []
+        lacking: list[tuple[str, bool, Source]] = []
     else:
         common = [(name, sides[0][name], sides[1][name]) for name in sides[0] if name in sides[1]]
-        lacking = [(name, True) for name in sides[0] if name not in sides[1]]
-        lacking += [(name, False) for name in sides[1] if name not in sides[0]]
+        lacking = [(name, True, source) for name, source in sides[0].items() if name not in sides[1]]
+        lacking += [(name, False, source) for name, source in sides[1].items() if name not in sides[0]]
     sys.exit(_compare(common, lacking, check, as_json, everything, tongue))
 
 
 def _compare(
     common: list[tuple[str, Source, Source]],
-    lacking: list[tuple[str, bool]],
+    lacking: list[tuple[str, bool, Source]],
     check: bool,
     as_json: bool,
     everything: bool,
@@ -106,15 +109,16 @@ def _compare(
             say = speaking(*(one.path for one in (first, second) if one.description))
             say = say if language is None else Language(language).say
             show(name, first.title, second.title, found, everything, say)
-    for name, first_only in lacking:
+    for name, first_only, source in lacking:
         worst = max(worst, FAILED if check else OK)
         if not as_json:
+            say = Language(language).say if language else speaking(*([source.path] if source.description else []))
             told = Message("[[name]]: only in [[side]]", name=name, side="A" if first_only else "B")
-            console().print(printable(Language(language or "").say(told)))
+            console().print(printable(say(told)))
     if as_json:
         from mbsym.report.documents.base import written
 
-        only = doc.OnlyIn(*([name for name, first in lacking if first is side] for side in (True, False)))
+        only = doc.OnlyIn(*([name for name, first, _ in lacking if first is side] for side in (True, False)))
         click.echo(written(doc.Diff(systems=systems, only_in=only), indent=2), nl=False)
     return worst
 
@@ -206,20 +210,16 @@ def _is_description(path: Path) -> bool:
 #: So many changes of one system are printed; a text longer than so many characters is cut.
 MOST_CHANGES, LONGEST = 40, 120
 
-#: Properties of results.json in words; what is empty is not said, and the others are called as they are there.
+#: Properties of results.json that are called otherwise in words; what is empty is not said.
 WORDS = {
-    "kinematics": "", "bodies": "", "energy": "", "equations": "", "rotation": Message("direction cosines"),
-    "A2": Message("A2 of T"), "A1": Message("A1 of T"), "A0": Message("A0 of T"),
-    "at_values": Message("at the values"), "linearisation": Message("linear form"),
+    "system": "", "kinematics": "", "bodies": "", "energy": "", "equations": "",
+    "rotation": Message("direction cosines"), "A2": Message("A2 of T"), "A1": Message("A1 of T"),
+    "A0": Message("A0 of T"), "at_values": Message("at the values"), "linearisation": Message("linear form"),
     "velocity_origin": Message("velocity of the joint"), "velocity_mass_centre": Message("velocity of the mass centre"),
     "parameters": Message("parameter"), "checks": Message("self-check"), "subsystems": Message("subsystem"),
     "claims": Message("claim"), "initial": Message("initial state"), "motion": Message("unperturbed motion"),
     "integrals": Message("first integral"), "unavailable": Message("without a result"),
-    "conditions": Message("conditions"), "mass_matrix": Message("mass matrix"), "forcing": Message("forcing"),
-    "kinetic_energy": Message("kinetic energy"), "force_function": Message("force function"),
-    "stability": Message("stability"), "verdict": Message("verdict"), "roots": Message("roots"),
-    "characteristic_polynomial": Message("characteristic polynomial"), "real": Message("real"),
-    "imaginary": Message("imaginary"), "eigenvalues_at_values": Message("eigenvalues at values"),
+    "velocity": Message("its velocity"), "row": Message("number of the row"), "sha256": Message("digest"),
 }  # fmt: skip
 
 _SIGN = {"added": ("+", "green"), "removed": ("-", "red"), "undecided": ("?", "yellow")}
@@ -230,10 +230,19 @@ NOTHING = Message("nothing")
 
 def place(path: tuple[str, ...]) -> Message:
     """``mass matrix [theta, psi]`` for equations, mass_matrix, theta, psi."""
-    matrix = next((k for k, step in enumerate(path) if step in _INDEXED), None)
+    from mbsym.diff import Key
+
+    matrix = next((k for k, step in enumerate(path) if isinstance(step, Key) and step in _INDEXED), None)
     head, indices = (path, ()) if matrix is None else (path[: matrix + 1], path[matrix + 1 :])
-    words = [word for step in head if (word := WORDS.get(step, step.replace("_", " ")))]
-    return joined((*words, *([f"[{', '.join(indices)}]"] if indices else ())))
+    words = [word for step in head if (word := called(step) if isinstance(step, Key) else step)]
+    if head[-1] == "theorems":
+        indices = tuple(map(worded, indices))
+    return joined((*words, *([joined(("[", joined(indices, ", "), "]"), "")] if indices else ())))
+
+
+def called(key: str) -> str:
+    """A property of results.json in words."""
+    return WORDS.get(key, Message(key.replace("_", " ")))
 
 
 _INDEXED = (
@@ -246,9 +255,9 @@ def lines(change: Change) -> list[Message]:
     """What changed at a place: the place, then by what."""
     where = place(change.path)
     if change.kind == "added":
-        return [joined((where, Message("added"), *_standing(change.after)), ": ")]
+        return [joined((where, Message("added"), *_standing(change, change.after)), ": ")]
     if change.kind == "removed":
-        return [joined((where, Message("removed"), *_standing(change.before)), ": ")]
+        return [joined((where, Message("removed"), *_standing(change, change.before)), ": ")]
     if change.kind == "order":
         before, after = ", ".join(change.before), ", ".join(change.after)
         text = "[[place]]: in another order: [[before]] -> [[after]]"
@@ -264,7 +273,9 @@ def lines(change: Change) -> list[Message]:
         return [joined((where, joined(("B - A", difference), " = ")), ": "), *([both] if short else [])]
     if change.kind == "undecided":
         return [joined((where, joined((Message("undecided"), _undecided(change)), ", ")), ": ")]
-    return [joined((where, joined((_cut(_text(change.before)), _cut(_text(change.after))), " -> ")), ": ")]
+    word = change.word and change.path[-1] != "code"  # which is none of English either
+    before, after = (worded(x) if word and isinstance(x, str) else x for x in (change.before, change.after))
+    return [joined((where, joined((_cut(_text(before)), _cut(_text(after))), " -> ")), ": ")]
 
 
 def _undecided(change: Change) -> Message:
@@ -277,8 +288,10 @@ def _undecided(change: Change) -> Message:
     return joined((Message("numerically equal at [[points]]", points=Counted(change.points, "point")), both), ": ")
 
 
-def _standing(value: Any) -> tuple[str, ...]:
-    return (_cut(_text(value)),) if isinstance(value, (str, int, float)) else ()
+def _standing(change: Change, value: Any) -> tuple[str, ...]:
+    """What stands there, unless the place says it."""
+    said = isinstance(value, (str, int, float)) and value != change.path[-1]
+    return (_cut(_text(value)),) if said else ()
 
 
 def _terms(count: int) -> Message:
@@ -292,7 +305,9 @@ def _text(value: Any) -> str:
         return joined(map(_text, value), ", ") if value else NOTHING
     if value is None or value == "":
         return NOTHING
-    return (Message("yes") if value else Message("no")) if isinstance(value, bool) else str(value)
+    if isinstance(value, bool):
+        return Message("yes") if value else Message("no")
+    return value if isinstance(value, str) else str(value)
 
 
 def _short(value: Any) -> bool:

@@ -48,8 +48,12 @@ class Options:
         self.complaints: list[str] = []
         self.say: Callable[[str], str] = str  # the language of the description, once it is read
 
+    def add(self, option: str, complaint: Complaint, text: str = "") -> None:
+        """A complaint about an option, with the place in its ``text`` where it has one."""
+        self.complaints.append(render_option(complaint, text, option, self.say))
+
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
-        self.complaints.append(render_option(Complaint(code, message, None, hint), "", option, self.say))
+        self.add(option, Complaint(code, message, None, hint))
 
     def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
         """Of a text as a whole, which is shown."""
@@ -113,13 +117,6 @@ class Options:
             self.complain(
                 option, "exists", Message("[[file]] is there already", file=printable(path)), "another name, or --force"
             )
-
-    def time(self, text: str | None) -> float | None:
-        """``--time``, without which nothing can be simulated."""
-        if text is None:
-            hint = Message("for example [[example]]", example="--time 60")
-            self.complain("--time", "missing-option", "how long to simulate is not said", hint)
-        return self.number("--time", text)
 
     def problems(self, text: str) -> tuple[int, ...]:
         """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""

@@ -1,37 +1,52 @@
-"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
-
-``attempted`` and ``leave`` are the same for commands that are written out.
-"""
+"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C."""
 
 from __future__ import annotations
 
 import inspect
 import sys
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 import click
+from click.core import ParameterSource
 
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message
+from mbsym.expressions.place import Complaint
 from mbsym.model.system import System
-from mbsym.report.content import Block, facts
+from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
-from mbsym.studies.request import fields_of
-from mbsym.studies.study import Answer, Asked, Document, Folder, Line, NotFit, Single, Study, Unfit
+from mbsym.studies.request import fields_of, options_typed
+from mbsym.studies.study import (
+    Answer,
+    Asked,
+    Document,
+    Folder,
+    Line,
+    NotFit,
+    Remember,
+    Single,
+    Study,
+    Unfit,
+    unremembered,
+)
+from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
     BAD_INPUT,
+    BROKEN_DOWN,
     FAILED,
     INTERRUPTED,
     OK,
     OutPath,
     asked_width,
     complain,
+    diagnose,
     printable,
     read_description,
     read_held,
@@ -39,7 +54,7 @@ from mbsym_cli.console import (
     tell,
     watching,
 )
-from mbsym_cli.files import deliver, folder_for, prevented, write_whole
+from mbsym_cli.files import deliver, folder_for, prevented, room_beside, write_whole
 from mbsym_cli.letters import letters_option, read_letters
 from mbsym_cli.options import Options
 from mbsym_cli.requests import option_of, read_fields
@@ -50,13 +65,19 @@ Found = TypeVar("Found")
 def command_of(study: Study[Any, Any]) -> click.Command:
     """The command; its help is what the request says of itself."""
 
-    def called(file: Path, **texts: Any) -> None:
-        leave(file, lambda: _Run(study, file, texts).code())
+    def called(file: Path | tuple[Path, ...], **texts: Any) -> None:
+        context = click.get_current_context()
+        typed = {name for name in texts if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+        files = file if isinstance(file, tuple) else (file,)
+        runs = [_Run(study, one, texts, typed, len(files) > 1) for one in files]
+        command = runs[0].code if len(runs) == 1 else lambda: _together(study, runs)
+        leave(files[0], command, lambda: any(run.delivered for run in runs))
 
+    count = 1 if study.together is None else -1
     return click.Command(
         study.name,
         params=[
-            click.Argument(["file"], type=click.Path(path_type=Path)),
+            click.Argument(["file"], type=click.Path(path_type=Path), nargs=count, required=True),
             *(option_of(field) for field in fields_of(study.request)),
             *_further(study),
         ],
@@ -81,12 +102,35 @@ def _further(study: Study[Any, Any]) -> Iterator[click.Option]:
             yield click.Option(["--quiet", "-q"], is_flag=True, help="Print nothing but complaints.")
 
 
+def _together(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
+    """Several descriptions: each with its own files and complaints, and one table of all; the worst exit code."""
+    assert study.together is not None
+    if len({run.folder for run in runs}) < len(runs):
+        text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
+        complain(runs[0].file, Message(text))
+        return BAD_INPUT
+    codes = [run.code() for run in runs]
+    known = [run.told for run in runs if run.told is not None]
+    if known:
+        show(study.together(known), known[0][0].system.language)
+    return max(codes, key=[OK, FAILED, BROKEN_DOWN, BAD_INPUT, INTERRUPTED].index)
+
+
 class _Run:
     """One command at work: everything is read and complained about, then derived, written and told."""
 
-    def __init__(self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any]) -> None:
-        self.study, self.file, self.texts = study, file, texts
+    def __init__(
+        self, study: Study[Any, Any], file: Path, texts: Mapping[str, Any], typed: Collection[str], among: bool
+    ) -> None:
+        """``among``: it is one of several, and has a folder of its own in that of all."""
+        self.study, self.file, self.texts, self.among = study, file, texts, among
+        self.typed = {name: text for name, text in texts.items() if name in typed}
+        self.delivered = False
         self.out: Path | None = texts.get("out")
+        if among and self.out is not None:
+            self.out = self.out / folder_for(file, None).name
+        self.folder = folder_for(file, self.out)
+        self.told: tuple[Asked, Any, Any] | None = None
         self.quiet = bool(texts.get("quiet"))
         self.as_json = bool(texts.get("as_json"))
         self.options = Options()
@@ -100,19 +144,23 @@ class _Run:
         study, file = self.study, self.file
         system = self._described()
         self.say = self.options.say = Language("" if system is None else system.language).say
-        values, given = read_fields(file, system, study.request, self.texts, self.options)
+        values, given, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
-        request = study.request(**values)
-        typed = {name for name, text in self.texts.items() if text not in (None, (), False)}
-        self.writes = isinstance(study.out, Folder) and study.writes(typed)
-        self._complain(request, system, typed)
-        kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
-        code = prevented(file, folder_for(file, self.out) if kept else None, system is not None, self.options)
-        if code or system is None:
-            return code or BAD_INPUT
-        asked = Asked(system, given, printable(file), folder_for(file, self.out), write_whole)
-        return self._answered(asked, request)
+        request, folder = study.request(**values), self.folder
+        self.writes = isinstance(study.out, Folder) and study.writes(self.typed)
+        with ExitStack() as stack:
+            asked = None
+            if system is not None:
+                store = partial(stack.enter_context, room_beside(folder))
+                known = (self.typed, store, _memory(), self.letters)
+                asked = Asked(system, given, printable(file), folder, write_whole, *known)
+            self._complain(request, asked)
+            kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
+            code = prevented(file, folder if kept else None, system is not None, self.options)
+            if code or asked is None:
+                return code or BAD_INPUT
+            return self._answered(asked, request)
 
     @contextmanager
     def _in_letters(self, system: System) -> Iterator[set[str]]:
@@ -129,9 +177,12 @@ class _Run:
             return read_held(self.file, study.name, study.constraints, not matrices)
         return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
 
-    def _complain(self, request: Any, system: System | None, typed: Collection[str]) -> None:
+    def _complain(self, request: Any, asked: Asked | None) -> None:
         """About what does not go together."""
-        for one in self.study.unfit(request, system, typed) if system is not None else ():
+        there = options_typed(self.study.request, self.typed)
+        for one in (unfit for pair in self.study.pairs for unfit in pair.unfit(there)):
+            self._unfit(one)
+        for one in self.study.unfit(asked, request) if asked is not None else ():
             self._unfit(one)
         if isinstance(self.study.out, Single):
             self.options.unwritten("--out", self.out)
@@ -149,7 +200,9 @@ class _Run:
         if one.name:
             self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
         else:
-            self.options.complain(one.option or str(self.file), one.code, one.message, one.hint)
+            self.options.add(
+                one.option or str(self.file), Complaint(one.code, one.message, one.span, one.hint), one.text
+            )
 
     def _text(self, one: Unfit) -> str:
         """What was typed for that name."""
@@ -167,7 +220,10 @@ class _Run:
                     answer = study.answer(asked, request, found)
                     answer = replace(answer, lines=list(answer.lines))
                 if answer.files:
-                    deliver(folder_for(file, self.out), answer.files, study.name)
+                    deliver(asked.folder, answer.files, answer.owner or study.name)
+                if answer.stopped is not None:
+                    self.delivered = bool(answer.files)
+                    raise answer.stopped
         except OSError as error:
             complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
             return FAILED
@@ -180,16 +236,16 @@ class _Run:
             refusal = study.refusal(error, asked, request)
             if refusal is None:
                 raise
-            for text in (refusal.text, *refusal.more):
-                complain(file, text, self.say)
+            self._complaints((refusal.text, *refusal.more))
             return refusal.code
-        if self.as_json:
-            click.echo(_json(answer) if study.json is None else study.json(asked, request, found), nl=False)
+        if self.among:
+            self.told = asked, request, found
+        elif self.as_json:
+            click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
-        for text in answer.complaints:
-            complain(file, text, self.say)
+        self._complaints(answer.complaints)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -197,6 +253,9 @@ class _Run:
         return self._written(place, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
+        if answer.text is not None:
+            click.echo(answer.text, nl=False)
+            return
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
@@ -209,12 +268,21 @@ class _Run:
         if loud:
             show(with_meanings((), asked.system, self.used | used), asked.system.language)
         if answer.files and loud:
-            show_files(folder_for(self.file, self.out), answer.files, asked.system.language)
+            show_files(asked.folder, answer.files, asked.system.language, answer.more)
+        for one in answer.last if loud else ():
+            tell(*one.parts, whole=one.whole)
+
+    def _complaints(self, texts: Iterable[str]) -> None:
+        """On standard error; what goes on, indented, without the name of the file."""
+        for text in texts:
+            if text.startswith("  "):
+                diagnose(self.say(text))
+            else:
+                complain(self.file, text, self.say)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
-        for text in document.complaints:
-            complain(self.file, text, self.say)
+        self._complaints(document.complaints)
         if document.text is None:
             return FAILED
         try:
@@ -230,46 +298,29 @@ class _Run:
         return OK
 
 
-def _json(answer: Answer) -> str:
-    """What the file says that is JSON; nothing where what ended early has none."""
-    text = next((text for name, text in answer.files.items() if name.endswith(".json")), "")
-    if isinstance(text, bytes):
-        return text.decode()
-    return text if isinstance(text, str) else "".join(map(str, text))
+def _memory() -> Remember:
+    """What was measured before counts for a command in a process of its own."""
+    if not Beside.allowed:
+        return unremembered
+    from mbsym_cli.remembered import remembered
+
+    return remembered
 
 
-def leave(file: Path, command: Callable[[], int]) -> NoReturn:
-    """Ends the process with the command's exit code, or with that of Ctrl-C, which leaves nothing written."""
+def _json(asked: Asked, answer: Answer) -> str:
+    """What the file says that is JSON, which has been written; nothing where what ended early has none."""
+    name = next((name for name in answer.files if name.endswith(".json")), None)
+    return "" if name is None else (asked.folder / name).read_text(encoding="utf-8")
+
+
+def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = lambda: False) -> NoReturn:
+    """Ends the process with the command's exit code, or with that of Ctrl-C, when nothing may be ``written`` yet."""
     try:
         sys.exit(command())
     except KeyboardInterrupt:
-        complain(file, "interrupted; nothing was written")
+        whole = written()
+        complain(file, "interrupted; what has been written is whole" if whole else "interrupted; nothing was written")
         sys.exit(INTERRUPTED)
-
-
-def attempted(
-    file: Path,
-    work: Callable[[], Found],
-    expected: Mapping[type[Exception], str] | None = None,
-) -> Found | None:
-    """What ``work`` finds and writes; None where it fails, and a word about why.
-
-    ``expected`` are failures of its own, with what to say before their message.
-    """
-    from mbsym.algebra.failures import Failure, message_of
-
-    own = dict(expected or {})
-    try:
-        return work()
-    except tuple(own) as error:
-        before = next(text for kind, text in own.items() if isinstance(error, kind))
-        complain(file, f"{before}: {error}")
-    except Failure as error:
-        told = Message("error[no-program]: there is no program for these equations")
-        complain(file, joined((told, message_of(error)), ": "))
-    except OSError as error:
-        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
-    return None
 
 
 # What a command has found, in the language of the description, and where the files are.
@@ -286,15 +337,7 @@ def show(blocks: Iterable[Block], language: str) -> None:
         tell("  ", *parts, whole=whole, margin=None if margin is None else margin + 2)
 
 
-def show_files(folder: Path, names: Iterable[str], language: str) -> None:
-    tell(f"  {Language(language).say(Message('files in'))} ", (printable(folder), "bold"), f": {', '.join(names)}")
-
-
-def show_result(
-    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
-) -> None:
-    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
-    about = f": {Language(system.language).say(after)}" if after else ""
-    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
-    show([facts(lines)], system.language)
-    show_files(folder, names, system.language)
+def show_files(folder: Path, names: Iterable[str], language: str, more: str = "") -> None:
+    say = Language(language).say
+    listed = f": {', '.join(names)}" + (f" ({say(more)})" if more else "")
+    tell(f"  {say(Message('files in'))} ", (printable(folder), "bold"), listed)

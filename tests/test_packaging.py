@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import importlib
 import shutil
 import subprocess
 import tomllib
@@ -36,3 +38,14 @@ def test_cleaning_keeps_what_belongs_to_the_user(tmp_path: Path) -> None:
     subprocess.run(["make", "clean"], cwd=tmp_path, check=True, capture_output=True)
     left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()}
     assert left == {"Makefile"} | own
+
+
+@pytest.mark.parametrize("path", sorted(Path(__file__).parent.glob("bench/*.py")), ids=lambda path: path.stem)
+def test_benches_import_what_there_is(path: Path) -> None:
+    """They run seldom: what moves in mbsym is missed there long after."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").partition(".")[0] == "mbsym":
+            module = importlib.import_module(node.module or "")
+            missing = [name.name for name in node.names if not hasattr(module, name.name)]
+            for name in missing:  # a module of a package
+                importlib.import_module(f"{node.module}.{name}")

@@ -190,7 +190,7 @@ def complaints(row: Row) -> list[str]:
 
 def _complaint(name: str, one: ComplaintRow, say: Callable[[str], str]) -> str:
     place = name if one.line is None else f"{name}:{one.line}:{one.column}"
-    hint = "" if one.hint is None else "\n  " + say(Message("hint: [[hint]]", hint=printable(one.hint)))
+    hint = "" if one.hint is None else "\n  " + say(Message("hint: [[hint]]", hint=printable(say(one.hint))))
     return f"{place}: {one.severity}[{one.code}]: {printable(say(one.message))}{hint}"
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from itertools import compress, count
 from typing import Any
 
-from flint import fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
+from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_mpoly
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.expressions.message import Message
@@ -93,6 +93,25 @@ def rational_ratio(x: Any, y: Any) -> Any:
         return None
     ratio = x.coefficient(0) / y.coefficient(0)
     return ratio if x == y * ratio else None
+
+
+def square_apart(x: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """(g, h) with x = g^2 h, h without square factors but numbers; g of either sign."""
+    unit = x.context().constant(1)
+    content, factors = x.factor_squarefree()
+    top, bottom = abs(content.p).isqrt(), content.q.isqrt()
+    whole = content >= 0 and top * top == content.p and bottom * bottom == content.q
+    outside, inside = (unit * fmpq(top, bottom), unit) if whole else (unit, unit * content)
+    for factor, exponent in factors:
+        outside = outside * factor ** (int(exponent) // 2)
+        inside = inside * factor ** (int(exponent) % 2)
+    return outside, inside
+
+
+def square_root_of(x: Polynomial) -> Polynomial | None:
+    """The polynomial whose square x is, of either sign; None where there is none."""
+    outside, inside = square_apart(x)
+    return outside if inside == 1 else None
 
 
 # Which generators stand in polynomials.

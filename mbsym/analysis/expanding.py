@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from flint import fmpq_mpoly_ctx
+
 from mbsym.algebra import rationals
-from mbsym.algebra.factors import occurring
+from mbsym.algebra.factors import occurring, square_root_of
 from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
@@ -20,7 +22,8 @@ from mbsym.mechanics.motion import relations, unperturbed_with
 from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
-from mbsym.problems.small_parameter.result import Hurwitz, Outcome, SlowManifold, scaled
+from mbsym.problems.small_parameter.result import Adjoined, Choice, Hurwitz, Outcome, ScaledField, SlowManifold, scaled
+from mbsym.problems.small_parameter.root import Root, Roots, adjoined, put
 from mbsym.problems.small_parameter.steady import steady_states
 from mbsym.problems.vector_field import Transfer, vector_field
 
@@ -32,9 +35,12 @@ if TYPE_CHECKING:
 class Expansion(Shown):
     """The manifold with the ring in which it is told.
 
-    ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have
-    negative real parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what
-    was divided by, and is not zero where the expansion holds; ``velocities``: variables that are rates of others.
+    ``choice``: which root of the lowest order was taken; ``others``: the values of the fast
+    variables at those that were not; ``unknown``: how many are neither rational nor square roots; ``real``: what makes
+    the square root real, and not zero.  ``missing``: why
+    nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have negative real
+    parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what was divided
+    by, and is not zero where the expansion holds; ``velocities``: variables that are rates of others.
     """
 
     manifold: SlowManifold
@@ -45,23 +51,63 @@ class Expansion(Shown):
     slow: tuple[Outcome, tuple[Condition, ...]] = (Outcome.UNDECIDED, ())
     provided: tuple[Formula, ...] = ()
     velocities: tuple[str, ...] = ()
+    choice: Choice = Choice.ONLY
+    others: tuple[tuple[Formula, ...], ...] = ()
+    unknown: int = 0
+    real: tuple[Condition, ...] = ()
+
+    @property
+    def stabilizable(self) -> tuple[Outcome, tuple[Condition, ...]]:
+        """Whether all roots but the zero ones have negative real parts for all sufficiently small eps > 0."""
+        outcomes = {self.fast[0], self.slow[0]}
+        worst = next(x for x in (Outcome.FAILS, Outcome.UNDECIDED, Outcome.CONDITIONAL, Outcome.HOLDS) if x in outcomes)
+        return worst, (*self.fast[1], *self.slow[1])
 
     def formula(self, c: Quotient) -> Formula:
         """A coefficient as a formula of the description."""
-        ring, context = self.transfer.ring, self.transfer.context
-        places = [(*self.transfer.parameters, *self.transfer.variables).index(name) for name in self.names]
+        ring, root = self.transfer.ring, self.manifold.root
+        if root is None:
+            top, bottom = self.moved(c.top), self.moved(c.bottom)
+            if c.bottom.is_constant():
+                return Formula(ring, top)
+            # one term below: what cancels in single terms is cancelled; partial fractions would be longer
+            quotient = ring.times(top, ring.reciprocal(bottom))
+            return Formula(ring, ring.reduce(quotient) if len(bottom) == 1 else quotient)
+        whole, part, below = _rationalised(c, root)
+        total = self.moved(whole) + ring.times(self.moved(part), ring.square_root(self.moved(root.square)))
+        return Formula(ring, ring.times(total, ring.reciprocal(self.moved(below))))
 
-        def back(p: Any) -> Any:
-            terms = {}
-            for monomial, number in p.to_dict().items():
-                exponents = [0] * len(context.names())
-                for k, power in zip(places, monomial, strict=True):
-                    exponents[k] = power
-                terms[tuple(exponents)] = number
-            return self.transfer.back(context.from_dict(terms))
+    def moved(self, p: Any) -> Any:
+        """A polynomial without the square root in the ring."""
+        root, transfer = self.manifold.root, self.transfer
+        names = [root.instead if root is not None and name == root.label else name for name in self.names]
+        places = [(*transfer.parameters, *transfer.variables).index(name) for name in names]
+        terms = {}
+        for monomial, number in p.to_dict().items():
+            exponents = [0] * len(transfer.context.names())
+            for k, power in zip(places, monomial, strict=True):
+                exponents[k] = power
+            terms[tuple(exponents)] = number
+        return transfer.back(transfer.context.from_dict(terms))
 
-        top, bottom = back(c.top), back(c.bottom)
-        return Formula(ring, ring.times(top, ring.reciprocal(bottom)) if not c.bottom.is_constant() else top)
+
+def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:
+    """(A, B, C) with  c = (A + B sqrt(d))/C, d = ``root.square``, in lowest terms, over the context of d."""
+    context = root.square.context()
+
+    def parts(p: Any) -> list[Any]:
+        found = [context.constant(0), context.constant(0)]
+        for monomial, number in p.to_dict().items():
+            power = int(monomial[root.place])
+            term = context.from_dict({(*monomial[: root.place], 0, *monomial[root.place + 1 :]): number})
+            found[power % 2] += term * root.square ** (power // 2)
+        return found
+
+    (a, b), (e, f) = parts(c.top), parts(c.bottom)
+    below = e**2 - f**2 * root.square
+    whole, part = a * e - b * f * root.square, b * e - a * f
+    common = below.gcd(whole).gcd(part)
+    return whole / common, part / common, below / common
 
 
 def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | None = None) -> Expansion:
@@ -101,48 +147,132 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
-    functions = slow.manifold(there, fast, order)
+    there, known, root = _with_root(there, fast, (*fast, small.name, *dict(small.powers)))
+    velocities = () if form is not None else analysis.system.velocities
+    names = tuple(there.field.context.names())
+    found: list[tuple[Expansion, Root]] = []
+    reasons: list[Failure] = []
+    for start in known.known:
+        one = _expanded(analysis, there, fast, order, start, root)
+        plain = Expansion(one, transfer, names, "", velocities=velocities)
+        divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, one.functions, start))
+        provided = {str(x): x for x in _open(analysis, divided)}
+        if root is not None:
+            square = plain.moved(root.square)
+            provided.pop(str(Formula(analysis.ring, analysis.ring.square_root(square))), None)
+            plain = replace(plain, real=sharpest([_unscaled(analysis).condition(square)]))
+        plain = replace(plain, provided=tuple(provided.values()))
+        try:
+            found.append((_about(analysis, plain, motion, numbers), start))
+        except NoClosedForm as reason:
+            reasons.append(reason)
+    if not found:
+        raise reasons[0]
+    return _chosen(analysis, found, known)
+
+
+def _with_root(
+    there: ScaledField, fast: tuple[str, ...], held: Collection[str]
+) -> tuple[ScaledField, Roots, Adjoined | None]:
+    """The field in which the roots of the lowest order are rational, these, and the square root that it needs."""
+    known = slow.roots_of(there, fast)
+    if not known.squares:
+        return there, known, None
+    square = known.squares[0]
+    given = adjoined(there.field, square, held)
+    if given is None or not {there.field.context.names()[k] for k in occurring([square])}.isdisjoint(held):
+        if known.known:
+            return there, known, None
+        raise NoClosedForm(
+            "the fast variables hold a square root of something in which no slow variable or parameter is linear",
+            remedy="put in numbers with --set",
+        )
+    field, root = given
+    there = scaled(field, there.small, dict(there.powers))
+    return there, slow.roots_of(there, fast), root
+
+
+def _expanded(
+    analysis: Analysis, there: ScaledField, fast: tuple[str, ...], order: int, start: Root, root: Adjoined | None
+) -> SlowManifold:
+    """The manifold that begins at a root, with the flow on it.  Raises NoClosedForm where it fails its check."""
+    functions = slow.manifold(there, fast, order, start)
     moving = slow.flow(there, fast, functions, order)
-    found = SlowManifold(
-        there,
-        order,
-        fast,
-        tuple(moving),
-        tuple(functions),
-        tuple(moving.values()),
-        residual_orders(there, fast, functions),
-    )
+    left = residual_orders(there, fast, functions)
+    found = SlowManifold(there, order, fast, tuple(moving), tuple(functions), tuple(moving.values()), left, root=root)
     if not found.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
-    names = tuple(field.context.names())
-    plain = Expansion(found, transfer, names, "", velocities=() if form is not None else analysis.system.velocities)
-    divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, functions))
-    plain = replace(plain, provided=tuple({str(x): x for x in _open(analysis, divided)}.values()))
+    return found
+
+
+def _about(
+    analysis: Analysis, plain: Expansion, motion: Mapping[Any, Any] | str, numbers: Mapping[str, Any]
+) -> Expansion:
+    """With what is known of the steady state, told in the variables of the description.
+
+    Raises NoClosedForm where a root that should be fast is slow.
+    """
+    found = plain.manifold
+    flow = dict(zip(found.slow, found.flow, strict=True))
+    if found.root is not None:
+        told = slow.without_root(flow, found.root, plain.names)
+        plain = replace(plain, manifold=replace(found, slow=tuple(told), flow=tuple(told.values())))
     if isinstance(motion, str):
         return replace(plain, missing=motion)
     try:
-        at = {n: _quotient(transfer, names, numbers, x) for n, x in _values(analysis, transfer, motion).items()}
-        for name in (*fast, *moving):
-            at.setdefault(name, Quotient.of(field.context.constant(0)))
-        steady_found = steady_states(there, moving, dict(zip(fast, functions, strict=True)), at, order)
+        at = _steady_values(analysis, plain, motion, numbers)
+        functions = dict(zip(found.fast, found.functions, strict=True))
+        steady = steady_states(found.field, flow, functions, at, found.order)
     except Failure as reason:
         return replace(plain, missing=message_of(reason))
     except ZeroDivisionError:
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
-    if steady_found.fast.bounded:
+    if steady.fast.bounded:
         raise NoClosedForm(
             Message(
                 "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
                 "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
-                fast=", ".join(fast),
-                small=small.name,
+                fast=", ".join(found.fast),
+                small=found.field.small,
             ),
             remedy=slow.DECLARE,
         )
-    plain = replace(plain, manifold=replace(found, steady=steady_found))
-    return replace(
-        plain, fast=_judged(analysis, plain, steady_found.fast), slow=_judged(analysis, plain, steady_found.slow)
+    plain = replace(plain, manifold=replace(plain.manifold, steady=steady))
+    return replace(plain, fast=_judged(analysis, plain, steady.fast), slow=_judged(analysis, plain, steady.slow))
+
+
+def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: Roots) -> Expansion:
+    """The expansion that begins at the root on which the motion lies; else at the one that attracts; else the first."""
+    unknown = known.others + 2 * len(known.squares)
+    if len(known.known) + unknown == 1:
+        return found[0][0]
+    on, drawn = (
+        [x for x in found if x[0].manifold.steady is not None],
+        [x for x in found if _attracts(analysis, *x)],
     )
+    listed, choice = (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (found, Choice.FIRST)
+    taken, start = listed[0]
+    others = [tuple(map(taken.formula, one.values)) for one in known.known if one is not start]
+    return replace(taken, choice=choice, others=tuple(others), unknown=unknown)
+
+
+def _attracts(analysis: Analysis, plain: Expansion, start: Root) -> bool:
+    """Whether the only fast variable returns to the root: L/D < 0 for all parameters, D the denominator there."""
+    manifold = plain.manifold
+    scale = manifold.field.scales[manifold.field.field.variables.index(manifold.fast[0])]
+    if len(manifold.fast) != 1 or scale <= 0:
+        return False
+    there, root = manifold.field, manifold.root
+    place = len(there.field.parameters) + there.field.variables.index(manifold.fast[0])
+    ratio = start.determinant * put(there.denominator[0], {place: start.values[0]})
+    declared = {one.name: one.sign for one in analysis.system.parameters}
+    known, assumed = {name: declared.get(name, "real") for name in plain.names}, []
+    if root is not None:
+        known[root.label] = "positive"
+        if declared.get(root.instead) == "positive":
+            assumed.append((root.value.top * root.value.bottom, ">"))
+    signs = Signs(there.field.context, tuple(known.values()), tuple(assumed))
+    return signs.sign(ratio.top * ratio.bottom) == "negative"
 
 
 def _refuse(
@@ -221,10 +351,45 @@ def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -
     return found
 
 
-def _quotient(transfer: Transfer, names: tuple[str, ...], numbers: Mapping[str, Any], p: Any) -> Quotient:
-    from flint import fmpq_mpoly_ctx
+def _steady_values(
+    analysis: Analysis, plain: Expansion, motion: Mapping[Any, Any], numbers: Mapping[str, Any]
+) -> dict[str, Quotient]:
+    """All variables of the field on the motion.  Raises NoClosedForm where they are no rational functions."""
+    field, root = plain.manifold.field.field, plain.manifold.root
+    names = [root.instead if root is not None and name == root.label else name for name in plain.names]
+    before = fmpq_mpoly_ctx.get(names, field.context.ordering())
+    at = {
+        name: _quotient(plain.transfer, before, numbers, x)
+        for name, x in _values(analysis, plain.transfer, motion).items()
+    }
+    for name in names[len(field.parameters) :]:
+        at.setdefault(name, Quotient.of(before.constant(0)))
+    if root is None:
+        return at
+    if root.label in field.variables:
+        square = put(before.from_dict(root.square.to_dict()), {names.index(name): x for name, x in at.items()})
+        at[root.label] = _positive_root(analysis, plain, square)
+        del at[root.instead]
 
-    context = fmpq_mpoly_ctx.get(list(names), transfer.context.ordering())
+    def moved(p: Any) -> Quotient:
+        p = field.context.from_dict(p.to_dict())
+        return put(p, {root.place: root.value}) if root.label in field.parameters else Quotient.of(p)
+
+    return {name: moved(x.top) / moved(x.bottom) for name, x in at.items()}
+
+
+def _positive_root(analysis: Analysis, plain: Expansion, square: Quotient) -> Quotient:
+    """The square root that is positive.  Raises NoClosedForm where it is none of the field, or has no sign."""
+    top = square_root_of(square.top * square.bottom)
+    if top is not None and (sign := analysis.signs.sign(plain.moved(top * square.bottom))) in ("positive", "negative"):
+        return Quotient.of(top if sign == "positive" else -top, square.bottom)
+    raise NoClosedForm(
+        "the square root in the fast variables is no rational function on the motion, or has no sign there"
+    )
+
+
+def _quotient(transfer: Transfer, context: Any, numbers: Mapping[str, Any], p: Any) -> Quotient:
+    names = context.names()
     images = [
         context.constant(numbers[name]) if name in numbers else context.gen(names.index(name))
         for name in transfer.context.names()

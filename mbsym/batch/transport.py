@@ -5,12 +5,13 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from msgspec import convert
+from msgspec import convert, structs
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
+from mbsym.expressions.message import Counted, Message
 from mbsym.report.documents.base import plain
 
 #: What a reader of foreign data has to expect.
@@ -35,8 +36,10 @@ def read_task(text: str) -> Task:
 
 
 def finished_text(finished: Finished) -> str:
+    said = [one for row in finished.row.complaints for one in (row.message, row.hint) if isinstance(one, Message)]
     return json.dumps(
         {
+            "sentences": {one: _sentence_data(one) for one in said},
             "row": row_data(finished.row),
             "files": {name: _content_data(content) for name, content in finished.files.items()},
             "meaning": finished.meaning,
@@ -49,7 +52,29 @@ def read_finished(text: str | bytes) -> Finished:
     """Raises one of MALFORMED where it is something else."""
     found = json.loads(text)
     files = {str(name): _read_content(content) for name, content in found["files"].items()}
-    return Finished(read_row(found["row"]), files, str(found["meaning"]), bool(found["same"]))
+    row, said = read_row(found["row"]), {str(one): _read_sentence(data) for one, data in found["sentences"].items()}
+    complaints = tuple(
+        structs.replace(one, message=said.get(one.message, one.message), hint=one.hint and said.get(one.hint, one.hint))
+        for one in row.complaints
+    )
+    return Finished(replace(row, complaints=complaints), files, str(found["meaning"]), bool(found["same"]))
+
+
+def _sentence_data(said: object) -> Any:
+    """A message with its gaps, so that it can be said in another language where it arrives."""
+    if isinstance(said, Counted):
+        return {"number": said.number, "one": said.one, "form": str(said.gaps["form"])}
+    if isinstance(said, Message):
+        return {"text": said.text, "gaps": {name: _sentence_data(gap) for name, gap in said.gaps.items()}}
+    return str(said)
+
+
+def _read_sentence(found: Any) -> str:
+    if isinstance(found, str):
+        return found
+    if "number" in found:
+        return Counted(int(found["number"]), str(found["one"]), str(found["form"]))
+    return Message(str(found["text"]), **{name: _read_sentence(gap) for name, gap in found["gaps"].items()})
 
 
 def _content_data(content: str | bytes) -> str | dict[str, str]:

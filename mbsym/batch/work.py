@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
@@ -29,9 +28,7 @@ if TYPE_CHECKING:
 
 def work(task: Task) -> Finished:
     """What becomes of a description.  Raises nothing but MemoryError and what is our own mistake."""
-    from mbsym.report.language import Language
     from mbsym.source.document import load_bytes
-    from mbsym.source.text_lines import language_of
 
     system, complaints, text = load_bytes(task.data, task.file)
     if system is not None and (system.constraints or system.linear):
@@ -39,8 +36,7 @@ def work(task: Task) -> Finished:
 
         complain_of(system, complaints)
         system = None if complaints.errors else system
-    say = Language(language_of(text)).say
-    told = tuple(complaint_row(one, say) for one in complaints.sorted())
+    told = tuple(map(complaint_row, complaints.sorted()))
     if system is None:
         return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=told))
     from mbsym.batch import digests
@@ -53,12 +49,10 @@ def work(task: Task) -> Finished:
     return Finished(replace(row, complaints=told), files, meaning)
 
 
-def complaint_row(complaint: Complaint, say: Callable[[str], str] = str) -> ComplaintRow:
-    """A complaint of :mod:`mbsym.source` as a row; ``say`` says it in the language of the description."""
+def complaint_row(complaint: Complaint) -> ComplaintRow:
+    """A complaint of :mod:`mbsym.source` as a row: in English, with what it takes to say it otherwise."""
     span = complaint.span
-    row = ComplaintRow(
-        complaint.severity, complaint.code, say(complaint.message), hint=complaint.hint and say(complaint.hint)
-    )
+    row = ComplaintRow(complaint.severity, complaint.code, complaint.message, hint=complaint.hint)
     return row if span is None else structs.replace(row, line=span.line, column=span.column, length=span.length)
 
 

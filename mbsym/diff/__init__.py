@@ -4,6 +4,6 @@
 equal ones that are printed otherwise are no change, of different ones the difference b - a is told.
 """
 
-from mbsym.diff.documents import Change, Diff, Kind, Renaming, diff
+from mbsym.diff.documents import Change, Diff, Key, Kind, Renaming, diff
 
-__all__ = ["Change", "Diff", "Kind", "Renaming", "diff"]
+__all__ = ["Change", "Diff", "Key", "Kind", "Renaming", "diff"]

@@ -36,9 +36,10 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Change:
-    """``path`` leads to the place: property names, names of items, numbers counted from 1 as text.
+    """``path`` leads to the place: properties (``Key``), names of items, numbers counted from 1 as text.
 
-    ``before`` and ``after`` are what stands there, None where nothing does.  Of a formula, ``difference`` is
+    ``before`` and ``after`` are what stands there, None where nothing does; a ``word`` is one of ours.  Of a formula,
+    ``difference`` is
     after - before; where that is long it is empty, ``terms`` is its length and ``first`` its first term.  An undecided
     formula agrees with the other one in enclosures at ``points`` points.
     """
@@ -51,6 +52,7 @@ class Change:
     terms: int = 0
     first: str = ""
     points: int = 0
+    word: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ def _change(item: Difference, compare: Callable[[str, str], Comparison]) -> Chan
     """None for a formula that is printed otherwise."""
     before, after = item.before, item.after
     if not item.formula:
-        return Change(item.path, Kind(item.kind), before, after)
+        return Change(item.path, Kind(item.kind), before, after, word=item.word)
     if not isinstance(before, str) or not isinstance(after, str):  # at least one is counted only
         return Change(item.path, Kind.UNDECIDED, before, after)
     found = compare(before, after)
@@ -255,15 +257,25 @@ Schema = Mapping[str, Any]
 ROUNDING = 1e-12
 
 
+class Key(str):
+    """A step of a path that is a property of results.json; the others are names and numbers."""
+
+    __slots__ = ()
+
+
 @dataclass(frozen=True)
 class Difference:
-    """``kind`` is added, removed, changed or order; of two ``formula``s it is open whether they differ."""
+    """``kind`` is added, removed, changed or order; of two ``formula``s it is open whether they differ.
+
+    ``word``: what stands there is one of a few words of ours.
+    """
 
     path: tuple[str, ...]
     kind: str
     before: Any
     after: Any
     formula: bool = False
+    word: bool = False
 
 
 @dataclass(frozen=True)
@@ -296,7 +308,7 @@ def _walk(place: _Place, a: Any, b: Any) -> Iterator[Difference]:
     elif isinstance(a, list) and isinstance(b, list):
         yield from _lists(replace(place, schema=schema), a, b)
     elif not _same_number(a, b):
-        yield Difference(place.path, _kind(a, b), a, b)
+        yield Difference(place.path, _kind(a, b), a, b, word="enum" in schema)
 
 
 def _kind(a: Any, b: Any) -> str:
@@ -340,7 +352,8 @@ def _objects(place: _Place, a: Mapping[str, Any], b: Mapping[str, Any]) -> Itera
         inner = properties.get(key, other if isinstance(other, Mapping) else {})
         if inner.get("x-aside"):
             continue
-        yield from _member(place.to(inner, str(key)), a.get(key), b.get(key), key in a, key in b)
+        step = Key(key) if key in properties else str(key)
+        yield from _member(place.to(inner, step), a.get(key), b.get(key), key in a, key in b)
 
 
 def _member(place: _Place, a: Any, b: Any, in_a: bool, in_b: bool) -> Iterator[Difference]:

@@ -139,6 +139,17 @@ def letter(name: str) -> str:
     return letter if lower == name else letter.upper()
 
 
+_SUBSCRIPTS = str.maketrans("0123456789", "\u2080\u2081\u2082\u2083\u2084\u2085\u2086\u2087\u2088\u2089")
+
+
+def spelled_name(name: str) -> str:
+    """A name as plain text: theta1 -> \u03b8\u2081; one with a word as its index stays as it is."""
+    split = parts(name)
+    if not all(piece.isdigit() for piece in split.indices):
+        return name
+    return (letter(split.greek) if split.greek else split.stem) + "".join(split.indices).translate(_SUBSCRIPTS)
+
+
 def _index(indices: Iterable[str]) -> str:
     """Digits and letters side by side, words apart by commas."""
     written: list[str] = []

@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
@@ -73,6 +74,28 @@ def listing(
     return _Writer(program, wanted, names, dialect, {*taken, *names.values()}).listing(inline)
 
 
+def short_listing(
+    program: Program, outputs: Iterable[Node], names: Mapping[str, str], dialect: Dialect, most: int
+) -> Listing | None:
+    """The same, or None where it has more than ``most`` assignments: long programs are not written to see that."""
+    outputs = list(outputs)
+    uses = _uses(program, outputs)
+    leaves = ("input", "constant")
+    shared = sum(count > 1 and program.instructions[k].operation not in leaves for k, count in uses.items())
+    if shared > most:
+        return None
+    found = listing(program, outputs, names, dialect)
+    return None if len(found.assignments) > most else found
+
+
+def _uses(program: Program, outputs: Iterable[Node]) -> Counter[int]:
+    """How often the value of each instruction is used."""
+    outputs = list(outputs)
+    uses = Counter(chain.from_iterable(program.instructions[k].operands for k in program.live(outputs)))
+    uses.update(node.number for node in outputs)
+    return uses
+
+
 class _Writer:
     def __init__(
         self, program: Program, outputs: list[Node], names: Mapping[str, str], dialect: Dialect, used: set[str]
@@ -95,9 +118,7 @@ class _Writer:
         }
 
     def listing(self, inline: bool) -> Listing:
-        uses = Counter(operand for number in self.live for operand in self.program.instructions[number].operands)
-        uses.update(node.number for node in self.outputs)
-        inputs = []
+        uses, inputs = _uses(self.program, self.outputs), []
         for number in self.live:
             instruction = self.program.instructions[number]
             text, precedence = self._text(instruction)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
@@ -23,7 +24,7 @@ from flint import arb, fmpq
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.factors import occurring
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import Constrained, Failure
 from mbsym.algebra.plane.line import Interval, Line, divided
 from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compare, enclosure
 from mbsym.algebra.polynomial_systems import Limits
@@ -36,10 +37,20 @@ from mbsym.maps.branches_result import Branches, Critical, Doubt, Meeting, Piece
 from mbsym.maps.mapping import Watch, ends, float_of, lengths, unwatched
 from mbsym.maps.result import Cell, Counted, Lack, Of, Shape
 from mbsym.maps.section import Axis
-from mbsym.mechanics.constraints.refusal import refuse_constraints
+from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, Equilibria, RelativeEquilibrium, equilibria
+from mbsym.problems.relative_equilibria.equilibria import (
+    CoordinateValue,
+    Equilibria,
+    RelativeEquilibrium,
+    equilibria,
+    rank_of,
+)
 from mbsym.problems.relative_equilibria.place import Place
+from mbsym.problems.stability.reasons import Because
+
+#: Parts of a range at which a parameter is tried, where nothing special happens.
+_TRIED = tuple(Fraction(k, 97) for k in (48, 21, 77, 5, 92))
 
 
 def branches(
@@ -55,12 +66,12 @@ def branches(
     no polynomials in sines, cosines, lengths and the parameter, Constrained, SingularPoint.  KeyboardInterrupt while
     samples are solved ends the work: what was reached is kept, and says that it was interrupted.
     """
-    refuse_constraints(system, "relative equilibria")
     bounds = limits or Limits()
     watch("critical values", 0, 1)
-    parts = curves(system, axis.name, values, axis.low, axis.high, bounds)
+    rank = _rank(system, axis, values)
+    parts, lost = curves(system, axis.name, values, axis.low, axis.high, bounds, rank)
     bifurcating = joined([one.where([one.singular]) for one in parts])
-    leaving = joined([one.borders() for one in parts])
+    leaving = joined([*(one.borders() for one in parts), lost])
     changing = joined([stability_changes(one) for one in parts])
     remarks = _doubts(bifurcating, leaving, changing)
     of_all = (bifurcating, leaving, changing)
@@ -85,21 +96,23 @@ def branches(
         for k, interval in enumerate(line.intervals):
             watch("samples", k, len(regions))
             sample = _sample(interval, line)
-            found = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds)
+            found = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds, rank=rank)
             remarks += _of_sample(found, fraction(sample))
-            constant = count_proved and found.complete and not found.families
+            at_lost = any(x.verdict.because(Because.RANK_LOST) for x in found.equilibria)
+            constant = count_proved and found.complete and not found.families and not at_lost
             surely = Certainty.PROVED if constant else Certainty.UNDECIDED
             regions[k] = Cell(Shape.INTERVAL, k, sample, Counted(found.equilibria), surely)
         for k, number in enumerate(numbers):
             watch("critical values", k, len(numbers))
             meetings, reason, singular = _meetings(parts, number)
             if meetings is not None and isinstance(number, fmpq):
-                at = equilibria(system, {**values, axis.name: fraction(number)}, limits=bounds)
+                at = equilibria(system, {**values, axis.name: fraction(number)}, limits=bounds, rank=rank)
                 meetings = _judged(meetings, at)
             if reason:
                 remarks.append(Remark(Doubt.UNCOUNTED, f"{short(number)}: {reason}"))
             border = singular or _among(number, [*leaving.continua, *(x.number for x in leaving.points)])
-            there = Critical(meetings, _among(number, bifurcating.continua), border)
+            at_lost = _among(number, [*lost.continua, *(x.number for x in lost.points)])
+            there = Critical(meetings, _among(number, bifurcating.continua), border, rank_lost=at_lost)
             corners[k] = Cell(Shape.ZERO, k, number, there, Certainty.PROVED)
         watch("branches", 0, 1)
         without = made()
@@ -117,6 +130,18 @@ def branches(
         return made(pieces, interrupted=False)
     except KeyboardInterrupt:
         return made()
+
+
+def _rank(system: System, axis: Axis, values: Mapping[str, Fraction]) -> int | None:
+    """The rank of the constraints, at the first of some values of the parameter at which positions keep them."""
+    if not system.constraints:
+        return None
+    width = axis.high - axis.low
+    *others, last = (axis.low + width * part for part in _TRIED)
+    for p in others:
+        with suppress(Constrained):
+            return rank_of(rest(at_numbers(system, {**values, axis.name: p})))
+    return rank_of(rest(at_numbers(system, {**values, axis.name: last})))
 
 
 def _doubts(bifurcating: CurvePoints, leaving: CurvePoints, changing: CurvePoints) -> list[Remark]:
@@ -224,17 +249,20 @@ def short(x: Any) -> str:
 
 #: Farther than this (in direction cosines, sines, cosines, lengths) a branch does not tend to an equilibrium.
 FAR = 0.05
+#: Below this what must not vanish in a case of the rank may be zero.
+_ZERO = 1e-9
 
 
 def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
     """The branches over all intervals, with the meetings they start from and end in."""
-    usable = {one.label: one for one in parts if uses_only_known(one.ring, [*one.forcing, *chain(*one.slopes)])}
+    usable = [one for one in parts if uses_only_known(one.ring, [*one.forcing, *chain(*one.slopes)])]
     pieces: list[Piece] = []
     for interval in found.intervals:
         made: list[Piece] = []
         arrivals: list[tuple[tuple[float, ...] | None, tuple[float, ...] | None]] = []
         for number, one in enumerate(found.equilibria(interval)):
-            piece, where = _followed(usable.get(one.coordinates_of), one, found, interval, number)
+            curve = _curve_of(usable, one, float_of(interval.sample))
+            piece, where = _followed(curve, one, found, interval, number)
             made.append(piece)
             arrivals.append(where)
         starts, stops = (
@@ -245,12 +273,25 @@ def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
     return pieces
 
 
+def _curve_of(usable: Sequence[Curve], one: RelativeEquilibrium | Meeting, p: float) -> Curve | None:
+    """The curve that an equilibrium lies on: of the cases of the rank of constraints the nearest one."""
+    values = {x.name: x.value for x in one.values}
+    near: list[tuple[float, Curve]] = []
+    for curve in usable:
+        if curve.label != one.coordinates_of or set(curve.names) != set(values):
+            continue
+        numbers, at = Floats(curve.ring, curve.parameter), {**values, curve.parameter: p}
+        if all(abs(numbers(x, at)) > _ZERO for x in curve.search.case.nonzero):
+            near.append((max((abs(numbers(x, at)) for x in curve.search.case.zero), default=0.0), curve))
+    return min(near, key=lambda x: x[0])[1] if near else None
+
+
 def _followed(
     curve: Curve | None, one: RelativeEquilibrium, found: Branches, interval: Cell, number: int
 ) -> tuple[Piece, tuple[tuple[float, ...] | None, tuple[float, ...] | None]]:
     sample, k = float_of(interval.sample), interval.number
     values = {x.name: x.value for x in one.values}
-    if curve is None or set(curve.names) != set(values):
+    if curve is None:
         start = tuple(x.value for x in one.values)
         return Piece(k, number, False, None, None, (sample,), (start,)), (None, None)
     low, high = (float(enclosure(x).mid()) for x in found.ends(interval))
@@ -274,7 +315,7 @@ def _assigned(
     found: Branches,
     at: Cell | None,
     arrivals: Sequence[tuple[float, ...] | None],
-    usable: dict[str, Curve],
+    usable: Sequence[Curve],
     below: bool,
 ) -> list[int | None]:
     """For every branch the number of the nearest meeting; nothing where the numbers that events demand do not come out.
@@ -301,13 +342,11 @@ def _assigned(
     ]  # fmt: skip
 
 
-def _features_at(one: Meeting, usable: dict[str, Curve], p: float) -> tuple[float, ...] | None:
-    curve = usable.get(one.coordinates_of)
+def _features_at(one: Meeting, usable: Sequence[Curve], p: float) -> tuple[float, ...] | None:
+    curve = _curve_of(usable, one, p)
     if curve is None:
         return None
     values = {x.name: x.value for x in one.values}
-    if set(values) != set(curve.names):
-        return None
     return _features(curve, p, [values[name] for name in curve.names])
 
 

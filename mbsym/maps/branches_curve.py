@@ -5,8 +5,8 @@ the equilibria go on one by one, each a function of p, but for the places at whi
 
     f(q, p) = 0,    det df/dq (q, p) = 0,
 
-or at which an unknown goes to infinity, a square root to zero, or a denominator vanishes.  All of these are systems in
-(q, p) that are solved exactly (``algebra.polynomial_systems``).
+or at which an unknown goes to infinity, a square root to zero, or a denominator vanishes, or the constraints lose their
+rank.  All of these are systems in (q, p) that are solved exactly (``algebra.polynomial_systems``).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import fmpq, fmpq_mat, fmpq_poly
 
@@ -26,66 +26,79 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.plane.numbers import Number, compare, number, primitive, roots_between
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, solve
 from mbsym.algebra.ring import Polynomial
-from mbsym.mechanics.charts import Chart, charts
+from mbsym.mechanics.charts import charts
 from mbsym.mechanics.rest import at_numbers, rest
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import EXACT, WITHIN, _ChartSearch
+from mbsym.problems.relative_equilibria.conditions import near
+from mbsym.problems.relative_equilibria.equilibria import EXACT, _ChartSearch, searches_of
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns
+from mbsym.problems.relative_equilibria.verdict import OF_VELOCITIES
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.rows import Row
 
 # Relative equilibria over parameters: f(q, p) = 0 in one set of angles, the parameters p among the unknowns.
 
 
 #: The determinant of M is not formed for more coordinates.
 MOST_COORDINATES = 6
+#: The size of one interreduction under constraints: a few seconds of a four-bar.
+REDUCTION = 400_000_000
 #: Why something at the ends of the space is left open.
 MASS_OPEN = "where the mass matrix is singular is not looked at"
 INFINITY_OPEN = "whether branches go to infinity is not looked at: roots beside lengths"
 
 
-class _Search(_ChartSearch):
-    """The conditions of rest with parameters that are unknowns, too."""
-
-    parameters: tuple[str, ...] = ()
-
-    def _obstacle(self, used: set[int]) -> str:
-        found = super()._obstacle(used - {self.ring.index("parameter", name) for name in self.parameters})
-        if any(found == f"{name} is transcendental" for name in self.parameters):
-            return f"{found.split()[0]} stands in a root or a function"
-        return found
-
-
 class Varied:
     """The equations of rest with unknown parameters.
 
-    Raises NoClosedForm where they are not of the kind needed.  ``empty``: they have no solutions.
+    Under constraints they are those of one case of their rank; near its positions  g = (L, phi) = 0  takes the place of
+    f = 0, with the rows L of f in which the reactions are eliminated and the independent constraints phi.  Then dg/dq
+    is singular where the stiffness on the displacements that are allowed is.
+
+    Raises NoClosedForm where they are not of the kind needed.  ``empty``: they have no solutions.  ``regular``: the
+    constraints have the rank that they have elsewhere.
     """
 
-    def __init__(self, chart: Chart, parameters: Sequence[str], limits: Limits) -> None:
-        self.chart, self.limits, self.label = chart, limits, chart.label
-        search = _Search(chart, WITHIN, limits)
-        search.parameters = tuple(parameters)
+    def __init__(self, search: _ChartSearch) -> None:
         search._conditions()
-        self.search, self.found, self.ring = search, chart.found, chart.found.ring
-        self.unknown = [self.ring.context.gen(self.ring.index("parameter", name)) for name in parameters]
+        self.search, self.chart, self.limits = search, search.chart, search.limits
+        self.found, self.ring, self.label = self.chart.found, self.chart.found.ring, self.chart.label
+        self.unknown = [self.ring.context.gen(self.ring.index("parameter", name)) for name in search.parameters]
         self.empty = search.impossible
-        self.names = () if self.empty else search.occurring
+        here, elsewhere = search.ranks
+        self.regular = elsewhere is None or here == elsewhere
+        #: Further constraints follow from those that are independent.
+        self.redundant = here < len(self.found.rows)
         if self.empty:
+            self.names: tuple[str, ...] = ()
             return
         if search.reason:
             raise NoClosedForm(search.reason)
-        others = [x for name, x in self._rows.items() if name not in self.names and not x.is_zero()]
-        if others or search.remarks:
+        used = [*search.equations, *self._rows]
+        self.names = tuple(x for x in self.found.constant if any(self.ring.depends_on(y, x) for y in used))
+        many = self.regular and len([x for x in self._rows if not x.is_zero()]) > len(self.names)
+        if many or search.remarks:
             raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
 
     @cached_property
-    def _rows(self) -> dict[str, Polynomial]:
-        found = self.found
-        return {name: self.ring.fraction(x)[0] for name, x in zip(found.system.coordinates, found.at_rest, strict=True)}
+    def _independent(self) -> list[Row]:
+        """The constraints that are independent near the case."""
+        return [self.found.rows[k] for k in near(self.found, self.search.case)[1]]
+
+    @cached_property
+    def _rows(self) -> list[Polynomial]:
+        left, _ = near(self.found, self.search.case)
+        held = [row.position for row in self._independent]
+        if any(x is None for x in held):
+            raise NoClosedForm(OF_VELOCITIES)
+        return [self.ring.fraction(x)[0] for x in (*left, *held)]
 
     @cached_property
     def forcing(self) -> list[Polynomial]:
-        """f, times what its rows divide by, for the coordinates that occur: the rows vanish with those of f."""
-        return [self._rows[name] for name in self.names]
+        """f, or g, times what its rows divide by, as many as unknowns: rows that vanish throughout are left out."""
+        rows = sorted(self._rows, key=lambda x: x.is_zero())
+        return rows[: len(self.names)]
 
     @cached_property
     def slopes(self) -> list[list[Polynomial]]:
@@ -106,15 +119,23 @@ class Varied:
     def undefined(self) -> list[Polynomial]:
         """What vanishes where a denominator or a square root does, but for singular angles."""
         angular = {str(x) for x in self.search.singular_where}
-        beside = [x for x in self.search.nonzero if str(x) not in angular]
+        beside = [x for x in self.search.nonzero[len(self.search.case.nonzero) :] if str(x) not in angular]
         used = occurring(self.search.equations)
         return [*beside, *(self.ring.context.gen(k) for k in used if self.ring.generators[k].kind == "root")]
 
     @cached_property
     def mass(self) -> Polynomial | None:
-        """det M; None of more than ``MOST_COORDINATES``."""
+        """det M, and where that vanishes throughout det [[M, J^T], [J, 0]]; None of more than ``MOST_COORDINATES``."""
         matrix = self.found.mass_matrix()
-        return None if len(matrix) > MOST_COORDINATES else self.ring.reduce(determinant(matrix))
+        if len(matrix) > MOST_COORDINATES:
+            return None
+        plain = self.ring.reduce(determinant(matrix))
+        held = [row.partials for row in self._independent]
+        if not plain.is_zero() or not held:
+            return plain
+        zeros = [self.ring.zero] * len(held)
+        upper = [[*row, *(x[i] for x in held)] for i, row in enumerate(matrix)]
+        return self.ring.reduce(determinant([*upper, *([*x, *zeros] for x in held)]))
 
     def at_infinity(self) -> Iterator[tuple[Unknowns, list[Any]] | None]:
         """For each length the equations of what goes to infinity, none faster; None where that is not looked at.
@@ -141,14 +162,20 @@ class Varied:
             yield table, [*tops, table.context.gens()[at] - 1]
 
 
-def charts_over(system: System, parameters: Sequence[str], values: Mapping[str, Fraction]) -> list[Chart]:
-    """The sets of angles of a system with numbers for all parameters but these.
+def searches_over(
+    system: System, parameters: tuple[str, ...], values: Mapping[str, Fraction], limits: Limits, rank: int | None = None
+) -> Iterator[list[_ChartSearch]]:
+    """In each set of angles the cases of the rank of constraints, with numbers for all parameters but these.
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
     kept = tuple(replace(one, value=None) for one in system.parameters if one.name in parameters)
     numbers = {key: value for key, value in values.items() if key not in parameters}
-    return list(charts(rest(replace(at_numbers(system, numbers), parameters=kept))))
+    first = rest(replace(at_numbers(system, numbers), parameters=kept))
+    if first.rows and not limits.reduction:
+        limits = replace(limits, reduction=REDUCTION)
+    for chart in charts(first):
+        yield list(searches_of(chart, limits, rank, parameters=parameters))
 
 
 #: Values of coordinates (or of their sines and cosines) at which real points of a family are looked for.
@@ -193,9 +220,10 @@ class CurvePoints:
 class Curve(Varied):
     """The curve in one set of angles.  Raises NoClosedForm where the equations are not of the kind needed."""
 
-    def __init__(self, chart: Chart, parameter: str, low: Fraction, high: Fraction, limits: Limits) -> None:
-        super().__init__(chart, (parameter,), limits)
-        self.parameter, self.index = parameter, self.ring.index("parameter", parameter)
+    def __init__(self, search: _ChartSearch, low: Fraction, high: Fraction) -> None:
+        super().__init__(search)
+        (self.parameter,) = search.parameters
+        self.index = self.ring.index("parameter", self.parameter)
         self.low, self.high = (rationals.exact(x) for x in (low, high))
 
     def along(self, x: Polynomial) -> Polynomial:
@@ -228,8 +256,11 @@ class Curve(Varied):
             wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
         return self._solved(table, [*wanted, *table.relations()], at)
 
-    def where_on_components(self, further: Sequence[Polynomial]) -> CurvePoints:
-        """As ``where``, component by component of the curve: longer polynomials are short on one."""
+    def where_on_components(self, further: Sequence[Polynomial], limits_too: bool = False) -> CurvePoints:
+        """As ``where``, component by component of the curve: longer polynomials are short on one.
+
+        ``limits_too``: also where the curve only tends to, as something vanishes that must not.
+        """
         given = [self.ring.fraction(x)[0] for x in further]
         table = self.table(given)
         equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
@@ -240,11 +271,13 @@ class Curve(Varied):
         for family in whole.families:
             if any(part.dimension > 1 for part in whole.families):
                 return CurvePoints((), (), True, ())
-            found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None))
+            found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None, limits_too))
         return joined(found)
 
-    def _solved(self, table: Unknowns, equations: Sequence[Any], at: Number | None) -> CurvePoints:
-        usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
+    def _solved(
+        self, table: Unknowns, equations: Sequence[Any], at: Number | None, limits_too: bool = False
+    ) -> CurvePoints:
+        usable = [] if limits_too else [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         result = solve(equations, usable, table.bounded(), self.limits)
         points = []
         for one in result.points:
@@ -352,17 +385,32 @@ def joined(parts: Sequence[CurvePoints]) -> CurvePoints:
 
 
 def curves(
-    system: System, parameter: str, values: Mapping[str, Fraction], low: Fraction, high: Fraction, limits: Limits
-) -> tuple[Curve, ...]:
-    """The curve in every set of angles that is needed; those without points are left out."""
-    found = []
-    for chart in charts_over(system, (parameter,), values):
-        one = Curve(chart, parameter, low, high, limits)
-        if not one.empty:
-            found.append(one)
-        if not one.empty and not one.search.equations:
+    system: System,
+    parameter: str,
+    values: Mapping[str, Fraction],
+    low: Fraction,
+    high: Fraction,
+    limits: Limits,
+    rank: int | None = None,
+) -> tuple[tuple[Curve, ...], CurvePoints]:
+    """The curve in every set of angles and case of the rank of constraints that is needed; none without points.
+
+    Besides, the rests in positions in which the constraints have another rank than ``rank``, and the places where the
+    curve tends to such positions.
+    """  # fmt: skip
+    found, singular = [], []
+    for searches in searches_over(system, (parameter,), values, limits, rank):
+        cases = [Curve(one, low, high) for one in searches]
+        regular = [one for one in cases if one.regular and not one.empty]
+        for other in cases:
+            if not other.regular:
+                singular += [one.where_on_components(other.search.case.zero, limits_too=True) for one in regular]
+                singular += [] if other.empty else [other.where([])]
+        singular += [replace(one.where([]), continua=(), throughout=False) for one in regular if one.redundant]
+        found += regular
+        if any(not one.search.equations for one in regular):
             break
-    return tuple(found)
+    return tuple(found), joined(singular)
 
 
 # --- numbers ----------------------------------------------------------------------------------------------------------

@@ -32,6 +32,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_space
 from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.message import Message
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, joined
 from mbsym.maps.result import Cell
 from mbsym.problems.relative_equilibria.equilibria import _ChartSearch
@@ -64,6 +65,9 @@ SIDES = {
 }
 
 
+_OF_ONE_BRANCH = frozenset({Event.REGULAR, Event.FOLD, Event.STEEP})
+
+
 @dataclass(frozen=True)
 class Named:
     """``below`` and ``above``: equilibria near the point at smaller and larger values of the parameter; None: unknown.
@@ -80,9 +84,11 @@ class Named:
 def named(point: CurvePoint) -> Named:
     """The event at a point of a curve; DEGENERATE where the tests above do not tell."""
     try:
-        return _Reduction(point).named()
+        event = _Reduction(point).named()
     except Failure:
         return _unnamed()
+    # Where several branches meet, constraints that follow from others may hold on some of them only.
+    return event if not point.curve.redundant or event.event in _OF_ONE_BRANCH else _unnamed()
 
 
 def _unnamed() -> Named:
@@ -240,6 +246,9 @@ def stability_changes(curve: Curve) -> CurvePoints:
     linear = curve.search._linear
     if isinstance(linear, str) or linear.varying:
         return CurvePoints((), (), False, ("no linear equations",))
+    if linear.found.rows:
+        reason = Message("under constraints changes of stability are solved without damping and gyroscopic forces only")
+        return CurvePoints((), (), False, () if _unforced(linear) else (reason,))
     try:
         conditions = _conditions(curve, linear)
     except Failure as reason:
@@ -264,8 +273,7 @@ def _conditions(curve: Curve, linear: LinearAtRest) -> list[Polynomial] | None:
     )
     if len(mass.rows) > MOST_COORDINATES:
         return None
-    free = all(x.is_zero() for m in (damping, gyroscopic, circulatory) for row in m.rows for x in row)
-    if free:
+    if _unforced(linear):
         return []
     raw = characteristic_polynomial(mass.rows, (damping + gyroscopic).rows, (stiffness + circulatory).rows)
     p = [ring.fraction(ring.reduce(x))[0] for x in raw] if _polynomial(curve, raw) else None
@@ -282,6 +290,11 @@ def _conditions(curve: Curve, linear: LinearAtRest) -> list[Polynomial] | None:
         found.append(discriminant(p[::2]))
     found = [ring.reduce(x) for x in found]
     return None if any(len(x) > MOST_TERMS for x in found) else [x for x in found if not x.is_constant()]
+
+
+def _unforced(linear: LinearAtRest) -> bool:
+    """Whether D, G and N vanish identically."""
+    return all(x.is_zero() for k in (1, 2, 4) for row in linear.matrices[k] for x in row)
 
 
 def _polynomial(curve: Curve, coefficients: object) -> bool:

@@ -28,15 +28,14 @@ from mbsym.algebra.plane import Point
 from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_back, _Solver, context
 from mbsym.algebra.ring import Polynomial
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
-from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, charts_over
+from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, searches_over
 from mbsym.maps.branches_events import BY_INERTIA, is_undamped
 from mbsym.maps.mapping import Watch, box_of, places
 from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis
-from mbsym.mechanics.charts import Chart
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.equilibria import equilibria
+from mbsym.problems.relative_equilibria.equilibria import _ChartSearch, equilibria
 from mbsym.problems.relative_equilibria.place import Unknowns
 
 #: So many random points are tried until one lies in a region.
@@ -202,9 +201,10 @@ class Projected:
 class Surface(Varied):
     """Equilibria over two parameters, in one set of angles.  Raises NoClosedForm where equations are not polynomial."""
 
-    def __init__(self, chart: Chart, parameters: tuple[str, str], limits: Limits) -> None:
-        super().__init__(chart, parameters, limits)
-        self.parameters, self.plane = parameters, fmpq_mpoly_ctx.get(list(parameters), Ordering.lex)
+    def __init__(self, search: _ChartSearch) -> None:
+        super().__init__(search)
+        self.parameters = search.parameters
+        self.plane = fmpq_mpoly_ctx.get(list(search.parameters), Ordering.lex)
 
     def over(self, further: Sequence[Polynomial], inside: bool = True) -> Projected:
         """The curves over which ``further`` vanish at equilibria; ``inside``: where nothing divides by zero."""
@@ -286,5 +286,5 @@ def surfaces(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    found = [Surface(chart, parameters, limits) for chart in charts_over(system, parameters, values)]
+    found = [Surface(one) for searches in searches_over(system, parameters, values, limits) for one in searches]
     return tuple(one for one in found if not one.empty)

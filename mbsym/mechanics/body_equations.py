@@ -56,12 +56,12 @@ class BodyEquations:
     force_function: Node
 
 
-def body_equations(system: System, ring: Ring) -> BodyEquations:
-    """The equations and energies of a system over a program of their own; ``ring`` is the system's.
+def body_equations(system: System, ring: Ring, program: Program | None = None) -> BodyEquations:
+    """The equations and energies of a system over a program of their own, or a given one; ``ring`` is the system's.
 
-    Raises what the loads raise: SingularPoint, NoClosedForm.
+    Raises what the loads and the program raise: SingularPoint, NoClosedForm.
     """
-    program, notes = Program(), Notes()
+    program, notes = program or Program(), Notes()
     inputs: dict[str, Node] = dict(program_environment(system, program))
     still = {acceleration_name(name): program.zero for name in system.coordinates}
     scene = NamedScene(system, program, inputs | still, ring, notes)

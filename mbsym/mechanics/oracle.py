@@ -6,13 +6,14 @@ Taylor coefficients of positions, partial velocities are directional derivatives
 
     residual_i = sum over bodies of  m r_C'' . dr_C/dq_i + dH_C/dt . (rotation vector of dA/dq_i)  -  Q_i .
 
-Gravity is taken from the second moments of the masses, conservative forces by displacing the system, so that a slip in
-a frame, an axis order, a Coriolis term or a gravity torque elsewhere does not repeat itself here.
+Bodies that a joint carries move as one: forces and moments are summed about the origin of the inertial axes, once for
+all joints.  Gravity is taken from the second moments of the masses, other conservative forces by displacing the system,
+so that a slip in a frame, an axis order, a Coriolis term or a gravity torque elsewhere does not repeat itself here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -189,14 +190,19 @@ class Placement:
         self.axes[body.name] = axes
 
     @cached_property
-    def joint_names(self) -> dict[str, set[str]]:
-        """The names that a body's place and turns against the body before it depend on."""
-        return {
-            body.name: set().union(
-                *map(names, body.connection_point), *(names(angle) for _, angle in body.rotation.turns())
-            )
-            for body in self.system.bodies
-        }
+    def frames(self) -> dict[str, model.Body]:
+        """The bodies by name."""
+        return {body.name: body for body in self.system.bodies}
+
+    @cached_property
+    def joined(self) -> dict[str, list[str]]:
+        """By a name the bodies whose place or turns against the body before them depend on it, from the base on."""
+        found: dict[str, list[str]] = {}
+        for body in self.system.bodies:
+            turns = (names(angle) for _, angle in body.rotation.turns())
+            for name in set().union(*map(names, body.connection_point), *turns):
+                found.setdefault(name, []).append(body.name)
+        return found
 
     def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
         """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
@@ -272,6 +278,18 @@ def _transpose(a: list[Triple]) -> list[Triple]:
     return [[a[j][i] for j in range(3)] for i in range(3)]
 
 
+class _Placed(dict[str, Any]):
+    """Values by the names of bodies, each found when it is first asked for."""
+
+    def __init__(self, found: Callable[[str], Any]) -> None:
+        super().__init__()
+        self._found = found
+
+    def __missing__(self, body: str) -> Any:
+        self[body] = self._found(body)
+        return self[body]
+
+
 class Displacement(Placement):
     """The system at rest in the state, displaced along one coordinate q: series in the displacement, first order.
 
@@ -279,7 +297,7 @@ class Displacement(Placement):
 
         r' = r_O' + theta x (r - r_O),   e' = theta x e     (O, theta: its origin and rotation vector),
 
-    and everything else stays where ``rest`` has it.
+    and everything else stays where ``rest`` has it.  A body is placed when somebody asks for it.
     """
 
     def __init__(self, state: State, environment: Mapping[str, Series], rest: Placement, name: str) -> None:
@@ -287,45 +305,86 @@ class Displacement(Placement):
         self.algebra = TaylorSeries(state.numbers, environment)
         self.lower = Lowering(self.algebra, environment)
         self._centres, self._tensors, self._spins = {}, {}, {}
-        self.origin, self.axes = {INERTIAL: rest.origin[INERTIAL]}, {INERTIAL: rest.axes[INERTIAL]}
-        #: The displaced joint that carries a body; bodies that stay are not in it.
-        self._carrier: dict[str, str] = {}
-        for body in self.system.bodies:
-            if name in rest.joint_names[body.name]:
-                self._carrier[body.name] = body.name
-                self._place(body)
-            elif body.attached_to in self._carrier:
-                carrier = self._carrier[body.name] = self._carrier[body.attached_to]
-                theta = self.spin(carrier)[0]
-                self.origin[body.name] = self._carried(carrier, theta, rest.origin[body.name])
-                columns = [self._turned(theta, column) for column in _transpose(rest.axes[body.name])]
-                self.axes[body.name] = _transpose(columns)
-                self._spins[body.name] = (theta, [])
-            else:
-                self.origin[body.name], self.axes[body.name] = rest.origin[body.name], rest.axes[body.name]
+        #: The displaced joint that carries a body; None for those that stay.
+        self._carrier = _Placed(self._carrier_of)
+        self._carrier[INERTIAL] = None
+        self.origin, self.axes = _Placed(self._origin_of), _Placed(self._axes_of)
 
-    def moves(self, body: model.Body) -> bool:
-        """Whether the displacement moves anything of a body."""
-        return body.name in self._carrier
+    def _carrier_of(self, body: str) -> str | None:
+        return body if self._joins(body) else self._carrier[self.rest.frames[body].attached_to]
+
+    def _joins(self, body: str) -> bool:
+        return body in self.rest.joined.get(self.name, ())
+
+    def _origin_of(self, body: str) -> Triple:
+        carrier = self._carrier[body]
+        if carrier is None:
+            return self.rest.origin[body]
+        if carrier == body:
+            self._place(self.rest.frames[body])
+            return self.origin[body]
+        return self._carried(carrier, self.rest.origin[body])
+
+    def _axes_of(self, body: str) -> list[Triple]:
+        carrier = self._carrier[body]
+        if carrier is None:
+            return self.rest.axes[body]
+        if carrier == body:
+            self._place(self.rest.frames[body])
+            return self.axes[body]
+        theta = self.spin(carrier)[0]
+        return _transpose([self._turned(theta, column) for column in _transpose(self.rest.axes[body])])
+
+    def spin(self, body: str) -> tuple[list[Scalar], list[Scalar]]:
+        """theta, the rotation vector; the second part is never asked for."""
+        carrier = self._carrier[body]
+        return super().spin(body) if carrier in (None, body) else self.spin(carrier)
+
+    def work(self, wrenches: Wrenches) -> Scalar:
+        """sum over all bodies of F . dr_C/dq + L . theta.
+
+        Of a rigid motion it is F . v + N . theta with the sums F, N of ``wrenches`` about the origin of the inertial
+        axes, where v = r_O' - theta x r_O.  What hangs on two displaced joints, one beyond the other, moves with the
+        inner one, and besides as the outer one does against that.
+        """
+        total = self.algebra.numbers.zero
+        for joint in self.rest.joined.get(self.name, ()):
+            force, moment = wrenches[joint]
+            (v, theta), inner = self._motion(joint), self._carrier[self.rest.frames[joint].attached_to]
+            if inner is not None:
+                u, turned = self._motion(inner)
+                v, theta = ([a - b for a, b in zip(x, y, strict=True)] for x, y in ((v, u), (theta, turned)))
+            total = total + dot(force, v) + dot(moment, theta)
+        return total
+
+    def _motion(self, joint: str) -> tuple[list[Scalar], list[Scalar]]:
+        """(v, theta) of a displaced joint."""
+        theta, origin = self.spin(joint)[0], self.origin[joint]
+        swept = cross(theta, [x.a for x in origin])
+        return [x.b - y for x, y in zip(origin, swept, strict=True)], theta
 
     def mass_centre(self, body: model.Body) -> Triple:
-        if body.name not in self._carrier:
+        carrier = self._carrier[body.name]
+        if carrier is None:
             return self.rest.mass_centre(body)
         if body.name not in self._centres:
-            carrier = self._carrier[body.name]
-            theta = self.spin(carrier)[0]
-            self._centres[body.name] = self._carried(carrier, theta, self.rest.mass_centre(body))
+            self._centres[body.name] = self._carried(carrier, self.rest.mass_centre(body))
         return self._centres[body.name]
 
-    def _carried(self, carrier: str, theta: Sequence[Scalar], point: Triple) -> Triple:
+    def _carried(self, carrier: str, point: Triple) -> Triple:
         arm = [x.a - o.a for x, o in zip(point, self.rest.origin[carrier], strict=True)]
-        turned = cross(theta, arm)
+        turned = cross(self.spin(carrier)[0], arm)
         zero = self.algebra.numbers.zero
         return [Series(x.a, o.b + along, zero) for x, o, along in zip(point, self.origin[carrier], turned, strict=True)]
 
     def _turned(self, theta: Sequence[Scalar], direction: Triple) -> Triple:
         turned = cross(theta, [x.a for x in direction])
         return [Series(x.a, along, self.algebra.numbers.zero) for x, along in zip(direction, turned, strict=True)]
+
+
+#: By a body's name the sums (F, N) of forces and of their moments about the origin of the inertial axes, over the body
+#: and all that hangs on it; by ``INERTIAL`` those over the whole system.
+Wrenches = Mapping[str, tuple[list[Scalar], list[Scalar]]]
 
 
 def cross(u: Sequence[Scalar], v: Sequence[Scalar]) -> list[Scalar]:
@@ -340,6 +399,7 @@ class Oracle:
         self.state = state
         self.numbers = state.numbers
         self._last: Displacement | None = None
+        self._weights: dict[loads.UniformGravity, Wrenches] = {}
 
     @cached_property
     def moving(self) -> Placement:
@@ -360,7 +420,10 @@ class Oracle:
     @cached_property
     def residuals(self) -> dict[str, Scalar]:
         """M q'' - forcing, for every coordinate."""
-        return {name: self._inertia(name) - self._applied(name) for name in self.system.coordinates}
+        return {
+            name: self.displaced(name).work(self.momentum_rates) - self._applied(name)
+            for name in self.system.coordinates
+        }
 
     def _constants(self) -> dict[str, Series]:
         zero = self.numbers.zero
@@ -387,17 +450,18 @@ class Oracle:
         return environment
 
     @cached_property
-    def momentum_rates(self) -> list[tuple[model.Body, list[Scalar], list[Scalar] | None]]:
-        """(body, m r_C'', dH_C/dt) of every body that has mass, inertia or a gyrostatic moment."""
+    def momentum_rates(self) -> Wrenches:
+        """The sums of m r_C'' and of r_C x m r_C'' + dH_C/dt."""
         two = self.numbers.number(2)
-        found = []
+        found = {}
         for body in self.system.bodies:
             mass = self.moving.lower(body.mass).a
             tensor = self.moving.inertia(body)
             internal = self.moving.gyrostatic_moment(body)
             if self.numbers.vanishes(mass) and tensor is None and internal is None:
                 continue
-            force = [mass * two * x.c for x in self.moving.mass_centre(body)]
+            centre = self.moving.mass_centre(body)
+            force = [mass * two * x.c for x in centre]
             change = None
             if tensor is not None:
                 omega, rate = self.moving.spin(body.name)
@@ -405,27 +469,40 @@ class Oracle:
             if internal is not None:
                 turning = [x.b for x in internal]
                 change = turning if change is None else [a + b for a, b in zip(change, turning, strict=True)]
-            found.append((body, force, change))
-        return found
-
-    def _inertia(self, name: str) -> Scalar:
-        total = self.numbers.zero
-        displaced = self.displaced(name)
-        for body, force, change in self.momentum_rates:
-            if not displaced.moves(body):
-                continue
-            total = total + dot(force, [x.b for x in displaced.mass_centre(body)])
+            moment = cross([x.a for x in centre], force)
             if change is not None:
-                total = total + dot(change, displaced.spin(body.name)[0])
-        return total
+                moment = [a + b for a, b in zip(moment, change, strict=True)]
+            found[body.name] = force, moment
+        return self._gathered(found)
+
+    def weights(self, load: loads.UniformGravity) -> Wrenches:
+        """The sums of m g and of r_C x m g; the same load is asked for again and again."""
+        if load not in self._weights:
+            found, field = {}, [x.a for x in self.rest.lower.vector(load.acceleration)]
+            for body in self.system.bodies:
+                mass = self.rest.lower(body.mass).a
+                force = [mass * x for x in field]
+                found[body.name] = force, cross([x.a for x in self.rest.mass_centre(body)], force)
+            self._weights[load] = self._gathered(found)
+        return self._weights[load]
+
+    def _gathered(self, own: Wrenches) -> Wrenches:
+        """What acts on each body and on all that hangs on it, from what acts on each (nothing on those left out)."""
+        nothing = [self.numbers.zero] * 3, [self.numbers.zero] * 3
+        found = {INERTIAL: nothing, **{body.name: own.get(body.name, nothing) for body in self.system.bodies}}
+        for body in reversed(self.system.bodies):
+            pairs = zip(found[body.attached_to], found[body.name], strict=True)
+            force, moment = ([a + b for a, b in zip(x, y, strict=True)] for x, y in pairs)
+            found[body.attached_to] = force, moment
+        return found
 
     def _applied(self, name: str) -> Scalar:
         total = self.numbers.zero
         for load in self.system.loads:
-            if type(load) in _FORCE_FUNCTIONS:
-                total = total + _FORCE_FUNCTIONS[type(load)](load, self.displaced(name)).b
-            else:
+            if type(load) in _GENERALIZED_FORCES:
                 total = total + _GENERALIZED_FORCES[type(load)](self, load, name)
+            else:
+                total = total + _FORCE_FUNCTIONS[type(load)](load, self.displaced(name)).b
         return total
 
     @cached_property
@@ -481,7 +558,7 @@ class Oracle:
 # --- loads, each by the shortest physical argument ---
 #
 # Conservative loads give their force function for a placement of the bodies; its derivative along a displacement is
-# the generalised force.  The others give the generalised force itself.
+# the generalised force.  The others give the generalised force itself, and so do weights, whose sums are known.
 
 
 def _uniform(load: loads.UniformGravity, place: Placement) -> Series:
@@ -636,6 +713,10 @@ _FORCE_FUNCTIONS: dict[type, Any] = {
 }
 
 
+def _weight(oracle: Oracle, load: loads.UniformGravity, name: str) -> Scalar:
+    return oracle.displaced(name).work(oracle.weights(load))
+
+
 def _coordinate_damper(oracle: Oracle, load: loads.CoordinateDamper, name: str) -> Scalar:
     if name != load.coordinate:
         return oracle.numbers.zero
@@ -702,6 +783,7 @@ def _torque(oracle: Oracle, load: loads.Torque, name: str) -> Scalar:
 
 
 _GENERALIZED_FORCES: dict[type, Any] = {
+    loads.UniformGravity: _weight,
     loads.CoordinateDamper: _coordinate_damper,
     loads.PointDamper: _point_damper,
     loads.IsotropicDamper: _isotropic_damper,

@@ -182,6 +182,13 @@ class Dynamics:
         rows = jacobian(fresh, rhs.outputs, states)
         return self._code([node for row in rows for node in row])
 
+    @cached_property
+    def slopes(self) -> Code:
+        """(t, q, q') -> d rhs / dt, 2n outputs, and behind them the Jacobian row by row."""
+        rhs, fresh = self.right_hand_side, self._specialised
+        by_time = jacobian(fresh, rhs.outputs, [fresh.input(self.inputs[0])])
+        return Code(fresh, self.inputs, (*(row[0] for row in by_time), *self.jacobian.outputs))
+
     @property
     def linear(self) -> bool:
         """Whether the right-hand side is linear in the state: no entry of the Jacobian is a function of it."""

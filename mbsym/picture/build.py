@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import hypot, pi
+from math import dist, hypot, isfinite, pi
 from typing import Any, NamedTuple
 
 from mbsym.algebra.derivative import jacobian
@@ -39,19 +39,23 @@ from mbsym.model.quantities import length_unit, time_unit, unit_of
 from mbsym.model.system import INERTIAL, Body, Point, System
 from mbsym.numerics.carriers import COMPACT, frames
 from mbsym.numerics.scenario import Incomplete, Scenario, bound, exact, initial_values, own_values, scenario
-from mbsym.picture.looking import Room, State, ellipsoid, first_look, samples, shapes
-from mbsym.picture.program import PoseProgram, flattened
+from mbsym.picture.looking import Room, State, at, combined, dot, ellipsoid, first_look, samples, shapes
+from mbsym.picture.program import PoseProgram, Varied, flattened
 from mbsym.picture.values import (
     Acting,
     Arrow,
     Closure,
     Coordinate,
     Drawn,
+    Ellipsoid,
+    Given,
+    Guide,
     Hinge,
     Joint,
     Line,
     Measure,
     Notes,
+    Numbers,
     Operands,
     Picture,
     Stretch,
@@ -225,6 +229,12 @@ def _triple(values: Sequence[Node]) -> Triple:
 #: So many positions of a loop are looked for.
 LOOPS = 8
 
+#: Pieces of a guide.
+PIECES = 24
+
+#: What is thinner than this, as a part of its length, is a rod.
+ROD = 0.05
+
 
 def picture(system: System, overrides: Mapping[str, Expression] | None = None) -> Picture:
     """The picture at the start of a description, some of its values replaced.
@@ -298,22 +308,59 @@ class _Made:
     def _room(self) -> Room:
         places = self.places
         points = [self.at(x) for name in places.carried for x in (places.origins[name], self.centres[name])]
+        axes = [self.at(row) for name in places.carried for row in places.axes[name]]
+        up = None if self.up is None else self.at(self.up)
+        anywhere = [self.program.at(state) for state in samples(self.known, self.scenario, 1.0)]
+        look = first_look(anywhere, points, axes, up)
         points += [self.at(end) for span in self.spans for end in (span.start, span.end)]
         reach = [0.0] * len(points)
         for name in places.carried:
             body = self.system.body(name)
-            own = ellipsoid(body, self.scenario.parameters)
-            size = 0.0 if own is None or not own.true_size else max(own.half_axes)
+            own = self._ellipsoid(body, look.plane)
+            size = 0.0 if own is None or not own.true_size or not own.telling else max(own.half_axes)
             for shape in shapes(body, self.scenario.parameters):
                 size = max(size, hypot(*shape.at) + hypot(*shape.size))
             points += [self.at(places.origins[name]), self.at(self.centres[name])]
             reach += [size if body.shapes else 0.0, size]
-        axes = [self.at(row) for name in places.carried for row in places.axes[name]]
-        up = None if self.up is None else self.at(self.up)
-        anywhere = [self.program.at(state) for state in samples(self.known, self.scenario, 1.0)]
         states = samples(self.known, self.scenario)
         values = [self.program.at(state) for state in (self._closed(states) if self.rows else states)]
-        return Room.of(values, points, reach, first_look(anywhere, points[: 2 * len(places.carried)], axes, up))
+        return Room.of(values, points, reach, look)
+
+    def _ellipsoid(self, body: Body, plane: bool) -> Ellipsoid | None:
+        """See ``Ellipsoid``: the one of a body, and whether it tells something."""
+        found = ellipsoid(body, self.scenario.parameters)
+        if found is None:
+            return None
+        half = sorted(found.half_axes)
+        lined = plane and any(span.of == body.name for span in self.spans)
+        return replace(found, telling=half[1] >= ROD * half[2] and not lined)
+
+    def _guides(self) -> Iterator[Guide]:
+        """What a body slides along while one coordinate alone moves it, where that is a curve."""
+        start = samples(self.known, self.scenario)[0]
+        values = self.program.at(start)
+        for body in (self.system.body(name) for name in self.places.carried):
+            slides = self.places.slides(body)
+            if len(slides) != 1:
+                continue
+            ((name, _),) = slides
+            known = next(one for one in self.known if one.name == name)
+            angle = known.kind is Measure.ANGLE
+            far, middle = (pi, 0.0) if angle else (0.6 * self.room.radius, known.value)
+            steps = (middle + far * (2 * k / PIECES - 1) for k in range(PIECES + 1))
+            points = tuple(
+                self._from_parent(body, Varied(self.program, values, {name: value}), values) for value in steps
+            )
+            if all(isfinite(x) for point in points for x in point) and _curved(points):
+                yield Guide(body.name, name, points)
+
+    def _from_parent(self, body: Body, moved: Sequence[float], values: Sequence[float]) -> Numbers:
+        """The connection point in the axes of the body before."""
+        here = at(moved, self.at(self.places.origins[body.name]))
+        before = at(values, self.at(self.places.origins[body.attached_to]))
+        arm = combined((1.0, -1.0), (here, before))
+        x, y, z = (dot(arm, at(values, self.at(row))) for row in self.places.axes[body.attached_to])
+        return x, y, z
 
     def _closed(self, states: Sequence[State]) -> list[State]:
         """Those of the positions near which the loops are closed, the start first."""
@@ -342,11 +389,16 @@ class _Made:
             name=system.name,
             frame=places.frame,
             coordinates=tuple(self._wide(x) for x in self.known),
-            parameters=tuple((name, float(value)) for name, value in values.items()),
+            parameters=tuple(
+                Given(x.name, float(values[x.name]), unit_of(system, x.name) or "", x.meaning)
+                for x in system.parameters
+                if x.name in values
+            ),
             program=self.program,
             bodies=tuple(self._drawn(name) for name in places.carried),
             arrows=tuple(Arrow(x.load, x.of, x.body, self.at(x.point), self.at(x.along)) for x in self.pulls),
             lines=tuple(Line(x.kind, self.at(x.start), self.at(x.end), x.of) for x in self.spans),
+            guides=tuple(self._guides()),
             closure=self._closure() if self.rows else None,
             view=self.room.view,
             middle=self.room.middle,
@@ -369,10 +421,18 @@ class _Made:
             Hinge(self.at(along), self._moved_by(turn.angle), False)
             for along, turn in zip(places.turned[name], (x for x in motion.turns if x.axis), strict=True)
         ]
-        hinges += [Hinge(self.at(along), (coordinate,), True) for coordinate, along in places.slides(body)]
+        slides = places.slides(body)
+        straight = [_straight(self.system, body, name) for name, _ in slides]
+        hinges += [
+            Hinge(self.at(along), (coordinate,), True, same)
+            for (coordinate, along), same in zip(slides, straight, strict=True)
+        ]
         sprung, damped = held(places, body.coordinates)
         first, second, third = places.axes[name]
         outlines = shapes(body, values)
+        massive = not self.scene.algebra.vanishes(motion.mass)
+        only_slides = straight == [True] and not motion.turns and motion.mass_centre.vanishes()
+        on_frame = body.attached_to == places.frame
         return Drawn(
             name=name,
             parent=body.attached_to if body.attached_to in places.carried else None,
@@ -380,14 +440,30 @@ class _Made:
             origin=self.at(places.origins[name]),
             centre=self.at(self.centres[name]),
             joint=Joint(tuple(hinges), sprung, damped),
-            massive=not self.scene.algebra.vanishes(motion.mass),
+            massive=massive,
             shapes=outlines,
-            ellipsoid=None if outlines else ellipsoid(body, values),
+            ellipsoid=None if outlines else self._ellipsoid(body, self.room.view.plane),
+            cart=massive and only_slides and on_frame and not outlines,
         )
 
     def _moved_by(self, angle: Expression) -> tuple[str, ...]:
         found = names(angle)
         return tuple(x for x in self.system.coordinates if x in found)
+
+
+def _straight(system: System, body: Body, name: str) -> bool:
+    """Whether a coordinate moves the connection point along one line of the body before."""
+    slopes = [differentiate(x, name) for x in body.connection_point]
+    return not any(names(x) & {*system.coordinates} for x in slopes)
+
+
+def _curved(points: Sequence[Numbers]) -> bool:
+    """Whether they do not lie on one line."""
+    far = max(points, key=lambda x: dist(x, points[0]))
+    chord = combined((1.0, -1.0), (far, points[0]))
+    size = hypot(*chord)
+    arms = (combined((1.0, -1.0), (x, points[0])) for x in points)
+    return size > 0 and any(hypot(*combined((1.0, -dot(x, chord) / size**2), (x, chord))) > 1e-9 * size for x in arms)
 
 
 def coordinates(scenario: Scenario) -> tuple[Coordinate, ...]:

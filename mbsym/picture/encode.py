@@ -11,6 +11,7 @@ from typing import Any
 
 from mbsym.expressions.message import counted
 from mbsym.expressions.table import Curve
+from mbsym.formulas.mathml import spelled_name
 from mbsym.model.system import INERTIAL
 from mbsym.picture.program import PoseProgram
 from mbsym.picture.values import Closure, Drawn, Picture
@@ -25,6 +26,7 @@ def as_json(found: Picture) -> dict[str, Any]:
         "coordinates": [
             {
                 "name": x.name,
+                "label": spelled_name(x.name),
                 "kind": x.kind.value,
                 "unit": x.unit,
                 "value": number(x.value),
@@ -35,7 +37,19 @@ def as_json(found: Picture) -> dict[str, Any]:
             }
             for x in found.coordinates
         ],
-        "parameters": {name: number(value) for name, value in found.parameters},
+        "parameters": [
+            {
+                "name": x.name,
+                "label": spelled_name(x.name),
+                "value": number(x.value),
+                "unit": x.unit,
+                "meaning": x.meaning,
+            }
+            for x in found.parameters
+        ],
+        "guides": [
+            {"body": x.body, "points": [numbers(point) for point in x.points], "closed": x.closed} for x in found.guides
+        ],
         "program": _program(found.program),
         "bodies": [_body(x) for x in found.bodies],
         "arrows": [
@@ -93,9 +107,11 @@ def _body(found: Drawn) -> dict[str, Any]:
         "origin": found.origin,
         "centre": found.centre,
         "massive": found.massive,
+        "cart": found.cart,
         "joint": {
             "hinges": [
-                {"along": x.along, "coordinates": list(x.coordinates), "slides": x.slides} for x in joint.hinges
+                {"along": x.along, "coordinates": list(x.coordinates), "slides": x.slides, "straight": x.straight}
+                for x in joint.hinges
             ],
             "sprung": list(joint.sprung),
             "damped": list(joint.damped),
@@ -110,6 +126,7 @@ def _body(found: Drawn) -> dict[str, Any]:
             "halfAxes": numbers(found.ellipsoid.half_axes),
             "axes": [numbers(row) for row in found.ellipsoid.axes],
             "trueSize": found.ellipsoid.true_size,
+            "telling": found.ellipsoid.telling,
         },
     }
 

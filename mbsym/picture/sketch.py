@@ -17,6 +17,7 @@ from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from math import ceil, cos, dist, hypot, isfinite, pi, sin
+from typing import Any
 
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.tree import ZERO, Expression, Name, Negative, Number, names, text
@@ -38,7 +39,7 @@ from mbsym.picture.build import picture_at, start
 from mbsym.picture.lettering import Letters
 from mbsym.picture.looking import AXES, at, combined, dot, projection, unit
 from mbsym.picture.program import Varied
-from mbsym.picture.values import Acting, Drawn, Ellipsoid, Hinge, Measure, Numbers, Operands, Picture, Stretch
+from mbsym.picture.values import Acting, Drawn, Ellipsoid, Guide, Hinge, Measure, Numbers, Operands, Picture, Stretch
 
 #: The drawing fits into so many centimetres, letters apart.
 WIDE, TALL = 6.2, 4.2
@@ -55,10 +56,7 @@ LETTERED = 8
 #: A longer formula is no letter.
 SHORT = 9
 
-#: Pieces of an arc or a guide.
-PIECES = 24
-
-#: And of an arc on the paper.
+#: Pieces of an arc on the paper.
 ARC = 7
 
 Place = tuple[float, float]
@@ -145,14 +143,70 @@ def sketch(system: System) -> Sketch | None:
         return None
 
 
+class Film:
+    """The moving system as it is drawn on paper, without letters, in centimetres.
+
+    ``columns`` are the inputs of the picture's program by name at ``times`` (m,); one that is not there is zero.
+    ``paths`` are those of mass centres that move.
+    """
+
+    def __init__(self, found: Picture, system: System, times: Sequence[float], columns: Mapping[str, Any]) -> None:
+        self.times = [float(t) for t in times]
+        self._found, self._system = found, system
+        count = len(self.times)
+        zero = [0.0] * count
+        self._columns = {name: columns.get(name, zero) for name in found.program.inputs} | {"t": self.times}
+        self._names = {one.name: columns.get(one.name, zero) for one in found.coordinates}
+        values = found.program.evaluate(self._columns)
+        self._rows = [[float(x) for x in one] if one.shape else [float(one)] * count for one in values]
+        look = projection(found.view)
+        bodies = [body for body in found.bodies if body.massive]
+        flat = [[(dot(look[0], x), dot(look[1], x)) for x in self._track(body.centre)] for body in bodies]
+        # The longest way that something reaches on the paper decides how large a centimetre is.
+        every = [x for body in found.bodies for at_ in (body.origin, body.centre) for x in self._track(at_)]
+        every += [x for line in found.lines for at_ in (line.start, line.end) for x in self._track(at_)]
+        spread = [_width([dot(row, x) for x in every]) for row in look[:2]] if every else [0.0, 0.0]
+        solid = max((max(body.ellipsoid.half_axes) for body in found.bodies if body.ellipsoid), default=0.0)
+        wide, tall = (max(x, 2 * solid) for x in spread)
+        size = max(hypot(wide, tall), 1e-9 * found.extent) or 1.0
+        self.unit = min(WIDE / max(wide, 1e-9 * size), TALL / max(tall, 1e-9 * size), 8.0 / size)
+        paths = [[(self.unit * x, self.unit * y) for x, y in one] for one in flat]
+        self.paths = [one for one in paths if max(_width([x for x, _ in one]), _width([y for _, y in one])) > 0.01]
+
+    def _track(self, operands: Operands) -> list[Numbers]:
+        a, b, c = (self._rows[k] for k in operands)
+        return [place for place in zip(a, b, c, strict=True) if all(map(isfinite, place))]
+
+    def marks(self, k: int) -> tuple[Mark, ...]:
+        """What is drawn of moment k."""
+        state = {name: float(column[k]) for name, column in (self._columns | self._names).items()}
+        ranges = {name: (float(min(x)), float(max(x))) for name, x in self._names.items()}
+        paper = _Paper(self._found, self._system, (), state, [row[k] for row in self._rows])
+        return paper.film(self.unit, ranges)
+
+
+def _width(values: Sequence[float]) -> float:
+    return max(values) - min(values)
+
+
 class _Paper:
-    def __init__(self, found: Picture, system: System, unknown: tuple[str, ...]) -> None:
+    def __init__(
+        self,
+        found: Picture,
+        system: System,
+        unknown: tuple[str, ...],
+        state: dict[str, float] | None = None,
+        values: Sequence[float] = (),
+    ) -> None:
         self.found, self.system, self.unknown = found, system, unknown
+        #: How far coordinates go, where the system moves: tracks stay in their place then.
+        self.ranges: Mapping[str, tuple[float, float]] = {}
+        self.still = state is None
         self.bodies = {body.name: body for body in found.bodies}
         self.own: dict[str, Body] = {body.name: body for body in system.bodies}
         self.look = projection(found.view)
-        self.state = self._state()
-        self.values = found.program.at(self.state)
+        self.state = self._state() if state is None else state
+        self.values = found.program.at(self.state) if state is None else values
         self.marks: list[Mark] = []
         self.letters: Letters[Expression | int] = Letters()
         self.few = len(found.bodies) <= LETTERED
@@ -224,13 +278,13 @@ class _Paper:
         extent = [self.flat(self.point(x)) for body in self.found.bodies for x in (body.origin, body.centre)]
         extent += [self.flat(self.point(x)) for line in self.found.lines for x in (line.start, line.end)]
         extent += [place for solid in solids for place in solid.outline]
-        extent += [self.flat(place) for guide in guides if not guide.straight for place in guide.places]
+        extent += [self.flat(place) for _, places in guides for place in places]
         if not all(isfinite(x) for place in extent for x in place):
             return None
         carts = [
             self.flat(self.point(body.origin, self.varied(name, 0.0)))
             for name, (body, _) in self._sliding.items()
-            if self._is_cart(body)
+            if body.cart
         ]
         extent += carts
         low = min(x for x, _ in extent), min(y for _, y in extent)
@@ -246,10 +300,23 @@ class _Paper:
         )
         self.middle = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
         self._draw(solids, guides)
+        for guide, places in guides:
+            self._circled(guide, places)
+        self._angles()
+        self._forces()
+        self._body_axes()
+        self._driven()
         if not any(isinstance(x, Stroke) for x in self.marks):
             return None
         self._corner()
         return self._finished()
+
+    def film(self, unit: float, ranges: Mapping[str, tuple[float, float]]) -> tuple[Mark, ...]:
+        """What is drawn of it while it moves: nothing that only carries letters."""
+        self.unit, self.middle, self.ranges = unit, (0.0, 0.0), ranges
+        self._draw(list(self._solids()), list(self._guides()))
+        self._body_axes()
+        return tuple(self.marks)
 
     def cm(self, place: Place) -> Place:
         """Centimetres from the middle."""
@@ -287,32 +354,15 @@ class _Paper:
                 yield self._solid(body.name, "ellipsoid", ellipsoid.half_axes, self.point(body.centre), rows)
 
     def _ellipsoid(self, body: Drawn) -> Ellipsoid | None:
-        """The one that is drawn: of a known size, not of a rod, which is a line already.
-
-        In a plane only one moment means something: what has a line is told by it.
-        """
+        """The one that is drawn: of a known size, and telling."""
         found = body.ellipsoid
-        plane = self.found.view.plane and any(line.of == body.name for line in self.found.lines)
-        if found is None or not found.true_size or plane:
-            return None
-        half = sorted(found.half_axes)
-        return found if half[1] >= 0.05 * half[2] else None
+        return found if found is not None and found.true_size and found.telling else None
 
     def _solid(
         self, of: str, kind: str, size: Sequence[float], middle: Numbers, rows: Sequence[Numbers]
     ) -> _Paper.Solid:
         outline, edges = outlined.outlined(kind, size, middle, rows, self.look)
         return self.Solid(of, outline, edges, self.depth(middle), kind in ("sphere", "ellipsoid"))
-
-    @dataclass(frozen=True)
-    class Guide:
-        """What a body slides along while ``coordinate`` changes; ``centre`` is that of a circle."""
-
-        body: Drawn
-        coordinate: str
-        places: tuple[Numbers, ...]
-        straight: bool
-        centre: Numbers | None
 
     @cached_property
     def _sliding(self) -> dict[str, tuple[Drawn, Hinge]]:
@@ -324,47 +374,22 @@ class _Paper:
                 found[hinges[0].coordinates[0]] = body, hinges[0]
         return found
 
-    def _guides(self) -> Iterator[_Paper.Guide]:
-        kinds = {one.name: one for one in self.found.coordinates}
-        for name, (body, _) in self._sliding.items():
-            angle = kinds[name].kind is Measure.ANGLE
-            far = pi if angle else 0.6 * self.found.extent
-            middle = 0.0 if angle else self.state[name]
-            steps = [middle + far * (2 * k / PIECES - 1) for k in range(PIECES + 1)]
-            moved = [self.varied(name, value) for value in steps]
-            places = tuple(self.point(body.origin, one) for one in moved)
-            if not all(isfinite(x) for place in places for x in place):
-                continue
-            chord = combined((1.0, -1.0), (places[-1], places[0]))
-            length = hypot(*chord)
-            whole = max(dist(a, places[0]) for a in places)
-            straight = length > 1e-9 * whole and all(_off(a, places[0], chord) < 1e-9 * whole for a in places)
-            if straight and not angle and not self._is_cart(body):
-                continue  # told by the line, the spring or the arrow of the coordinate
-            centre = combined([1 / PIECES] * PIECES, places[:-1])
-            radii = [dist(a, centre) for a in places]
-            round_ = angle and not straight and max(radii) - min(radii) < 1e-6 * max(radii)
-            yield self.Guide(body, name, places, straight, centre if round_ else None)
-
-    def _is_cart(self, body: Drawn) -> bool:
-        """A body with mass and no look of its own that slides along a straight line on what does not move."""
-        return (
-            body.massive
-            and body.parent is None
-            and not body.shapes
-            and not any(not x.slides for x in body.joint.hinges)
-            and self.point(body.origin) == self.point(body.centre)
-        )
+    def _guides(self) -> Iterator[tuple[Guide, tuple[Numbers, ...]]]:
+        """Hoops with their points in the axes of the picture."""
+        for guide in self.found.guides:
+            parent = self.bodies[guide.body].parent
+            carrier = None if parent is None else self.bodies[parent]
+            origin = (0.0, 0.0, 0.0) if carrier is None else self.point(carrier.origin)
+            axes = AXES if carrier is None else tuple(self.point(row) for row in carrier.axes)
+            yield guide, tuple(combined((1.0, *point), (origin, *axes)) for point in guide.points)
 
     # --- drawn ---
 
-    def _draw(self, solids: Sequence[_Paper.Solid], guides: Sequence[_Paper.Guide]) -> None:
-        for guide in guides:
-            if not guide.straight:
-                line = tuple(self.on(x) for x in guide.places)
-                closed = dist(line[0], line[-1]) < 1e-6
-                parent = guide.body.parent or "guide"
-                self.line(f"guide: {parent}", line[:-1] if closed else line, Ink.GUIDE, closed=closed, smooth=True)
+    def _draw(self, solids: Sequence[_Paper.Solid], guides: Sequence[tuple[Guide, tuple[Numbers, ...]]]) -> None:
+        for guide, places in guides:
+            line = tuple(map(self.on, places))
+            of = f"guide: {self.bodies[guide.body].parent or 'guide'}"
+            self.line(of, line[:-1] if guide.closed else line, Ink.GUIDE, closed=guide.closed, smooth=True)
         for solid in sorted(solids, key=lambda x: x.depth):
             outline = tuple(map(self.cm, solid.outline))
             self.line(solid.of, outline, Ink.SOLID, closed=True, tinted=True, smooth=solid.round)
@@ -373,10 +398,6 @@ class _Paper:
         self._tracks()
         self._lines()
         self._points()
-        self._angles(guides)
-        self._forces()
-        self._body_axes()
-        self._driven()
 
     def line(self, of: str, points: Sequence[Place], ink: Ink, **how: bool) -> None:
         self.marks.append(Stroke(of, tuple(points), ink, **how))
@@ -384,7 +405,8 @@ class _Paper:
 
     def letter(self, what: Expression | int, place: Place, away: Place = (0.0, 0.0), near: float = 0.16) -> None:
         """A letter near a place, rather in the direction ``away``."""
-        self.letters.add(what, _letters_of(what), place, away, near)
+        if self.still:
+            self.letters.add(what, _letters_of(what), place, away, near)
 
     def _tracks(self) -> None:
         """Carts and blocks, on ground or held by springs, with the coordinate that moves them."""
@@ -397,7 +419,7 @@ class _Paper:
             zero = self.on(self.point(body.origin, self.varied(name, 0.0)))
             here = self.spot(body.origin)
             sprung, damped = name in body.joint.sprung, name in body.joint.damped
-            if self._is_cart(body):
+            if body.cart:
                 self._cart(body, name, here, zero, right, sprung, damped)
             elif dist(here, zero) > 0.3:
                 self._tied(body, name, zero, here, sprung, damped)
@@ -416,7 +438,7 @@ class _Paper:
         else:
             self.line(body.name, (zero, here), Ink.HIDDEN)
         shift = 0.34 if sprung or damped else 0.0
-        if shift:
+        if shift and self.still:
             ends = [(p[0] + shift * side[0], p[1] + shift * side[1]) for p in (zero, here)]
             self.line(f"length: {name}", ends, Ink.THIN, arrow=True, both=True)
             self.letter(Name(name), _between(*ends), side)
@@ -439,6 +461,9 @@ class _Paper:
         left, end = min(-1.6, towards - 0.5), max(1.2, towards + 0.4)
         if sprung or damped:
             left = min(left, -2.1)
+        if name in self.ranges:
+            low, high = (self.unit * x for x in self.ranges[name])
+            left, end = towards + low + (-2.1 if sprung or damped else -1.6), towards + high + 1.2
         self.line("ground", (there(left, floor), there(end, floor)), Ink.THIN)
         self._hatched("ground", there(left, floor), there(end, floor), (-up[0], -up[1]))
         corners = [there(-wide, -tall), there(wide, -tall), there(wide, tall), there(-wide, tall)]
@@ -461,7 +486,7 @@ class _Paper:
                 if not both:
                     self.letter(self._damping(name), there((left - wide) / 2, b), up, 0.3)
         below = floor - 0.42
-        if abs(towards) > 0.3:
+        if abs(towards) > 0.3 and self.still:
             self.line(f"zero: {name}", (there(towards, floor), there(towards, below - 0.1)), Ink.THIN)
             self.line(f"length: {name}", (there(towards, below), there(0.0, below)), Ink.THIN, arrow=True)
             self.line(f"end: {name}", (there(0.0, floor), there(0.0, below - 0.1)), Ink.HIDDEN)
@@ -521,10 +546,8 @@ class _Paper:
         for constraint in self.system.constraints:
             if isinstance(constraint, Coincide | Distance):
                 for one in (constraint.first, constraint.second):
-                    if one.body == body.name and all(
-                        names(x) <= dict(self.found.parameters).keys() for x in one.position
-                    ):
-                        values = dict(self.found.parameters)
+                    if one.body == body.name and all(names(x) <= self.found.values.keys() for x in one.position):
+                        values = self.found.values
                         arm = [_number(x, values) for x in one.position]
                         yield one.position, self.on(combined((1.0, *arm), (self.point(body.origin), *axes)))
 
@@ -552,7 +575,7 @@ class _Paper:
                 self._pinned(body, here)
             if len(turns) == 1 and self._has_line(body) and not self._is_hidden(body):
                 self.marks.append(Dot(f"joint of {body.name}", here, 0.06, open=True))
-            if body.massive and not body.shapes and not (self._is_cart(body) and body.name in self._carts):
+            if body.massive and not body.shapes and not (body.cart and body.name in self._carts):
                 point = self.own[body.name].inertia is None
                 self.marks.append(Dot(body.name, centre, 0.1 if point else 0.05))
                 self.letters.avoid([centre], False)
@@ -568,9 +591,9 @@ class _Paper:
         ]:
             for end in (one.first, one.second):
                 if end.body == INERTIAL == self.found.frame and all(
-                    names(x) <= dict(self.found.parameters).keys() for x in end.position
+                    names(x) <= self.found.values.keys() for x in end.position
                 ):
-                    values = dict(self.found.parameters)
+                    values = self.found.values
                     x, y, z = (_number(c, values) for c in end.position)
                     yield self.on((x, y, z))
 
@@ -667,11 +690,8 @@ class _Paper:
                 return one.origin
         return None
 
-    def _angles(self, guides: Sequence[_Paper.Guide]) -> None:
+    def _angles(self) -> None:
         radius = 0.72
-        for guide in guides:
-            if guide.centre is not None:
-                self._circled(guide)
         for body in self.found.bodies:
             target = self._target(body)
             turns = [x for x in body.joint.hinges if not x.slides and x.coordinates]
@@ -718,25 +738,28 @@ class _Paper:
         self.letter(Name(name), middle, _direction(centre, middle))
         return True
 
-    def _circled(self, guide: _Paper.Guide) -> None:
+    def _circled(self, guide: Guide, curve: Sequence[Numbers]) -> None:
         """The angle of a body on a circle, and its radius."""
-        assert guide.centre is not None
         name, value = guide.coordinate, self.state[guide.coordinate]
-        if abs(value) < 0.05 or abs(value) > 2 * pi:
+        middle_of = combined([1 / (len(curve) - 1)] * (len(curve) - 1), curve[:-1])
+        radii = [dist(x, middle_of) for x in curve]
+        angle = any(one.name == name and one.kind is Measure.ANGLE for one in self.found.coordinates)
+        if not angle or max(radii) - min(radii) > 1e-6 * max(radii) or abs(value) < 0.05 or abs(value) > 2 * pi:
             return
-        centre, bead = self.on(guide.centre), self.spot(guide.body.origin)
+        body = self.bodies[guide.body]
+        centre, bead = self.on(middle_of), self.spot(body.origin)
         steps = [self.varied(name, value * k / (ARC - 1)) for k in range(ARC)]
-        places = [self.point(guide.body.origin, one) for one in steps]
-        radius = dist(places[0], guide.centre)
+        places = [self.point(body.origin, one) for one in steps]
+        radius = dist(places[0], middle_of)
         part = min(0.8, 0.55 * self.unit * radius) / (self.unit * radius)
-        line = [self.on(combined((1 - part, part), (guide.centre, place))) for place in places]
+        line = [self.on(combined((1 - part, part), (middle_of, place))) for place in places]
         self.line(f"zero: {name}", (centre, self.on(places[0])), Ink.HIDDEN)
         self.line(f"radius: {name}", (centre, bead), Ink.THIN)
         self.line(f"angle {name}", line, Ink.THIN, arrow=True, smooth=True)
         middle = line[ARC // 2]
         self.letter(Name(name), middle, _direction(centre, middle))
-        own = self.own[guide.body.name]
-        values = dict(self.found.parameters)
+        own = self.own[guide.body]
+        values = self.found.values
         known = {x for one in own.connection_point for x in names(one)} & values.keys()
         for one in sorted(known):
             if abs(values[one] - radius) < 1e-9 * radius:
@@ -780,7 +803,7 @@ class _Paper:
             if self._covered(tip, (x, y)):  # along a rod: towards the point, from outside
                 ends = (tip[0] - 1.1 * x, tip[1] - 1.1 * y), (tip[0] - 0.14 * x, tip[1] - 0.14 * y)
             else:
-                reach = 0.55 if self._is_cart(body) else 0.12
+                reach = 0.55 if body.cart else 0.12
                 ends = (
                     (tip[0] + reach * x, tip[1] + reach * y),
                     (tip[0] + (reach + 0.9) * x, tip[1] + (reach + 0.9) * y),
@@ -953,12 +976,6 @@ def _length_of(vector: Sequence[Expression]) -> Expression | None:
 
 def _number(value: Expression, values: Mapping[str, float]) -> float:
     return float(exact(value, {name: Fraction(x) for name, x in values.items()}))
-
-
-def _off(place: Numbers, start: Numbers, along: Numbers) -> float:
-    """How far a point is from a line."""
-    arm = combined((1.0, -1.0), (place, start))
-    return hypot(*combined((1.0, -dot(arm, along) / dot(along, along)), (arm, along)))
 
 
 def _direction(first: Place, second: Place) -> Place:

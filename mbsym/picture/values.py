@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from math import dist
 
 from mbsym.picture.program import PoseProgram
 
@@ -59,12 +60,14 @@ class Ellipsoid:
     """The homogeneous ellipsoid that has the mass and the inertia of a body, about its mass centre.
 
     ``half_axes`` along the rows of ``axes`` (principal axes in the axes of the body).  ``true_size``: the ellipsoid has
-    the body's own mass; otherwise only its proportions are the body's.
+    the body's own mass; otherwise only its proportions are the body's.  ``telling``: nothing else that is drawn tells
+    the same: not that of a rod, which is a line already, nor in a plane, where one moment is all, that of what has one.
     """
 
     half_axes: Numbers
     axes: Rows
     true_size: bool
+    telling: bool = True
 
 
 @dataclass(frozen=True)
@@ -72,11 +75,13 @@ class Hinge:
     """An axis about which a joint turns (``slides`` False), or the direction in which a coordinate moves it.
 
     ``along``: operands; a unit vector for a turn.  ``coordinates`` move it; none: a constant or prescribed turn.
+    ``straight``: the direction is the same at every position.
     """
 
     along: Operands
     coordinates: tuple[str, ...]
     slides: bool
+    straight: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ class Drawn:
     """A body: rows ``axes`` are its axes, ``origin`` its connection point, ``centre`` its mass centre.
 
     ``parent`` is None where that is the frame of the picture; ``massive``: it has mass, so that its mass centre means
-    something.
+    something.  ``cart``: it has no look of its own and only slides, along a straight line in the frame.
     """
 
     name: str
@@ -105,6 +110,34 @@ class Drawn:
     massive: bool
     shapes: tuple[Outline, ...] = ()
     ellipsoid: Ellipsoid | None = None
+    cart: bool = False
+
+
+@dataclass(frozen=True)
+class Guide:
+    """The curve along which ``coordinate`` moves the origin of ``body``: a hoop.
+
+    ``points`` are in the axes of the body's parent, from its origin.
+    """
+
+    body: str
+    coordinate: str
+    points: tuple[Numbers, ...]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it returns to where it began."""
+        return dist(self.points[0], self.points[-1]) < 1e-6 * max(dist(self.points[0], x) for x in self.points)
+
+
+@dataclass(frozen=True)
+class Given:
+    """The value of a parameter."""
+
+    name: str
+    value: float
+    unit: str
+    meaning: str
 
 
 class Acting(Enum):
@@ -201,14 +234,20 @@ class Picture:
     name: str
     frame: str
     coordinates: tuple[Coordinate, ...]
-    parameters: tuple[tuple[str, float], ...]
+    parameters: tuple[Given, ...]
     program: PoseProgram
     bodies: tuple[Drawn, ...]
     arrows: tuple[Arrow, ...]
     lines: tuple[Line, ...]
+    guides: tuple[Guide, ...]
     closure: Closure | None
     view: View
     middle: Numbers
     extent: float
     notes: Notes
     units: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The parameters by name."""
+        return {one.name: one.value for one in self.parameters}

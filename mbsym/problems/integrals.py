@@ -228,21 +228,12 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Itera
 def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tuple[str, int]]:
     """The (kind, axis) of momenta whose rate vanishes at one random state: what has to be looked at closely.
 
-    Rates of momentum are sums over the bodies in inertial axes, so that no formula is formed for nothing.
+    Rates of momentum are known as numbers, in inertial axes, so that no formula is formed for nothing.
     """
     for states in (rational_states(system, ring, STATES), ball_states(system, ring, STATES)):
         for state in states:
             try:
-                oracle = Oracle(system, accelerated(system, state, programs))
-                forces, moments = [state.numbers.zero] * 3, [state.numbers.zero] * 3
-                for body, force, change in oracle.momentum_rates:
-                    arm = [x.a for x in oracle.moving.mass_centre(body)]
-                    for i in range(3):
-                        j, k = (i + 1) % 3, (i + 2) % 3
-                        forces[i] = forces[i] + force[i]
-                        moments[i] = moments[i] + arm[j] * force[k] - arm[k] * force[j]
-                        if change is not None:
-                            moments[i] = moments[i] + change[i]
+                forces, moments = Oracle(system, accelerated(system, state, programs)).momentum_rates[INERTIAL]
             except NOT_THERE:
                 continue
             rates = {("linear momentum", i + 1): x for i, x in enumerate(forces)}

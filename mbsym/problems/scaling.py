@@ -40,6 +40,7 @@ from mbsym.algebra.matrices import Operators, added, null_vectors, reduced_rows
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
+from mbsym.problems.constraints import Constraints
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.stability.linear_form import LinearSystem
@@ -85,7 +86,7 @@ class Groups:
 
 
 def groups(scene: Scene, equations: Equations | SpeedEquations) -> Groups:
-    """The groups of the nonlinear equations M q'' = f, prescribed motions, relations and the unperturbed motion.
+    """The groups of the nonlinear equations M q'' = f, constraints, prescribed motions, relations and the motion.
 
     Of equations in speeds, M u' = f and s' = g; unit vectors, quaternions and the angles they replace are numbers.
     """
@@ -103,6 +104,8 @@ def groups(scene: Scene, equations: Equations | SpeedEquations) -> Groups:
             weight: Weights = {key: -power for key, power in column.items()}
             weight[TIME] = weight.get(TIME, Fraction(0)) + 1
             made.equal(entry, {("equation", i): Fraction(1), **weight})
+    if equations.constraints is not None:
+        made.constrained(equations.constraints, columns)
     for item in scene.system.prescribed:
         own: Weights = {("coordinate", item.name): Fraction(1)}
         made.equal(scene.lower(item.rate), {**own, TIME: Fraction(-1)})
@@ -165,6 +168,17 @@ class _Equations:
         for body in (body for body in scene.system.bodies if body.orientation):
             numbers = [name for one in body.orientation for name in one.components]
             self.rows += [{("coordinate", name): Fraction(1)} for name in (*numbers, *body.own_angles)]
+
+    def constrained(self, tied: Constraints, columns: Sequence[Weights]) -> None:
+        """f = 0 and J u + j = 0, with J^T lambda among the forces: a factor for every row, and for its multiplier."""
+        for k, (position, velocity) in enumerate(zip(tied.position, tied.velocity, strict=True)):
+            if position is not None:
+                self.equal(position.polynomial, {("position", k): Fraction(1)})
+            self.equal(velocity.polynomial, {("row", k): Fraction(1)})
+            for i, column in enumerate(columns):
+                entry = tied.jacobian[k, i].polynomial
+                self.equal(entry, {("row", k): Fraction(1), **{key: -power for key, power in column.items()}})
+                self.equal(entry, {("equation", i): Fraction(1), ("multiplier", k): Fraction(-1)})
 
     def parameters(self) -> set[str]:
         """Names of the parameters that occur."""

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from flint import ctx
 
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.program import Node
+from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -91,6 +92,23 @@ class ToldSystem:
 #: a hand of 16 joints has 2200, a humanoid of 50 coordinates 19000.
 MOST_OPERATIONS = 5_000
 
+#: Some of what is derived is not needed: of fifty systems the half at most, but for two that are told in a line.
+MOST_DERIVED = 10 * MOST_OPERATIONS
+
+
+class _Limited(Program):
+    """A program whose making is given up where it is too long to be told."""
+
+    def _node(self, operation: str, operands: tuple[int, ...] = (), payload: str | Fraction | None = None) -> Node:
+        if len(self.instructions) > MOST_DERIVED:
+            raise _too_many()
+        return super()._node(operation, operands, payload)
+
+
+def _too_many() -> TooLargeError:
+    text = "more than [[most]] operations, too many to be told through intermediates"
+    return TooLargeError(Message(text, most=MOST_OPERATIONS))
+
 
 def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     """The results told through named intermediates; ``ring`` is the system's.
@@ -98,13 +116,10 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     Raises NoClosedForm and SingularPoint, TooLargeError where nobody would read so many definitions, and Untold where
     they are not what the general recursion gives.
     """
-    found = body_equations(system, ring)
+    found = body_equations(system, ring, _Limited())
     outputs = _outputs(found)
-    operations = len(found.program.live(outputs))
-    if operations > MOST_OPERATIONS:
-        raise TooLargeError(
-            Message("[[operations]] operations are too many to be told through intermediates", operations=operations)
-        )
+    if len(found.program.live(outputs)) > MOST_OPERATIONS:
+        raise _too_many()
     numbers = {body.name: k for k, body in enumerate(system.bodies, start=1)}
     proposed = _names(ring, found, numbers)
     cosines = {name for k, name in proposed.items() if found.meanings[k].quantity is Quantity.DIRECTION_COSINE}

@@ -13,7 +13,7 @@ from mbsym.algebra.signs import Condition
 from mbsym.analysis.expanding import Expansion
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.result import Hurwitz, Outcome
+from mbsym.problems.small_parameter.result import Choice, Hurwitz, Outcome
 from mbsym.report.documents import expansion as doc
 from mbsym.report.documents.base import written
 from mbsym.report.plain import Write
@@ -28,7 +28,7 @@ def expansion_json(
     """One JSON object, keys in a fixed order, the same text for the same input."""
     manifold = expansion_data(found, str)
     told = doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measured_data(measured))
-    return written(structs.replace(told, missing=manifold.missing, steady=manifold.steady))
+    return written(structs.replace(told, roots=manifold.roots, missing=manifold.missing, steady=manifold.steady))
 
 
 def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
@@ -47,6 +47,14 @@ def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
             doc.SlowVariable(variable=name, coefficients=_series(found, one, write))
             for name, one in zip(manifold.slow, manifold.flow, strict=True)
         ],
+        roots=UNSET
+        if found.choice is Choice.ONLY
+        else doc.Roots(
+            chosen=found.choice,
+            others=[{n: write(x) for n, x in zip(manifold.fast, values, strict=True)} for values in found.others],
+            unknown=found.unknown,
+            positive=_positive(found, found.real, write),
+        ),
         missing=found.missing if steady is None else UNSET,
         steady=UNSET
         if steady is None
@@ -55,6 +63,8 @@ def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
             divided_up_to=steady.remainder - 1,
             attracts=_hurwitz(found, steady.fast, *found.fast, write),
             flow=_hurwitz(found, steady.slow, *found.slow, write),
+            free=list(steady.free),
+            stabilizable=found.stabilizable[0] if steady.free else None,
         ),
     )
 
@@ -82,7 +92,12 @@ def _hurwitz(
     found: Expansion, one: Hurwitz, outcome: Outcome, conditions: tuple[Condition, ...], write: Write
 ) -> doc.Hurwitz[Any]:
     ring = found.transfer.ring
-    positive = [write(Formula(ring, c.polynomial)) for c in conditions if c.kind == "inequality"]
+    positive = _positive(found, conditions, write)
     nonzero = [write(Formula(ring, p)) for c in conditions for p in c.nonzero]
     polynomial = [_series(found, c, write) for c in one.polynomial]
     return doc.Hurwitz(outcome=outcome, positive=positive, nonzero=nonzero, polynomial=polynomial)
+
+
+def _positive(found: Expansion, conditions: tuple[Condition, ...], write: Write) -> list[Any]:
+    ring = found.transfer.ring
+    return [write(Formula(ring, c.polynomial)) for c in conditions if c.kind == "inequality"]

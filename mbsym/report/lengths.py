@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any
 
+from mbsym.algebra.program import Node, Program
 from mbsym.formulas.formula import Formula
 from mbsym.report.content import Said, say
 
@@ -60,9 +61,10 @@ def formulas(result: Any) -> Iterator[Formula]:
             yield from formulas(getattr(result, field.name))
 
 
-def program_not_printed(steps: int) -> Said:
+def program_not_printed(program: Program, outputs: Iterable[Node]) -> Said:
     """The same for straight-line code."""
-    return say("[[count]] steps, not printed; model.py and model.c have them", count=str(steps))
+    count = str(program.operations(outputs))
+    return say("[[count]] operations, not printed; model.py and model.c have them", count=count)
 
 
 def not_printed(formula: Formula) -> Said:

@@ -280,7 +280,7 @@ def _hover(task: Task, system: System) -> Iterator[Message]:
 
 def _simulate(task: Task, system: System) -> Iterator[Message]:
     from mbsym.picture import picture
-    from mbsym.report.viewer.page import motion, motion_json
+    from mbsym.report.viewer.motion import motion, motion_json
     from mbsym.simulation import Request
     from mbsym.simulation.request import read_values
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import isfinite, log
+from math import isfinite, log, sqrt
 from typing import Any
 
 import numpy as np
@@ -117,15 +117,30 @@ class _Numbers:
 
     def __init__(self, found: Expansion, parameters: Mapping[str, Fraction], eps: Fraction) -> None:
         self.found, self.eps = found, eps
-        field = found.manifold.field.field
-        self.places = [found.names.index(name) for name in found.manifold.slow]
-        self.known = [rationals.exact(parameters[name]) if name in field.parameters else None for name in found.names]
+        field, root = found.manifold.field.field, found.manifold.root
+        names = [root.instead if root is not None and name == root.label else name for name in found.names]
+        self.places = [names.index(name) for name in found.manifold.slow]
+        self.known = [
+            rationals.exact(parameters[name]) if name in parameters and name not in field.variables else None
+            for name in names
+        ]
 
-    def on_manifold(self, s: Sequence[Fraction]) -> list[Fraction]:
-        """h(s, eps), exactly."""
+    def _at(self, s: Sequence[Fraction]) -> list[fmpq]:
+        """Numbers for all generators, the square root to double precision; those of fast variables are not used."""
         at = [fmpq(0) if x is None else x for x in self.known]
         for place, x in zip(self.places, s, strict=True):
             at[place] = rationals.exact(x)
+        root = self.found.manifold.root
+        if root is not None:
+            square = rationals.fraction(root.square(*at))
+            if square < 0:
+                raise NotMeasured("the manifold is not real there")
+            at[root.place] = rationals.exact(Fraction(sqrt(square)))
+        return at
+
+    def on_manifold(self, s: Sequence[Fraction]) -> list[Fraction]:
+        """h(s, eps), exactly but for its square root."""
+        at = self._at(s)
         total = []
         for one in self.found.manifold.functions:
             value = fmpq(0)
@@ -137,24 +152,39 @@ class _Numbers:
     def flow(self) -> Flow:
         """s -> s', in floating point, cut off after the order of the expansion."""
         rows = [self._row(one) for one in self.found.manifold.flow]
-        return lambda s: np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
+        root = self.found.manifold.root
+        if root is None:
+            return lambda s: np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
+        square = self._polynomial(root.square, Fraction(1), None)
+
+        def moved(s: Floats) -> Floats:
+            s = np.append(s, np.sqrt(square(np.append(s, 0.0))))
+            return np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
+
+        return moved
 
     def _row(self, one: Series) -> list[tuple[Evaluated, Evaluated]]:
+        root = self.found.manifold.root
+        place = None if root is None else root.place
         return [
-            (self._polynomial(c.top, self.eps**k), self._polynomial(c.bottom, Fraction(1)))
+            (self._polynomial(c.top, self.eps**k, place), self._polynomial(c.bottom, Fraction(1), place))
             for k, c in one.coefficients.items()
         ]
 
-    def _polynomial(self, p: Any, factor: Fraction) -> Evaluated:
+    def _polynomial(self, p: Any, factor: Fraction, root: int | None) -> Evaluated:
+        """Of the slow variables, and of the square root behind them, which stands at the place ``root``."""
         exponents, numbers = [], []
         for monomial, c in p.to_dict().items():
             value = c * rationals.exact(factor)
-            for x, e in zip(self.known, monomial, strict=True):
-                value = value * x ** int(e) if x is not None and e else value
-            exponents.append([int(monomial[place]) for place in self.places])
+            for k, (x, e) in enumerate(zip(self.known, monomial, strict=True)):
+                value = value * x ** int(e) if x is not None and e and k != root else value
+            powers = [int(monomial[place]) if place != root else 0 for place in self.places]
+            if self.found.manifold.root is not None:
+                powers.append(0 if root is None else int(monomial[root]))
+            exponents.append(powers)
             numbers.append(int(value.p) / int(value.q))
-        powers, factors = np.array(exponents), np.array(numbers)
-        return lambda s: float(factors @ np.prod(s**powers, axis=1))
+        table, factors = np.array(exponents), np.array(numbers)
+        return lambda s: float(factors @ np.prod(s**table, axis=1))
 
 
 def _span(flow: Flow, s: Floats) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -72,9 +72,10 @@ class Request:
         return dict.fromkeys(self.small, 1) | dict(self.order)
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.analysis.averaged import fast_phases
 
+    system = asked.system
     known, phases = fast_phases(system), request.phase
     listed = Message("prescribed quantities whose rate is a parameter: [[names]]", names=", ".join(known))
     if not known:

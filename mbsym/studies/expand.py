@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Number, Numbers, Whole
 from mbsym.studies.study import (
-    FILE,
+    DESCRIPTION,
     Answer,
     Asked,
     Exit,
@@ -22,7 +22,6 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
-    from mbsym.model.system import System
     from mbsym.simulation.expanded import Measured
 
 
@@ -54,11 +53,12 @@ class Request:
     ] = None
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     small = system.small
     if small is None:
         hint = "add 'small parameter: eps'"
-        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+        yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
         return
     for name in request.values:
         if name == small.name or name in dict(small.powers):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +13,6 @@ from mbsym.studies.request import Flag, Number, Values
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, failed
 
 if TYPE_CHECKING:
-    from mbsym.model.system import System
     from mbsym.numerics.extremes.extremes import Extremes
     from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.sequences import Ranking
@@ -48,8 +47,9 @@ class Request:
     budget: Annotated[float, Number("S", "Counted work, worth some S seconds.")] = 60.0
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
-    if request.sequences and "as_json" in typed:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
+    if request.sequences and "as_json" in asked.typed:
         yield Unfit("--json", "conflicting-options", "there is no JSON of a ranking", "leave --sequences out")
     if request.sequences and system.constraints:
         told = Message(

@@ -173,5 +173,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "groups", Request, derive, answer, refusal,
-    matrices=True, held=False, out=Single("Write the description in groups here."), document=document,
+    matrices=True, constraints=True, held=False, out=Single("Write the description in groups here."), document=document,
 )  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -15,7 +15,6 @@ from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Unfit, Watc
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.model.system import System
     from mbsym.numerics.inverse import InverseDynamics
 
 
@@ -47,8 +46,9 @@ class Request:
     values: Stateless = field(default_factory=dict)
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     """Coordinates without a motion; with constraints some may follow from the others, which is seen at every time."""
+    system = asked.system
     for name in system.coordinates if not (system.constraints and request.motion) else ():
         if name not in request.motion:
             hint = Message("for example [[example]]", example=f'--motion "{name}=0"')

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +13,6 @@ from mbsym.studies.request import Number, Values, Whole, duration
 from mbsym.studies.study import Answer, Asked, Exit, Folder, Refusal, Study, Unfit, Watch, no_program
 
 if TYPE_CHECKING:
-    from mbsym.model.system import System
     from mbsym.numerics.orbits.lyapunov import Exponents
 
 
@@ -44,10 +43,11 @@ class Request:
     tolerance: Annotated[float, Number("X", "Error of one step.", least=1e-14, most=1e-2)] = 1e-10
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     """More exponents than there are; too many intervals, and too few for the statistics of means."""
     from mbsym.numerics.orbits.lyapunov import LEAST_INTERVALS
 
+    system = asked.system
     count, every, time = request.count, request.every, request.time
     there = 2 * len(system.coordinates)
     if count is not None and count > there:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
@@ -62,11 +62,12 @@ class Request:
     vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.")] = None
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     """Numbers are of parameters that follow from nothing else, and have their declared signs; along a parameter all
     others have one."""
     from mbsym.model.assumptions import has_sign
 
+    system = asked.system
     signs = {one.name: one.sign for one in system.parameters}
     related = {one.name for one in system.relations}
     for name, value in request.values.items():

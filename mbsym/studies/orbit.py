@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,7 +13,6 @@ from mbsym.studies.request import Named, Number, Values, Word
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
-    from mbsym.model.system import System
     from mbsym.simulation.motions import PeriodicMotion
 
 #: What may be kept while the orbit is sought.
@@ -53,7 +52,8 @@ class Request:
     ] = field(default_factory=dict)
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     for name in request.turns:
         if name not in system.coordinates:
             told = Message("there is no coordinate [[name]]", name=repr(name))

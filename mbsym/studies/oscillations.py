@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.studies.request import ExactSettings, Text, Whole, formats, language
 from mbsym.studies.study import (
-    FILE,
+    DESCRIPTION,
     Answer,
     Asked,
     Exit,
@@ -99,11 +99,12 @@ class Request:
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     small, leading = system.small, request.of
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
-        yield Unfit(FILE, "missing-key", "the description names no small parameter", hint)
+        yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
     known = (*system.coordinates, *system.velocities, *system.variables)
     if leading and leading not in known:
         told = Message("there is no variable called [[name]]", name=repr(leading[:60]))
@@ -119,7 +120,7 @@ def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[
         yield from _unscaled(request.scale, system)
     if request.integral is not None:
         yield from _no_rates(request.integral, system)
-    if "language" in typed and "format" not in typed:
+    if "language" in asked.typed and "format" not in asked.typed:
         yield Unfit("--language", *UNWRITTEN)
 
 

@@ -6,11 +6,12 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, BinaryIO, Generic, Protocol, TypeVar
 
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message, joined, worded
 
 if TYPE_CHECKING:
+    from mbsym.expressions.place import Span
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
     from mbsym.report.content import Block
@@ -57,11 +58,33 @@ def unwatched(text: str, done: float = 0.0, whole: float = 0.0) -> None:
     """Nobody looks on."""
 
 
+class Remember(Protocol):
+    """``measure()`` answers the ``question``, or an earlier answer does, unless it is asked ``anew``.
+
+    Returns the answer, and whether it is an earlier one; only ``sound`` answers are kept for later.
+    """
+
+    def __call__(
+        self, question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+    ) -> tuple[Any, bool]: ...
+
+
+def unremembered(
+    question: Sequence[str], measure: Callable[[], Any], sound: Callable[[Any], bool], anew: bool
+) -> tuple[Any, bool]:
+    """Nobody remembers anything."""
+    return measure(), False
+
+
 @dataclass(frozen=True)
 class Asked:
     """What a study is about: the description, with the values of the request where it is of one motion.
 
     ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
+    ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
+    ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
+    knows what was measured before; ``letters``: the author's, in which formulas are written, None where nothing was
+    said of them.
     """
 
     system: System
@@ -69,6 +92,10 @@ class Asked:
     file: str = ""
     folder: Path = Path()
     write: Callable[[Path, bytes], object] = Path.write_bytes
+    typed: Mapping[str, Any] = field(default_factory=dict)
+    store: Callable[[], BinaryIO | None] = lambda: None
+    remember: Remember = unremembered
+    letters: tuple[str, ...] | None = None
 
     @property
     def motion(self) -> Scenario:
@@ -81,7 +108,11 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
+    the names of files.  ``owner``: the command whose set
+    the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
+    off the making of some of them, which is raised when the others have been written; ``text``: what is
+    printed as it is, and nothing else, for other programs.
     """
 
     lines: Iterable[Line | Block] = ()
@@ -90,6 +121,11 @@ class Answer:
     code: Exit = Exit.OK
     after: str = ""
     brief: Iterable[Block] = ()
+    last: Iterable[Line] = ()
+    owner: str = ""
+    more: str = ""
+    stopped: BaseException | None = None
+    text: str | None = None
 
 
 @dataclass(frozen=True)
@@ -110,19 +146,56 @@ class Refusal:
     more: Sequence[str] = ()
 
 
-#: In place of an option where the description is at fault, or what was given for it.
-FILE, DESCRIPTION = "FILE", ""
+#: In place of an option where the description is at fault: complaints begin with its name.
+DESCRIPTION = ""
 
 
 @dataclass(frozen=True)
 class Unfit:
-    """An option that does not go with the others, or with the system; of several values, that of a ``name``."""
+    """An option that does not go with the others, or with the system; of several values, that of a ``name``.
+
+    ``text``: what was typed, where ``span`` is the place in it that is at fault.
+    """
 
     option: str
     code: str
     message: str
     hint: str | None = None
     name: str = ""
+    text: str = ""
+    span: Span | None = None
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Two options that do not go together, and why; one may have its value, ``--method midpoint``."""
+
+    option: str
+    other: str
+    why: str
+    hint: str | None = None
+
+    def unfit(self, options: Collection[str]) -> Iterator[Unfit]:
+        """Where both were given."""
+        if self.option in options and self.other in options:
+            words = "[[option]] does not go with [[other]]: [[why]]"
+            message = Message(words, option=self.option, other=self.other, why=worded(self.why))
+            yield Unfit(self.option.split()[0], "conflicting-options", message, self.hint)
+
+
+@dataclass(frozen=True)
+class Needed:
+    """An option that says something of another one only."""
+
+    option: str
+    other: str
+    hint: str
+
+    def unfit(self, options: Collection[str]) -> Iterator[Unfit]:
+        """Where it was given without that one."""
+        if self.option in options and self.other not in options:
+            message = Message("[[option]] goes with [[other]]", option=self.option, other=self.other)
+            yield Unfit(self.option, "missing-option", message, self.hint)
 
 
 class NotFit(Exception):
@@ -169,14 +242,15 @@ class Study(Generic[R, F]):
     """One command.
 
     ``derive(asked, request, watch)`` finds the result; ``answer(asked, request, result)`` tells it, ``json`` as the
-    text that ``--json`` prints.  ``refusal`` tells of the exceptions that are answers.  ``unfit`` says
+    text that ``--json`` prints.  ``refusal`` tells of the exceptions that are answers.  ``unfit(asked, request)`` says
     what of a request does not go together; fields that could not be read are None there, but among those that were
-    ``typed``.
+    ``typed``.  ``pairs``: options that do not go together, or not alone, whatever the system is.
 
     ``constraints``, ``matrices``: whether descriptions with these are understood, ``bodies``: whether matrices are
     not, by the texts of the options; ``held``: whether inputs are held at their constant values.  ``out``: where files
     go; ``writes``: whether there are any, by what was typed; ``document`` makes the single one.  ``timed``: whether the
-    seconds are told.  ``letters``: whether formulas are written in the author's letters.
+    seconds are told.  ``letters``: whether formulas are written in the author's letters.  ``together`` compares the
+    results of several descriptions, where they may be asked about at once.
     """
 
     name: str
@@ -184,7 +258,7 @@ class Study(Generic[R, F]):
     derive: Callable[[Asked, R, Watch], F]
     answer: Callable[[Asked, R, F], Answer]
     refusal: Callable[[Exception, Asked, R], Refusal | None]
-    unfit: Callable[[R, System, Collection[str]], Iterator[Unfit]] = _nothing
+    unfit: Callable[[Asked, R], Iterator[Unfit]] = _nothing
     json: Callable[[Asked, R, F], str] | None = None
     json_help: str = "Print JSON instead of a summary."
     constraints: bool = False
@@ -196,6 +270,8 @@ class Study(Generic[R, F]):
     document: Callable[[Asked, R, F], Document] | None = None
     timed: bool = False
     letters: bool = False
+    pairs: Sequence[Apart | Needed] = ()
+    together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
 
 
 def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:

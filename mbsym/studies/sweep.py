@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any
@@ -119,25 +119,26 @@ class Request:
         return Asked(points, ends, self.values, measure, self.measure.formula, self.time)
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.numerics.ensembles.variation import complaints
     from mbsym.sweeps.points import MOST_POINTS
 
+    system = asked.system
     moving = request.measure.text.startswith(MOTION)
-    if moving and "time" not in typed:
+    if moving and "time" not in asked.typed:
         yield Unfit(
             "--time",
             "missing-option",
             "how long to simulate is not said",
             Message("for example [[example]]", example="--time 60"),
         )
-    if not moving and "time" in typed:
+    if not moving and "time" in asked.typed:
         told = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
         yield Unfit("--time", "conflicting-options", told, "leave it out")
     if "parquet" in request.format and not _arrow():
         yield Unfit("--format", "missing-package", "parquet needs PyArrow", "pip install 'mbsym[parquet]'")
     variations = [one.variation for one in request.vary or ()]
-    if request.points is not None or "points" not in typed:
+    if request.points is not None or "points" not in asked.typed:
         known = _names(system, request.measure.text)
         wrong = complaints(variations, request.points, known, (), "points", MOST_POINTS, 100_000)
         for name, text, hint in wrong:

@@ -198,7 +198,7 @@ def _tradeoff(
     )
     compared = Table.of(
         ("model", "error", "operations", "seconds"),
-        ((row.variant.label, row.error, row.operations, row.seconds) for row in found.models),
+        ((row.label, row.error, row.operations, row.seconds) for row in found.models),
     )
     return TradeoffStudy(runs, compared, advice(found.trade, target), found.trade.reference.error, found)
 

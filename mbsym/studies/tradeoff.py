@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,6 +26,7 @@ from mbsym.studies.study import (
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown
+    from mbsym.numerics.scenario import Scenario
     from mbsym.numerics.trade import tradeoff as trade_study
     from mbsym.numerics.trade.tradeoff import Measured
     from mbsym.report.content import Block
@@ -37,7 +38,7 @@ def _methods() -> tuple[str, ...]:
     return tuple(METHODS)
 
 
-SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=True)
+SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=lambda texts: True)
 METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
 BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
 
@@ -53,12 +54,16 @@ class Request:
     with the most faithful one.  Of a description with speeds these are integrated, and unit vectors or quaternions.
 
     Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
-    ...-partial.  Exit codes: 0 done, 1 files could not be written, or a trial ended in an internal error (the
-    others are kept), 2 something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
+    ...-partial.  Asked again, with another --target say, it answers from what was measured before.  Of several FILEs
+    one table compares what the target costs, and each has its own files.
+
+    Exit codes: 0 done, 1 files could not be written, or a trial ended in an internal error (the others are kept), 2
+    something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
 
     \b
-    Example:
+    Examples:
       mbsym tradeoff systems/double-pendulum.yaml --time 60 --target 1e-9
+      mbsym tradeoff systems/spring-pendulum.yaml systems/double-pendulum.yaml --time 20
     """
 
     time: Annotated[float, length("Simulate from 0 to T (60, 2*pi).")]
@@ -69,14 +74,16 @@ class Request:
     budget: Annotated[float, Number("S", BUDGET)] = 60.0
     fidelity: Annotated[bool, Flag(None, "Compare simpler models too.", both=True)] = True
     all_rows: Annotated[bool, Flag(None, "Print every run, not only those on the front and near the target.")] = False
+    anew: Annotated[bool, Flag(None, "Measure again what an earlier command has measured.")] = False
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was measured; ``notes``: how the initial state was led to the constraints."""
+    """What was measured, ``before`` if by an earlier command; ``notes``: how the state was led to the constraints."""
 
     measured: trade_study.Study
     notes: tuple[str, ...]
+    before: bool = False
 
 
 def derive(asked: Asked, request: Request, watch: Watch) -> Found:
@@ -86,7 +93,23 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
 
     given, notes = closed_motion(asked.motion, declared=True)
     methods = [table.METHODS[name] for name in request.methods]
-    return Found(studied(given, methods, request.time, request.budget, request.fidelity, watch), notes)
+
+    def measure() -> trade_study.Study:
+        return studied(given, methods, request.time, request.budget, request.fidelity, watch)
+
+    how = repr((request.methods, request.time, request.budget, request.fidelity))
+    measured, before = asked.remember(
+        ("tradeoff", identity(given), how), measure, lambda found: not found.trade.interrupted, request.anew
+    )
+    return Found(measured, notes, before)
+
+
+def identity(given: Scenario) -> str:
+    """A text that two scenarios share only if they are the same motion of the same description."""
+    from mbsym.source.yaml_writer import meaning
+
+    numbers = {name: getattr(given, name) for name in given.__dataclass_fields__ if name != "system"}
+    return repr((meaning(given.system), numbers))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
@@ -94,7 +117,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     stopped = trade.interrupted
     if not trade.rows:
         return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, found.measured, say), _files(asked, request, found.measured)
+    lines, files = _lines(request, found, say), _files(asked, request, found.measured)
     after = f", t = 0 .. {request.time:g}"
     if stopped:
         complaints = (*found.notes, say(Message("interrupted; what was measured is kept")))
@@ -116,12 +139,15 @@ def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 
-def _lines(request: Request, found: trade_study.Study, say: Callable[[str], str]) -> Iterator[Line | Block]:
+def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iterator[Line | Block]:
     from mbsym.numerics.trade.fidelity import model_advice
     from mbsym.numerics.trade.tradeoff import advice
 
+    found = answered.measured
     trade, models, target = found.trade, found.models, request.target
     truth = trade.reference
+    if answered.before:
+        yield line("  ", say(Message("measured by an earlier command, seconds too; --anew measures again")))
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
     error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
@@ -201,6 +227,24 @@ def _without_reference(error: Breakdown, request: Request) -> Message:
     return Message("no reference solution up to t = [[time]] was found: [[why]]", time=time, why=why)
 
 
+def together(found: Sequence[tuple[Asked, Request, Found]]) -> Iterator[Block]:
+    """What the target costs, scene by scene: the setting of least time, or the most accurate one where none does."""
+    from mbsym.report.content import aligned, column
+    from mbsym.report.runs.tradeoff_table import compared
+
+    names = ("scene", "method", "setting", "error", "evaluations", "steps", "time", "cost", "reached")
+    columns = [column(Message(name), right=name not in ("scene", "method", "setting", "reached")) for name in names]
+    rows = [(asked.system.name, one.measured.trade, request.target) for asked, request, one in found]
+    yield aligned(columns, compared(rows))
+
+
 STUDY = Study(
-    "tradeoff", Request, derive, answer, refusal, constraints=True, out=Folder("Print only the recommendation.")
+    "tradeoff",
+    Request,
+    derive,
+    answer,
+    refusal,
+    constraints=True,
+    out=Folder("Print only the recommendation."),
+    together=together,
 )

@@ -39,7 +39,8 @@ class Request:
     solve: Annotated[tuple[str, ...], Names("NAME", "An input or parameter; repeatable.  [default: all inputs]")] = ()
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    system = asked.system
     names = (*system.input_names, *system.parameter_names)
     for name in request.solve or ():
         if name not in names:
@@ -58,7 +59,7 @@ def _asked(source: Source, request: Request) -> Asked:
 
     system = analysis_of(source).system
     refuse_matrices(system, "no posture is held")
-    for one in unfit(request, system, ()):
+    for one in unfit(Asked(system), request):
         raise ValueError(one.message)
     return Asked(system)
 

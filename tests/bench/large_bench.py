@@ -1,4 +1,4 @@
-"""Sections ``robots``, ``chains`` and ``waiting`` of the benchmark, as whole processes: what large costs, and small.
+"""Sections ``robots``, ``chains``, ``folder`` and ``waiting`` of the benchmark, as whole processes: what large costs.
 
 Nothing heavy is imported here: a child's peak memory counts from the moment it is forked.
 """
@@ -23,10 +23,12 @@ Record = dict[str, Any]
 AGREEMENT = [sys.executable, str(ROOT / "tests" / "robots" / "agreement.py")]
 #: Joints of the chains, and those of ``--quick``.
 LENGTHS, SHORT = (5, 10, 20, 50, 100, 200), (5, 10, 20)
+#: What is aimed at, by joints.
+TARGETS = {100: ((4, "s"),), 200: ((9, "s"), (400, "MB"), (1.1, "= p"))}
 
 
 def _record(child: Child) -> Record:
-    found = {"seconds": child.seconds, "peak_mb": child.peak_mb, **(child.record or {})}
+    found = {"seconds": child.seconds, "cpu": child.cpu, "peak_mb": child.peak_mb, **(child.record or {})}
     return {**found, "complaint": child.complaint} if child.complaint else found
 
 
@@ -99,10 +101,37 @@ def show_chains(results: list[Record], table: Callable[..., None]) -> None:
         exponent = ""
         if before is not None:
             steps = math.log(result["joints"] / before["joints"])
-            exponent = number(math.log(result["seconds"] / before["seconds"]) / steps, 2)
+            exponent = number(math.log(result["cpu"] / before["cpu"]) / steps, 2)
         shown = result.get("complaint") or number(result["seconds"])
-        rows.append([str(result["joints"]), shown, number(result["peak_mb"]), exponent])
-    table("mbsym run on spatial chains; seconds grow as joints**p", ["joints", "run, s", "MB", "p"], rows)
+        target = ", ".join(f"{limit} {unit}" for limit, unit in TARGETS.get(result["joints"], ()))
+        cells = [str(result["joints"]), shown, number(result["cpu"]), number(result["peak_mb"]), exponent, target]
+        rows.append(cells)
+    headings = ["joints", "wall, s", "user + system, s", "MB", "p", "target"]
+    table("mbsym run on spatial chains; user + system grows as joints**p", headings, rows)
+
+
+def folder(options: argparse.Namespace) -> dict[str, Record]:
+    """`mbsym batch` on all shipped systems into a new folder, and once more when all is up to date."""
+    with tempfile.TemporaryDirectory() as place:
+        command = [*mbsym_command(), "batch", "systems", "--out", f"{place}/build"]
+        results = {}
+        for name in ("derived", "up to date"):
+            child = run_child(command, options.timeout, False)
+            say(f"  folder, {name}: {child.complaint or f'{child.seconds:.2f} s'}")
+            results[name] = _record(child)
+    return results
+
+
+def show_folder(results: dict[str, Record], table: Callable[..., None]) -> None:
+    targets = {"derived": "12", "up to date": "0.2"}
+    rows = [
+        [name, result.get("complaint") or number(result["seconds"]), targets[name]] for name, result in results.items()
+    ]
+    table(
+        "mbsym batch systems",
+        ["", "wall, s", "target"],
+        rows,
+    )
 
 
 #: What somebody waits for, and what part of `import sympy` in processor time it is to be at most.
@@ -139,4 +168,9 @@ def show_waiting(results: dict[str, Record], table: Callable[..., None]) -> None
     table("short commands, processor time of whole processes", ["command", "s", "of import sympy", "target"], rows)
 
 
-SECTIONS = {"robots": (robots, show_robots), "chains": (chains_, show_chains), "waiting": (waiting, show_waiting)}
+SECTIONS = {
+    "robots": (robots, show_robots),
+    "chains": (chains_, show_chains),
+    "folder": (folder, show_folder),
+    "waiting": (waiting, show_waiting),
+}

@@ -31,8 +31,7 @@ from mbsym.mechanics.constraints.dynamics import Chosen, constrained_dynamics  #
 from mbsym.mechanics.programs import constants  # noqa: E402
 from mbsym.numerics.closing import closed  # noqa: E402
 from mbsym.numerics.dynamics import Dynamics  # noqa: E402
-from mbsym.numerics.methods.interface import Setting  # noqa: E402
-from mbsym.numerics.methods.kept import compiled_kernel  # noqa: E402
+from mbsym.numerics.methods.interface import Setting, compiled_kernel  # noqa: E402
 from mbsym.numerics.methods.table import METHODS  # noqa: E402
 from mbsym.numerics.scenario import Scenario, scenario  # noqa: E402
 

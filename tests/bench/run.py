@@ -35,7 +35,7 @@ import peer_arm  # noqa: E402  (imports sympy only where it derives)
 import peer_satellite  # noqa: E402
 
 SATELLITE = "systems/satellite.yaml"
-ALL = ("waiting", "satellite", "arm", "robots", "chains", "forward", "simulation", "growth")
+ALL = ("waiting", "satellite", "arm", "robots", "chains", "folder", "forward", "simulation", "growth")
 KINDS = ("principal", "full")
 ROAD_TITLES = {
     "library": "LagrangesMethod, Linearizer",

@@ -44,7 +44,7 @@ def test_a_load_that_fixed_steps_pass_is_warned_of_with_its_place_and_a_command(
     assert "changes within" not in followed.output
 
 
-@pytest.mark.parametrize("method", ["dop853", "rk45", "radau", "taylor"])
+@pytest.mark.parametrize("method", ["dop853", "rk45", "rodas5p", "radau", "taylor"])
 def test_no_step_is_longer_than_asked(method: str, tmp_path: Path) -> None:
     done, written = simulated(tmp_path, "sin(t)", "--method", method, "--max-step", "0.01", "--no-estimate")
     assert done.exit_code == 0, done.output

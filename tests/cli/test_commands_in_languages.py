@@ -14,12 +14,13 @@ from mbsym.report.language import LANGUAGES
 from mbsym_cli.console import speaking
 from mbsym_cli.main import main
 
-#: Names in the description, what is typed, words of files.
+#: Names in the description, what is typed, words of files, codes and labels of results.json.
 TYPED = {"simple", "pendulum", "theta", "yaml", "build", "summary", "json", "error", "mbsym", "run", "watch", "edit",
          "unknown", "key", "mas", "mass", "unfit", "continue", "simulation", "results", "reports", "csv", "format",
          "version", "urdf", "mjcf", "floating", "symbols", "damping", "inputs", "joint", "names", "angles", "all",
          "text", "moved", "nowhere", "crane", "missing", "filter", "torque", "trajectory", "bad", "good", "language",
-         "out", "dot", "cos", "sin"}  # fmt: skip
+         "out", "dot", "cos", "sin", "forced", "complete", "see", "cases",
+         "squared", "factor"}  # fmt: skip
 
 
 def description(language: str) -> str:
@@ -35,6 +36,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "in" / "good.yaml").write_text(description("ru"), encoding="utf-8")
     (tmp_path / "in" / "bad.yaml").write_text(description("ru").replace("mass: m", "mas: m"), encoding="utf-8")
     (tmp_path / "moved.yaml").write_text(description("ru").replace("[0, -l, 0]", "[0, -2*l, 0]"), encoding="utf-8")
+    forced = description("ru").replace("positive", "nonnegative")
+    (tmp_path / "forced.yaml").write_text(forced, encoding="utf-8")
+    (tmp_path / "more").mkdir()
+    for name in ("crane", "good"):
+        (tmp_path / "more" / f"{name}.yaml").write_text(description("ru"), encoding="utf-8")
     return tmp_path
 
 
@@ -61,6 +67,8 @@ def strange(text: str) -> set[str]:
         ("convert", "in/good.yaml", "--out", "in/good.yaml"),
         ("new", "crane", "--like", "pendulum", "--language", "ru"),
         ("diff", "in/good.yaml", "moved.yaml"),
+        ("diff", "in/good.yaml", "forced.yaml"),
+        ("diff", "more", "in/good.yaml"),
         ("diff", "in/good.yaml", "in/good.yaml"),
         ("simulate", "in/good.yaml", "--time", "1", "--continue", "moved.yaml"),
     ],
@@ -74,6 +82,17 @@ def test_no_english_word(words: tuple[str, ...], folder: Path) -> None:
 def test_english_is_found(folder: Path) -> None:
     """Negative control."""
     assert "bodies" in strange(said("check", str(SHIPPED / "simple-pendulum.yaml")))
+
+
+@pytest.mark.parametrize("form", ["sarif", "github", "json"])
+def test_programs_read_the_same_complaints_from_check_and_batch(form: str, folder: Path) -> None:
+    """Batches wrote them in the language of the description, checks in English; people read theirs all the same."""
+    wrong = ("in/bad.yaml", "--output-format", form)
+    check, batch = (CliRunner().invoke(main, [*x, *wrong]).stdout for x in (("check",), ("batch", "--out", "out")))
+    assert check == batch
+    (row,) = json.loads(Path("out/summary.json").read_text(encoding="utf-8"))["systems"]
+    assert row["complaints"][0]["message"].startswith("unknown key")
+    assert "неизвестный ключ" in said("batch", "in/bad.yaml", "--out", "out")
 
 
 def test_programs_read_complaints_in_english(folder: Path) -> None:

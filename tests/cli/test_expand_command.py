@@ -44,7 +44,7 @@ def test_the_damper_as_json_and_as_text():
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("systems/clebsch-poisson.yaml",), "names no small parameter"),
+        (("systems/clebsch-poisson.yaml",), "clebsch-poisson.yaml: error[missing-key]: the description names no small"),
         ((SLOW, "--order", "90"), "error["),
         ((SLOW, "--set", "eps=1/10"), "belongs to the small parameter"),
         ((SLOW, "--set", "Q=1"), "there is no parameter called Q"),

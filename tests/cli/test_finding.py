@@ -111,14 +111,14 @@ def test_where_no_case_holds_it_is_undecided_in_all_media(tmp_path: Path) -> Non
     assert not bead.theory.uncovered
 
 
-def test_what_singular_angles_do_not_say_of_the_motion_is_told_with_the_verdict(tmp_path: Path) -> None:
+def test_what_equations_in_singular_angles_do_not_say_of_the_motion_is_told_with_them(tmp_path: Path) -> None:
     """A body spins about the vertical: gravity has no moment about the pivot if x = 0 and y = 0.
 
-    With rotation axes 3, 1, 3 two angles turn about one line there, and only y = 0 is left of these.
+    With rotation axes 3, 1, 3 two angles turn about one line there, and the equations by themselves leave only y = 0.
     """
     lines = told(tmp_path, (CASES / "staude2.yaml").read_text(encoding="utf-8"))
-    assert "Motion  psi = W t, th = phi = 0 satisfies the equations of motion if and only if y = 0" in lines
-    assert "Stability  provided that y = 0, x = 0:" in lines
+    assert "Motion  psi = W t, th = phi = 0 satisfies the equations of motion if and only if y = 0, x = 0" in lines
+    assert "Stability  provided the conditions of problem 4 hold:" in lines
 
 
 def test_short_integrals_are_told_with_their_formula(tmp_path: Path) -> None:
@@ -354,9 +354,22 @@ def test_long_conditions_are_told_by_the_letters_of_the_paper(tmp_path: Path) ->
     """
     lines = told(tmp_path, (SHIPPED / "satellite.yaml").read_text(encoding="utf-8"), "--problems", "6")
     stabilised = "otherwise gyroscopically stabilised only, if v4 > 0, v2 > 0, v0 > 0, discriminant > 0"
-    assert f"{stabilised} (characteristic polynomial)" in lines
+    assert f"{stabilised} (characteristic polynomial, problem 6)" in lines
     first = "otherwise unstable (Lyapunov's first method) if v4 < 0 or v2 < 0 or discriminant < 0"
-    assert f"{first} (characteristic polynomial)" in lines
+    assert f"{first} (characteristic polynomial, problem 6)" in lines
+
+
+def test_the_letters_of_conditions_are_explained_beside_them(tmp_path: Path) -> None:
+    """Those in use, and those that they are made of; none that no condition holds; long ones where they are told."""
+    text = (
+        "mbsym: 1\nname: letters\nparameters: {m: positive, k: real, p: real, c: positive}\n"
+        "bodies: [{name: p, mass: m, connection point: [x, 0, 0], coordinates: [x]}]\n"
+        "loads: [{potential: (k - p)*x**2/2}, {damper: {coordinate: x, coefficient: c}}]\nmotion: {}\n"
+    )
+    assert not [x for x in told(tmp_path, text) if x.startswith("where ")]
+    assert "where s = k - p" in told(tmp_path, text + "notation: {s: k - p, other: c/m}\n")
+    long = " + ".join(["k - p", *["m - m"] * 40])
+    assert "s: letters of problem 5" in told(tmp_path, text + f"notation: {{s: {long}, other: c/m}}\n")
 
 
 def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> None:

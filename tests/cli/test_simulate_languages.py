@@ -15,7 +15,20 @@ from mbsym_cli.main import main
 
 #: What is typed, names of methods and of people, arithmetic, files.
 TYPED = {"mbsym", "simulate", "yaml", "csv", "json", "heyoka", "SciPy", "float64", "float32", "trajectory", "enclosure"}
-TYPED |= {"dop853", "rk45", "rk4", "taylor", "radau", "lsoda", "bdf", "midpoint", "midpoint4", "midpoint6", "events"}
+TYPED |= {
+    "dop853",
+    "rk45",
+    "rk4",
+    "taylor",
+    "radau",
+    "rodas5p",
+    "lsoda",
+    "bdf",
+    "midpoint",
+    "midpoint4",
+    "midpoint6",
+    "events",
+}
 TYPED |= {"section", "simulation", "ledger", "results", "det", "omega", "rising", "hold", "outside", "tanh", "error"}
 
 PENDULUM = "double-pendulum"

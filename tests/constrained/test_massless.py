@@ -68,7 +68,9 @@ def run(text: str, time: float, **how: Any) -> Simulation:
     return simulate(scenario(system), Request(time=time, samples=41, estimate=False, **how))
 
 
-@pytest.mark.parametrize("how", [{"tolerance": 1e-11}, {"method": "radau", "tolerance": 1e-9}])
+@pytest.mark.parametrize(
+    "how", [{"tolerance": 1e-11}, {"method": "radau", "tolerance": 1e-9}, {"method": "rodas5p", "tolerance": 1e-9}]
+)
 def test_a_bob_on_a_massless_arm_is_a_pendulum(how: dict[str, Any]) -> None:
     found, truth = run(ARM, 4.0, **how), run(PENDULUM, 4.0, tolerance=1e-12)
     assert found.whole

@@ -386,3 +386,16 @@ def test_what_is_small_is_part_of_what_is_compared(before: str, after: str, path
     found = diff(results(text), results(text.replace(before, after)))
     assert not found.same
     assert all(change.path[: len(path)] == path for change in found.changes)
+
+
+def test_a_body_that_is_called_like_a_property_keeps_its_name(tmp_path: Path) -> None:
+    """A body "energy" was not said at all, a parameter "motion" called the unperturbed motion."""
+    text = (SHIPPED / "double-pendulum.yaml").read_text(encoding="utf-8").replace("second rod", "energy")
+    text = re.sub(r"\bl2\b", "motion", text)
+    for name, point in (("a", "[0, -l1, 0]"), ("b", "[0, -2*l1, 0]")):
+        changed = text.replace("connection point: [0, -l1, 0]", f"connection point: {point}")
+        changed = changed if name == "a" else changed.replace("motion: 1", "motion: 2")
+        (tmp_path / f"{name}.yaml").write_text(changed, encoding="utf-8")
+    lines = command("diff", tmp_path / "a.yaml", tmp_path / "b.yaml").output.splitlines()
+    assert any(line.startswith("  * energy velocity of the mass centre [1]: ") for line in lines), lines
+    assert any(line.startswith("  * parameter motion value: ") for line in lines), lines

@@ -107,7 +107,7 @@ def test_a_narrow_load_in_a_block_is_met(monkeypatch: pytest.MonkeyPatch) -> Non
     assert abs(run_of("rk45", load).fill(ROWS)[1, -1] - wanted) > 0.1
 
 
-@pytest.mark.parametrize("method", ["dop853", "rk45", "rk4", "radau", "bdf", "taylor"])
+@pytest.mark.parametrize("method", ["dop853", "rk45", "rk4", "rodas5p", "radau", "bdf", "taylor"])
 def test_every_method_counts_the_same_events_where_friction_holds(method: str) -> None:
     """x'' = -x - 0.3 sign x' from x = 1: x' passes zero at pi, x = -0.4, and comes to rest at 2 pi, x = -0.2."""
     if method == "taylor":

@@ -12,9 +12,9 @@ from conftest import SHIPPED
 import mbsym
 from mbsym.numerics.accuracy import Lacking, NoEstimate
 from mbsym.numerics.conservation import CONTRADICTION, Conservation, Doubt, Measure, Standing, confronted
-from mbsym.report.figures.animation_page import run_sentences
 from mbsym.report.runs.simulation_words import conservation_json, conservation_line, energy_lines, warnings
 from mbsym.report.runs.summary import method_lines, result_lines
+from mbsym.report.viewer.motion import doubts, run_sentences
 from mbsym.simulation import Simulation
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
@@ -210,7 +210,7 @@ def test_what_makes_a_run_doubtful_is_read_first(error: NoEstimate, broken: bool
     kept = replace(run.conservation, change=0.5 if broken else 1e-9)
     doubtful = replace(run, error=error, conservation=kept, energy_conservation=kept)
     lines = [text for _, text in result_lines(doubtful, "osc.yaml")]
-    for told in (lines, list(run_sentences(doubtful))):
+    for told in (lines, [*doubts(doubtful), *run_sentences(doubtful)]):
         assert ("does not keep it" if broken else error.why.value) in told[0]
         assert sum("conserved (proved)" in text for text in told[1:]) == 1
     assert "tolerance" in [text for _, text in method_lines(run)][1]

@@ -137,7 +137,7 @@ def test_hundreds_of_knots_cost_no_compilation_each() -> None:
     assert len(run.passed.switches) == 400
 
 
-@pytest.mark.parametrize("method", ["dop853", "rk4", "radau"])
+@pytest.mark.parametrize("method", ["dop853", "rk4", "rodas5p", "radau"])
 def test_a_well_of_two_straight_lines_has_its_period(method: str) -> None:
     """U = -3 |x| as a table that goes on: from rest at x0 the period is 4 sqrt(2 x0 m/3)."""
     run = run_of([(-1, 3), (0, 0), (1, 3)], "potential: push(x)", "outside: extrapolate", position=1.5, method=method)

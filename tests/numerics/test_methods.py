@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import signal
 import sys
 import weakref
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import cos, exp, sin, sqrt
@@ -19,17 +21,19 @@ from scipy import integrate
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
-from mbsym.numerics.kernels.llvm import available
+from mbsym.numerics.kernels.llvm import SCALARS, available, compiled
+from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function
 from mbsym.numerics.methods import runge_kutta, symplectic
 from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable, once
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45
+from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, RODAS5P
 from mbsym.numerics.scenario import scenario
 
 FIXED = [name for name, method in METHODS.items() if method.traits.fixed]
 ADAPTIVE = [name for name, method in METHODS.items() if not method.traits.fixed]
-STIFF = ["lsoda", "radau", "bdf"]
+STIFF = ["rodas5p", "lsoda", "radau", "bdf"]
 
 
 def dynamics_of(source: Path | str) -> Dynamics:
@@ -223,6 +227,87 @@ def test_dense_output_of_order_seven(kepler: Dynamics) -> None:
     states = coarse.curve()(np.array(ends)).T
     between = [float(np.abs(state - ellipse(t)).max()) for state, t in zip(states, ends, strict=True)]
     assert max(between[1:4]) < 20 * max(between[0], between[4]) + 1e-10
+
+
+#: x'' = -(1 + sin t) x' - x + cos(3 t) (2 - x x'): neither linear nor autonomous.
+DRIVEN = """
+mbsym: 1
+name: driven
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - generalized force: {x: -(1 + sin(t))*x_dot - x + cos(3*t)*(2 - x*x_dot)}
+initial: {x: {position: 1, velocity: 1/2}}
+"""
+
+
+def errors_of(method: Any, lengths: Sequence[float], place: float, end: float = 2.0) -> list[float]:
+    """The largest error at ``place`` (0 to 1) in steps of these lengths, which no tolerance shortens."""
+    dynamics = dynamics_of(DRIVEN)
+    truth = METHODS["dop853"].start(dynamics, Setting(1e-14))
+    known = [truth.step() for _ in iter(lambda: truth.time < end, False)]
+    found = []
+    for length in lengths:
+        run = method.start(dynamics, Setting(tolerance=1e3, longest=length))
+        worst, steps = 0.0, []
+        while run.time < end - length / 2:
+            run.clock[runge_kutta.STEP] = length
+            steps.append(run.step())
+        for step in steps:
+            t = step.start + place * (step.end - step.start)
+            exact = next(piece(t) for piece in known if piece.start <= t <= piece.end)
+            worst = max(worst, float(np.max(np.abs(step(t) - exact))))
+        found.append(worst)
+    return found
+
+
+LENGTHS = (0.04, 0.02, 0.01)
+
+
+@pytest.mark.parametrize(("place", "order"), [(1.0, 5), (0.3, 5), (0.7, 5)])
+def test_steps_and_dense_output_of_rodas5p_are_of_order_five(place: float, order: int) -> None:
+    """Dense output is of order 4 by itself: an error of h^5 in each step, as much as all steps add up to."""
+    method = next(one for one in runge_kutta.METHODS if one.traits.name == "rodas5p")
+    assert orders(LENGTHS, errors_of(method, LENGTHS, place)) == pytest.approx(order, abs=0.4)
+
+
+@pytest.mark.parametrize("what", ["slopes", "times", "coupling", "stages", "weights", "dense"])
+def test_orders_of_rodas5p_would_be_missed_by_any_wrong_coefficient(what: str) -> None:
+    """The negative control: one number of each kind is wrong in its third digit."""
+    given = getattr(RODAS5P, what)
+    first = given[-1] if isinstance(given[-1], tuple) else given
+    spoiled = (first[0], first[1] + Fraction(1, 250), *first[2:])
+    wrong = replace(RODAS5P, name=f"wrong {what}", **{what: spoiled if first is given else (*given[:-1], spoiled)})
+    place = 0.3 if what == "dense" else 1.0
+    assert orders(LENGTHS, errors_of(runge_kutta.RungeKutta(wrong), LENGTHS, place)) < 4.3
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 40])
+@pytest.mark.parametrize("kind", [FLOAT64, EXTENDED])
+def test_linear_equations_in_machine_code(size: int, kind: str) -> None:
+    """Random ones, and those of permutations, which without exchanged rows have no solution."""
+    if not available(kind):
+        pytest.skip(f"no {kind}")
+    scalar = SCALARS[kind]
+    f = Function("linear", [("matrix", POINTER), ("vector", POINTER)])
+    exchanged = f.slot(INTEGER, size)
+    factorise(f, scalar.type, f["matrix"], size, exchanged)
+    solve(f, scalar.type, f["matrix"], f["vector"], size, exchanged)
+    f.leave(0)
+    codes = {"rhs": dynamics_of(DRIVEN).right_hand_side}
+    linear = compiled(codes, kind, f.text(), many=False).function(
+        "linear", *[ctypes.c_void_p] * 2, result=ctypes.c_int64
+    )
+    generator = np.random.default_rng(size)
+    for matrix in (
+        generator.normal(size=(size, size)),
+        np.eye(size)[generator.permutation(size)],
+        7 * np.eye(size)[::-1],
+    ):
+        wanted = generator.normal(size=size)
+        left, right = matrix.astype(scalar.dtype), (matrix @ wanted).astype(scalar.dtype)
+        linear(left.ctypes.data, right.ctypes.data)
+        assert right.astype(float) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
 
 
 def test_extended_arithmetic_gives_more_digits(kepler: Dynamics) -> None:
@@ -491,8 +576,8 @@ def test_runs_do_not_disturb_each_other(pendulum: Dynamics) -> None:
 
 def test_method_names_and_traits() -> None:
     assert list(METHODS) == [
-        "rk4", "rk45", "dop853", "midpoint", "midpoint4", "midpoint6", "taylor", "scipy-rk45", "scipy-dop853", "lsoda",
-        "radau", "bdf",
+        "rk4", "rk45", "dop853", "rodas5p", "midpoint", "midpoint4", "midpoint6", "taylor", "scipy-rk45",
+        "scipy-dop853", "lsoda", "radau", "bdf",
     ]  # fmt: skip
     assert {name for name, method in METHODS.items() if method.traits.conservative} == {
         "midpoint",

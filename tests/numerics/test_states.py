@@ -45,6 +45,7 @@ def jacobi() -> Analysis:
     [
         ("dop853", {"tolerance": 1e-14}, 2e-15),
         ("radau", {"tolerance": 1e-13}, 2e-13),
+        ("rodas5p", {"tolerance": 1e-13}, 2e-13),
         ("rk4", {"step": 1e-3}, 2e-12),
         ("taylor", {"tolerance": 1e-15}, 2e-15),
     ],

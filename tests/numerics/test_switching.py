@@ -79,7 +79,7 @@ def test_stiffness_that_comes_late_and_goes_again() -> None:
     run = mbsym.simulate(mbsym.loads(LATE), 100, estimate=False)  # it is held against sin and cos
     assert run.whole
     changes = run.trajectory.work.changes
-    assert [one.method for one in changes] == ["radau", "dop853"]
+    assert [one.method for one in changes] == ["rodas5p", "dop853"]
     assert 20 < changes[0].time < 50 < changes[1].time < 80
     assert np.max(np.abs(run["x"] - np.sin(run.times))) < 1e-7
     assert np.max(np.abs(run["x_dot"] - np.cos(run.times))) < 1e-7
@@ -127,7 +127,7 @@ def test_half_a_relaxation_oscillation_of_van_der_pol_at_a_hundred_thousand() ->
     assert len(run.events) == 3
     period = 2 * (run.events.times[2] - run.events.times[1])
     assert period == pytest.approx((3 - 2 * log(2)) * mu + 7.01432 * mu ** (-1 / 3), abs=4 * log(mu) / mu)
-    assert {one.method for one in run.trajectory.work.changes} == {"radau", "dop853"}
+    assert run.trajectory.work.changes[0].method == "rodas5p"
     assert run.trajectory.work.steps < 100_000
 
 

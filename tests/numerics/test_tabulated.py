@@ -76,7 +76,7 @@ def test_a_linear_table_against_the_closed_form(text: str, after: float) -> None
     assert np.max(np.abs(states(system_of(text)) - closed(after))) < 1e-12
 
 
-@pytest.mark.parametrize("method", ["rk4", "taylor", "radau", "rk45"])
+@pytest.mark.parametrize("method", ["rk4", "taylor", "rodas5p", "radau", "rk45"])
 def test_every_method_ends_steps_at_points(method: str) -> None:
     if method == "taylor":
         pytest.importorskip("heyoka")

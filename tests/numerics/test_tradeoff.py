@@ -170,7 +170,7 @@ def test_an_interrupt_keeps_the_rows_there_are() -> None:
 def test_models_converge_to_the_exact_field_order_by_order() -> None:
     """Each order of (size)/R = 1/25 gains more than a factor of 5 here; nothing else differs."""
     dynamics = shipped("satellite.yaml")
-    rows = {r.variant.label: r for r in measured(dynamics.scenario, METHODS["dop853"], np.linspace(0, 5, 3))}
+    rows = {r.label: r for r in measured(dynamics.scenario, METHODS["dop853"], np.linspace(0, 5, 3))}
     second, third, fourth = (rows[k].error for k in ("as described", "gravity of order 3", "gravity of order 4"))
     assert rows["exact gravity"].error == 0
     assert second > 5 * third > 25 * fourth > 1e-8
@@ -182,7 +182,7 @@ def test_linearised_equations_err_quadratically_in_the_amplitude() -> None:
     errors = []
     for amplitude in (Fraction(1, 50), Fraction(1, 100)):
         numbers = scenario(mbsym.loads(PENDULUM).system, {"theta": number(amplitude)})
-        rows = {r.variant.label: r for r in measured(numbers, METHODS["dop853"], np.linspace(0, 3, 7))}
+        rows = {r.label: r for r in measured(numbers, METHODS["dop853"], np.linspace(0, 3, 7))}
         errors.append(rows["linearised"].error)
     assert abs(errors[0] / errors[1] - 4) < 0.2
 

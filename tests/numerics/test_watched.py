@@ -46,6 +46,7 @@ def pendulum(time: float, *events: str, **options: object) -> Simulation:
         ("scipy-dop853", 1e-13, 1e-11),
         ("lsoda", 1e-12, 2e-9),
         ("radau", 1e-9, 1e-7),
+        ("rodas5p", 1e-12, 2e-9),
         ("bdf", 1e-9, 1e-5),
     ],
 )
@@ -74,7 +75,7 @@ def test_extended_arithmetic_and_taylor() -> None:
 
 
 def test_the_rows_are_those_of_a_run_that_is_not_watched() -> None:
-    for method in ("dop853", "radau", "taylor", "lsoda"):
+    for method in ("dop853", "radau", "rodas5p", "taylor", "lsoda"):
         if method == "taylor":
             pytest.importorskip("heyoka")
         plain, watched = pendulum(10, method=method), pendulum(10, "theta = 0", method=method)

@@ -17,7 +17,8 @@ from mbsym.numerics.planning.models import LinearisedDynamics
 from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.problems.stability.word import Word
 from mbsym.report.viewer.modes import Modes, modes, modes_json
-from mbsym.report.viewer.page import at_rest, at_rest_json, motion, motion_json
+from mbsym.report.viewer.motion import motion, motion_json
+from mbsym.report.viewer.page import at_rest, at_rest_json
 from mbsym.simulation import Request
 
 SYSTEMS = Path(__file__).parents[2] / "systems"

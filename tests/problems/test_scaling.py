@@ -68,7 +68,9 @@ def test_a_length_is_measured_in_lengths() -> None:
     assert [told(one) for one in there.groups] == ["g*m/(k*l0)"]
 
 
-@pytest.mark.parametrize("name", ["double-pendulum", "satellite", "spring-pendulum", "heavy-top", "ziegler-damped"])
+@pytest.mark.parametrize(
+    "name", ["double-pendulum", "satellite", "spring-pendulum", "heavy-top", "ziegler-damped", "cartesian-pendulum"]
+)
 def test_the_system_in_groups_has_the_same_roots_in_its_own_time(name: str) -> None:
     """lambda' = lambda/rate, exactly: the characteristic polynomials at the values agree coefficient by coefficient."""
     analysis = analysed(name)
@@ -111,10 +113,36 @@ def test_the_command_writes_a_description_that_runs(tmp_path: Path) -> None:
     assert "1 parameter, 0 of them set to 1: 1 group" in again.output
 
 
-def test_constraints_are_refused_by_name() -> None:
-    done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "bicycle.yaml")])
-    assert done.exit_code == 2
-    assert "constraints" in done.stderr
+@pytest.mark.parametrize("name", ["rolling-disc", "rolling-disc-speeds"])
+def test_a_rolling_disc_has_one_number(name: str) -> None:
+    """r w^2/g, Froude's number: upright rolling is stable for 3 r w^2 > g (Neimark and Fufaev, chapter 5)."""
+    there = found(name)
+    assert there.units == ("m", "r", "g")
+    assert [told(one) for one in there.groups] == ["w*sqrt(r/g)"]
+    assert [one.parameter for one in there.lengths][:2] == ["x", "y"]
+
+
+def test_a_linkage_has_the_ratios_of_its_lengths() -> None:
+    """In its closure every term is a length; without gravity there is nothing that measures the time."""
+    there = found("four-bar")
+    assert [told(one) for one in there.groups] == ["l2/l1", "l3/l1", "l4/l1"]
+    assert not there.rate
+
+
+def test_a_constraint_ties_what_the_equations_leave_apart(tmp_path: Path) -> None:
+    """Two bodies that nothing joins may be measured in two lengths; with a rod of length d between them in one."""
+    text = (
+        "mbsym: 1\nname: two\nparameters: {m: positive, k: positive, d: positive, a: positive, b: positive}\nbodies:\n"
+        "  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}\n"
+        "  - {name: other, attached to: 0, connection point: [0, y, 0], mass: m, coordinates: [y]}\n"
+        "loads: [{potential: k*(x - a)**4 + k*(y - b)**4}]\n"
+    )
+    free = mbsym.loads(text)
+    there = groups(free.scene, free.equations)
+    assert [told(one) for one in there.groups] == ["b/a"]
+    tied = mbsym.loads(text + "constraints:\n  - relation: x**2 + y**2 = d**2\n")
+    there = groups(tied.scene, tied.equations)
+    assert [told(one) for one in there.groups] == ["a/d", "b/d"]
 
 
 def test_what_may_vanish_is_not_set_to_1_and_scalings_left_over_are_told(tmp_path: Path) -> None:

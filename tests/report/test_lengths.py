@@ -99,6 +99,6 @@ def test_long_programs_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(latex_writer, "PAPER_PROGRAM", 5)
     monkeypatch.setattr(wolfram_report, "FILE_PROGRAM", 5)
     for text in (latex_report.render(analysis, (3,)), wolfram_report.render(analysis, (3,))):
-        assert "steps, not printed; model.py and model.c have them" in text
+        assert "operations, not printed; model.py and model.c have them" in text
         assert "dynamics[t_" not in text
         assert "s_{1} =" not in text

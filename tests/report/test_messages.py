@@ -43,10 +43,13 @@ from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
+from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
 from mbsym.source.starter import JOINTS
-from mbsym_cli.simulate.options import APART, NEEDED
+from mbsym.studies.simulate import PAIRS
+from mbsym.studies.study import Apart
+from mbsym_cli.diff import called
 from tests.report import said
 
 OTHERS = [name for name in LANGUAGES if name != "en"]
@@ -161,6 +164,18 @@ def unfit(name):
     assert [one.text for one in module.texts] == ["nobody says this"]
 
 
+def test_what_is_said_of_an_option_that_is_absent_is_found() -> None:
+    """Negative control: a tuple, one that has a name, and one that is put together."""
+    study = """
+ABSENT = ("nobody says this", "nor this")
+period: Annotated[float, Number("T", "The period.", absent=ABSENT)]
+time: Annotated[float, Number("T", "The time.", absent=("how long?", f"take {name}"))]
+"""
+    module = said.Module("studies/planted.py", ast.parse(study), frozenset())
+    assert {one.text for one in module.texts} == {"nobody says this", "nor this", "how long?"}
+    assert [place.partition(": ")[0] for place in module.open] == ["studies/planted.py:4"]
+
+
 def test_words_that_a_command_prints_in_english_are_found() -> None:
     """Negative control: a complaint, a line and a question of a command, and reasons against an earlier run."""
     command = """
@@ -183,7 +198,7 @@ print(f"{printable(file)}: {say(text)}")
 @pytest.mark.parametrize("name", OTHERS)
 def test_why_options_of_a_run_do_not_go_together_is_translated(name: str) -> None:
     known = {english for _, english in messages(name)}
-    asked = {text for one in APART for text in (one.why, one.hint)} | {one.hint for one in NEEDED}
+    asked = {one.why for one in PAIRS if isinstance(one, Apart)} | {one.hint for one in PAIRS}
     assert not {text for text in asked if text is not None} - known
 
 
@@ -220,9 +235,21 @@ def words_of_types() -> set[str]:
     found |= {"sine", "cosine", "root", "reciprocal", "function"}
     found |= {*outcome.Outcome, "parameter", "coordinate", "body", *(told for _, _, told in JOINTS.values())}
     found |= {one for one in because.values() if isinstance(one, str)}
+    found |= {str(called(key)) for key in properties(schema("results"))}
     found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
     found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
     return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
+
+
+def properties(part: object) -> Iterator[str]:
+    """What is compared of a document of this schema, by its keys; symbols are called the same everywhere."""
+    inner = part if isinstance(part, list) else list(part.values()) if isinstance(part, dict) else []
+    if isinstance(part, dict) and "x-aside" in part:
+        return
+    if isinstance(part, dict) and isinstance(part.get("properties"), dict):
+        yield from (key for key, one in part["properties"].items() if "x-aside" not in one and key != "a0")
+    for one in inner:
+        yield from properties(one)
 
 
 def of_runs() -> Iterator[str]:

@@ -6,11 +6,19 @@ import { level } from "./directions.js";
 import type { Picture } from "./types.js";
 
 const FIELD = 30;
+/** What is to be seen is seen with so much room about it. */
+const MARGIN = 1.12;
+
+/** Points of a ball. */
+function about(middle: Vector3, radius: number): Vector3[] {
+  const ways = [-1, 0, 1].flatMap((x) => [-1, 0, 1].flatMap((y) => [-1, 0, 1].map((z) => new Vector3(x, y, z))));
+  return ways.filter((way) => way.lengthSq() > 0).map((way) => way.normalize().multiplyScalar(radius).add(middle));
+}
 
 export class Eye {
   readonly camera = new PerspectiveCamera(FIELD, 1, 0.01, 1000);
   private up = new Vector3(0, 0, 1);
-  private home = { azimuth: 0, elevation: 0, middle: new Vector3(), extent: 1 };
+  private home = { azimuth: 0, elevation: 0, middle: new Vector3(), extent: 1, room: [] as Vector3[] };
   private azimuth = 0;
   private elevation = 0;
   private zoom = 1;
@@ -26,7 +34,8 @@ export class Eye {
     const { up, azimuth, elevation } = picture.view;
     this.up = new Vector3(...up).normalize();
     const before = this.home;
-    this.home = { azimuth, elevation, middle: new Vector3(...picture.middle), extent: picture.extent };
+    const middle = new Vector3(...picture.middle);
+    this.home = { azimuth, elevation, middle, extent: picture.extent, room: about(middle, picture.extent) };
     const ratio = picture.extent / before.extent;
     if (!this.touched || ratio > 3 || ratio < 1 / 3) this.reset();
     else this.place();
@@ -41,9 +50,16 @@ export class Eye {
     this.place();
   }
 
-  /** Room for a motion: all of it in sight. */
-  fit(middle: Vector3, extent: number): void {
-    this.home = { ...this.home, middle, extent };
+  /** All of the points in sight at the first look, in the middle. */
+  fit(room: Vector3[]): void {
+    if (room.length === 0) return;
+    const [right, above] = this.directions(this.home);
+    const middle = this.home.middle.clone();
+    for (const direction of [right, above]) {
+      const along = room.map((point) => point.dot(direction));
+      middle.addScaledVector(direction, (Math.min(...along) + Math.max(...along)) / 2 - middle.dot(direction));
+    }
+    this.home = { ...this.home, middle, room };
     if (!this.touched) this.reset();
     else this.place();
   }
@@ -85,18 +101,38 @@ export class Eye {
     this.place();
   }
 
-  private place(): void {
+  /** To the right, upwards and towards the eye. */
+  private directions({ azimuth, elevation }: { azimuth: number; elevation: number }): [Vector3, Vector3, Vector3] {
     const { up } = this;
     const [first, second] = level([up.x, up.y, up.z]);
-    const a = (this.azimuth * Math.PI) / 180;
-    const e = (Math.max(-89.9, Math.min(89.9, this.elevation)) * Math.PI) / 180;
+    const a = (azimuth * Math.PI) / 180;
+    const e = (Math.max(-89.9, Math.min(89.9, elevation)) * Math.PI) / 180;
     const towards = new Vector3()
       .addScaledVector(first, Math.cos(e) * Math.cos(a))
       .addScaledVector(second, Math.cos(e) * Math.sin(a))
       .addScaledVector(up, Math.sin(e));
-    const half = (FIELD * Math.PI) / 360;
-    const narrow = Math.min(1, this.camera.aspect);
-    const far = (1.2 * this.home.extent) / Math.sin(half) / narrow / this.zoom;
+    const right = new Vector3().crossVectors(up, towards).normalize();
+    return [right, new Vector3().crossVectors(towards, right), towards];
+  }
+
+  /** From so far all that there has to be room for is seen. */
+  private distance(): number {
+    const { room, middle } = this.home;
+    const [right, above, towards] = this.directions(this.home);
+    const tall = Math.tan((FIELD * Math.PI) / 360);
+    const wide = tall * this.camera.aspect;
+    const arm = new Vector3();
+    const far = room.map((point) => {
+      arm.copy(point).sub(middle);
+      return MARGIN * Math.max(Math.abs(arm.dot(right)) / wide, Math.abs(arm.dot(above)) / tall) + arm.dot(towards);
+    });
+    return Math.max(0.5 * this.home.extent, ...far);
+  }
+
+  private place(): void {
+    const { up } = this;
+    const [, , towards] = this.directions({ azimuth: this.azimuth, elevation: this.elevation });
+    const far = this.distance() / this.zoom;
     this.camera.up.copy(up);
     this.camera.position.copy(this.target).addScaledVector(towards, far);
     this.camera.near = Math.max(far - 8 * this.home.extent, far / 100);

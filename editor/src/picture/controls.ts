@@ -32,7 +32,7 @@ export class Sliders {
     });
     this.element.replaceChildren(
       ...this.rows.map(({ one, slider, reading }) =>
-        make("label", { class: "viewer-slider" }, make("span", {}, one.name), slider, reading)),
+        make("label", { class: "viewer-slider" }, make("span", { title: one.name }, one.label), slider, reading)),
     );
   }
 

@@ -17,13 +17,17 @@ import {
   Mesh,
   MeshLambertMaterial,
   Object3D,
+  PlaneGeometry,
   Quaternion,
   Scene,
+  ShadowMaterial,
   Vector3,
 } from "three";
 
+import { Carts, type Ranges } from "./carts.js";
 import { level } from "./directions.js";
-import { ball, coil, head, rod, shapeOf } from "./forms.js";
+import { ball, coil, dashpot, globe, head, rod, shapeOf, tube } from "./forms.js";
+import type { State } from "./program.js";
 import type { Body, Line, Picture, Triple } from "./types.js";
 
 /** Told apart by those who see few colours, too (Okabe and Ito), on light and on dark. */
@@ -41,7 +45,12 @@ export interface Shown {
   arrows: boolean;
   paths: boolean;
   inertia: boolean;
+  names: boolean;
 }
+
+/** A wall behind what is plane is so far from it; what is so low is held to stand on the ground. */
+const BEHIND = 0.3;
+const STANDS = 0.03;
 
 const Z = new Vector3(0, 0, 1);
 
@@ -54,6 +63,7 @@ class Many {
     this.mesh.count = count;
     this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     this.mesh.frustumCulled = false;
+    this.mesh.castShadow = true;
   }
 
   colour(k: number, colour: number): void {
@@ -76,38 +86,46 @@ export class Drawing {
   private whole = new Group();
   private inks: LineBasicMaterial[] = [];
   private picture: Picture | null = null;
-  private turned: { object: Object3D; body: Body }[] = [];
+  private turned: { object: Object3D; body: Body | null }[] = [];
   private solids: { many: Many; body: Body; local: Matrix4; k: number }[] = [];
+  private carts: Carts | null = null;
+  /** By hinge of a joint on the frame, the way to the wall behind it. */
+  private wall: Vector3 | null = null;
+  private shadow: Mesh | null = null;
   private rods: Record<Line["kind"], { many: Many; lines: Line[]; thick: number }> | null = null;
   private marks: { hinges: Many; slides: Many; joints: Many; centres: Many } | null = null;
   private pulls: { shafts: Many; heads: Many; seconds: Many } | null = null;
   private frames: LineSegments | null = null;
   private trails: Path[] = [];
-  private net: { lines: LineSegments; directions: [Vector3, Vector3]; mesh: number } | null = null;
+  private net: { ground: Group; directions: [Vector3, Vector3]; mesh: number } | null = null;
+  private readonly sun = new DirectionalLight(0xffffff, 2.1);
   private largest: Record<string, number> = {};
   private readonly matrix = new Matrix4();
   private readonly other = new Matrix4();
   private readonly from = new Vector3();
   private readonly to = new Vector3();
   private readonly turn = new Quaternion();
-  shown: Shown = { frames: false, arrows: true, paths: false, inertia: true };
+  shown: Shown = { names: false, frames: false, arrows: false, paths: true, inertia: false };
 
   constructor() {
-    const sun = new DirectionalLight(0xffffff, 2.1);
-    sun.position.set(1.5, 2.2, 3);
-    const back = new DirectionalLight(0xffffff, 0.6);
+    const back = new DirectionalLight(0xffffff, 0.5);
     back.position.set(-2, -1, -1.5);
-    this.scene.add(new AmbientLight(0xffffff, 1.1), sun, back, this.whole);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.scene.add(new AmbientLight(0xffffff, 1.25), this.sun, this.sun.target, back, this.whole);
   }
 
-  /** Builds everything anew; `values` are those of the start, by which arrows are measured. */
-  build(picture: Picture, values: Float64Array): void {
+  /** Builds everything anew; `values` are those of the `state` at the start, by which arrows are measured, `ranges` how
+   * far coordinates go. */
+  build(picture: Picture, values: Float64Array, state: State, ranges: Ranges = {}): void {
     this.clear();
     this.picture = picture;
     const e = picture.extent;
+    // Many bodies are drawn finer, so that they do not hide each other.
+    const fine = Math.min(1, Math.sqrt(10 / Math.max(1, picture.bodies.length)));
     const number = new Map(picture.bodies.map((body, k) => [body.name, COLOURS[k % COLOURS.length]!]));
     const solid = picture.bodies.filter((body) => body.ellipsoid !== null);
-    const balls = this.many(ball(solid.length > 12 ? 14 : 24), solid.length, new MeshLambertMaterial({ transparent: true, opacity: 0.62 }));
+    const balls = this.many(globe(solid.length > 12 ? 14 : 24), solid.length, new MeshLambertMaterial({ transparent: true, opacity: 0.7, vertexColors: true }));
     const symbolic = Math.max(0, ...solid.filter((x) => !x.ellipsoid!.trueSize).map((x) => Math.max(...x.ellipsoid!.halfAxes)));
     solid.forEach((body, k) => {
       const { halfAxes, axes, trueSize } = body.ellipsoid!;
@@ -118,31 +136,33 @@ export class Drawing {
     });
     for (const body of picture.bodies) {
       for (const shape of body.shapes) {
-        const material = new MeshLambertMaterial({ color: number.get(body.name)!, transparent: true, opacity: 0.88 });
-        const object = new Mesh(shapeOf(shape), material);
-        object.matrixAutoUpdate = false;
-        this.whole.add(object);
-        this.turned.push({ object, body });
+        this.solid(shapeOf(shape), number.get(body.name)!, body);
       }
     }
+    const owner = new Map(picture.bodies.map((body) => [body.name, body]));
+    for (const { body, points, closed } of picture.guides) {
+      const parent = owner.get(owner.get(body)!.parent ?? "") ?? null;
+      this.solid(tube(points, closed, 0.009 * e), 0x9aa2ad, parent);
+    }
+    this.carts = new Carts(this.whole, picture, values, state, number, ranges);
     const grey = () => new MeshLambertMaterial();
     const lines = (kind: Line["kind"], geometry: BufferGeometry, thick: number) => {
-      const own = picture.lines.filter((line) => line.kind === kind);
+      const own = picture.lines.filter((line) => line.kind === kind && !(kind === "slide" && isHeld(owner.get(line.of))));
       const many = this.many(geometry, own.length, grey());
       own.forEach((line, k) => many.colour(k, number.get(line.of) ?? 0x7d8590));
       return { many, lines: own, thick: thick * e };
     };
     this.rods = {
-      body: lines("body", rod(), 0.011),
-      link: lines("link", rod(), 0.011),
+      body: lines("body", rod(12), 0.016 * fine),
+      link: lines("link", rod(12), 0.016 * fine),
       slide: lines("slide", rod(6), 0.004),
-      spring: lines("spring", coil(), 0.03),
-      damper: lines("damper", rod(10), 0.02),
-      rod: lines("rod", rod(), 0.007),
+      spring: lines("spring", coil(), 0.028),
+      damper: lines("damper", dashpot(), 0.02),
+      rod: lines("rod", rod(), 0.009),
     };
     const joints = picture.bodies.flatMap((body) => body.joint.hinges.map((hinge) => ({ body, hinge })));
     this.marks = {
-      hinges: this.many(rod(10), joints.filter((x) => !x.hinge.slides).length, grey(), 0x5b6470),
+      hinges: this.many(rod(16), joints.filter((x) => !x.hinge.slides).length, grey(), 0x5b6470),
       slides: this.many(rod(4), joints.filter((x) => x.hinge.slides).length, grey(), 0x9aa2ad),
       joints: this.many(ball(8), picture.bodies.filter((body) => turnsOf(body) !== 1).length, grey(), 0x5b6470),
       centres: this.many(ball(8), picture.bodies.filter((body) => body.massive).length, grey()),
@@ -161,10 +181,19 @@ export class Drawing {
       this.pulls!.heads.colour(k, ARROWS[arrow.of]);
       this.largest[arrow.of] = Math.max(this.largest[arrow.of] ?? 0, length(values, arrow.along));
     });
-    this.whole.add(this.tripod(e), this.ground(picture));
+    this.whole.add(this.ground(picture, values));
     this.frames = this.segments(picture.bodies.length * 3, true);
     this.whole.add(this.frames);
-    this.move(values);
+    this.move(values, state);
+  }
+
+  /** A solid that moves with a body, or stands in the frame. */
+  private solid(geometry: BufferGeometry, color: number, body: Body | null): void {
+    const object = new Mesh(geometry, new MeshLambertMaterial({ color, vertexColors: geometry.hasAttribute("color") }));
+    object.castShadow = object.receiveShadow = true;
+    object.matrixAutoUpdate = false;
+    this.whole.add(object);
+    this.turned.push({ object, body });
   }
 
   private many(geometry: BufferGeometry, count: number, material: Material, colour?: number): Many {
@@ -174,18 +203,21 @@ export class Drawing {
     return found;
   }
 
-  /** Moves everything to where the values say. */
-  move(values: Float64Array): void {
+  /** Moves everything to where the values of the state say. */
+  move(values: Float64Array, state: State): void {
     const { picture, rods, marks, pulls } = this;
     if (!picture || !rods || !marks || !pulls) return;
     const e = picture.extent;
+    const fine = Math.min(1, Math.sqrt(10 / Math.max(1, picture.bodies.length)));
+    this.carts?.move(values, state);
     for (const { object, body } of this.turned) {
+      if (!body) continue;
       pose(this.matrix, values, body.axes, body.origin);
       object.matrix.copy(this.matrix);
       object.matrixWorldNeedsUpdate = true;
     }
     for (const { many, body, local, k } of this.solids) {
-      if (this.shown.inertia) many.set(k, pose(this.matrix, values, body.axes, body.centre).multiply(local));
+      if (this.shown.inertia || body.ellipsoid!.telling) many.set(k, pose(this.matrix, values, body.axes, body.centre).multiply(local));
       else many.set(k, HIDDEN);
     }
     for (const { many, lines, thick } of Object.values(rods)) {
@@ -196,21 +228,24 @@ export class Drawing {
       this.from.set(values[body.origin[0]]!, values[body.origin[1]]!, values[body.origin[2]]!);
       const turns = turnsOf(body);
       if (turns !== 1) {
-        const size = turns === 0 ? 0.007 : 0.022;
+        const size = turns === 0 ? 0 : 0.024 * fine;
         marks.joints.set(joints++, this.other.makeScale(size * e, size * e, size * e).setPosition(this.from));
       }
       for (const hinge of body.joint.hinges) {
         this.to.set(values[hinge.along[0]]!, values[hinge.along[1]]!, values[hinge.along[2]]!).normalize();
-        const [wide, long] = hinge.slides ? [0.017, 0.11] : [0.016, 0.075];
-        const seen = turns <= 1 || hinge.slides;
+        const held = !hinge.slides && body.parent === null ? this.wall : null;
+        const [wide, long] = hinge.slides ? [0.02, 0.1] : [0.021 * fine, 0.075];
+        const seen = hinge.slides ? hinge.straight && !isHeld(body) && sliding(body) === 1 : turns <= 1;
         const many = hinge.slides ? marks.slides : marks.hinges;
         const place = hinge.slides ? slides++ : hinges++;
         const moves = hinge.coordinates.length > 0;
-        many.set(place, seen && moves ? this.along(this.from, this.to, wide * e, long * e, true) : HIDDEN);
+        if (seen && moves && held) many.set(place, this.along(this.from.clone().addScaledVector(held, -0.04 / BEHIND), held.clone().normalize(), wide * e, held.length() + 0.04 * e, false));
+        else many.set(place, seen && moves ? this.along(this.from, this.to, wide * e, long * e, true) : HIDDEN);
       }
       if (body.massive) {
         this.from.set(values[body.centre[0]]!, values[body.centre[1]]!, values[body.centre[2]]!);
-        marks.centres.set(centres++, this.other.makeScale(0.02 * e, 0.02 * e, 0.02 * e).setPosition(this.from));
+        const size = body.cart ? 0 : (body.ellipsoid || body.shapes.length > 0 ? 0.022 : 0.05) * e * fine;
+        marks.centres.set(centres++, this.other.makeScale(size, size, size).setPosition(this.from));
       }
     }
     let torques = 0;
@@ -291,37 +326,30 @@ export class Drawing {
     return found;
   }
 
-  /** The axes of the picture's frame. */
-  private tripod(extent: number): LineSegments {
-    const found = this.segments(3, true);
-    const places = found.geometry.getAttribute("position") as BufferAttribute;
-    for (let i = 0; i < 3; i += 1) {
-      places.setXYZ(2 * i, 0, 0, 0);
-      const tip: Triple = [0, 0, 0];
-      tip[i] = 0.3 * extent;
-      places.setXYZ(2 * i + 1, ...tip);
-    }
-    return found;
-  }
-
-  /** A net through the origin: level, or in the plane of what is plane; its meshes are a power of ten or half of one. */
-  private ground(picture: Picture): LineSegments {
+  /** A faint net that takes the shadows: a wall behind what is plane, else the ground, below the system or at the height
+   * on which it stands; its meshes are a power of ten or half of one. */
+  private ground(picture: Picture, values: Float64Array): Group {
     const { up, plane } = picture.view;
-    const least = 0.25 * picture.extent;
+    const e = picture.extent;
+    const least = 0.25 * e;
     const ten = 10 ** Math.floor(Math.log10(least));
     const mesh = least / ten > 5 ? 10 * ten : least / ten > 2 ? 5 * ten : 2 * ten;
-    const count = Math.max(2, Math.ceil((1.3 * picture.extent) / mesh));
-    const found = this.segments(2 * (2 * count + 1), false);
-    const normal = new Vector3(...up);
-    if (plane) {
-      const azimuth = (picture.view.azimuth * Math.PI) / 180;
-      const [first, second] = level(up);
-      normal.copy(first).multiplyScalar(Math.cos(azimuth)).addScaledVector(second, Math.sin(azimuth));
-    }
-    const [first, second] = level([normal.x, normal.y, normal.z]);
-    const middle = new Vector3(...picture.middle).addScaledVector(normal, -normal.dot(new Vector3(...picture.middle)));
+    const count = Math.max(2, Math.ceil((2.6 * e) / mesh));
+    const above = new Vector3(...up);
+    const azimuth = (picture.view.azimuth * Math.PI) / 180;
+    const [ahead, aside] = level(up);
+    const towards = ahead.clone().multiplyScalar(Math.cos(azimuth)).addScaledVector(aside, Math.sin(azimuth));
+    const normal = plane ? towards : above;
+    const centre = new Vector3(...picture.middle);
+    const heights = picture.bodies.flatMap((body) => [body.origin, body.centre]).map((at) => this.from.set(values[at[0]]!, values[at[1]]!, values[at[2]]!).dot(above));
+    const stands = picture.frame === "0" && Math.min(...heights) > -STANDS * e && centre.dot(above) > -0.2 * e && grounded(picture);
+    const height = plane ? centre.dot(normal) - BEHIND * e : stands ? 0 : centre.dot(above) - 1.08 * e;
+    this.wall = plane && picture.frame === "0" ? normal.clone().multiplyScalar(-BEHIND * e) : null;
+    const middle = centre.addScaledVector(normal, height - centre.dot(normal));
+    const [first, second] = level(normal.toArray());
     for (const direction of [first, second]) middle.addScaledVector(direction, Math.round(middle.dot(direction) / mesh) * mesh - middle.dot(direction));
-    const places = found.geometry.getAttribute("position") as BufferAttribute;
+    const lines = this.segments(2 * (2 * count + 1), false);
+    const places = lines.geometry.getAttribute("position") as BufferAttribute;
     let at = 0;
     for (const [a, b] of [[first, second], [second, first]] as const) {
       for (let k = -count; k <= count; k += 1) {
@@ -332,17 +360,36 @@ export class Drawing {
         }
       }
     }
-    found.renderOrder = -1;
-    this.net = { lines: found, directions: [first, second], mesh };
-    return found;
+    lines.renderOrder = -2;
+    this.shadow = new Mesh(new PlaneGeometry(2 * count * mesh, 2 * count * mesh), new ShadowMaterial({ opacity: 0.2 }));
+    this.shadow.receiveShadow = true;
+    this.shadow.renderOrder = -1;
+    this.shadow.quaternion.setFromUnitVectors(Z, normal);
+    this.shadow.position.copy(middle).addScaledVector(normal, -0.002 * e);
+    const ground = new Group();
+    ground.add(lines, this.shadow);
+    this.net = { ground, directions: [first, second], mesh };
+    // From above, from the left, and from where the eye is.
+    const right = new Vector3().crossVectors(above, towards);
+    const light = above.clone().multiplyScalar(plane ? 1.1 : 2.2).addScaledVector(right, -0.7).addScaledVector(towards, plane ? 1.6 : 1);
+    this.sun.userData["way"] = light.normalize().multiplyScalar(6 * e);
+    const { camera } = this.sun.shadow;
+    const room = 1.9 * e;
+    Object.assign(camera, { left: -room, right: room, top: room, bottom: -room, near: 0.5 * e, far: 14 * e });
+    camera.updateProjectionMatrix();
+    this.sun.shadow.normalBias = 0.004 * e;
+    this.carry(new Vector3());
+    return ground;
   }
 
-  /** The net goes along with what runs away, by whole meshes. */
+  /** Light and net go along with what runs away, the net by whole meshes. */
   carry(offset: Vector3): void {
-    if (!this.net) return;
-    const { lines, directions, mesh } = this.net;
-    lines.position.set(0, 0, 0);
-    for (const direction of directions) lines.position.addScaledVector(direction, Math.round(offset.dot(direction) / mesh) * mesh);
+    if (!this.net || !this.picture) return;
+    const { ground, directions, mesh } = this.net;
+    ground.position.set(0, 0, 0);
+    for (const direction of directions) ground.position.addScaledVector(direction, Math.round(offset.dot(direction) / mesh) * mesh);
+    this.sun.target.position.set(...this.picture.middle).add(offset);
+    this.sun.position.copy(this.sun.target.position).add(this.sun.userData["way"] as Vector3);
   }
 
   /** The paths of mass centres: `at(k)` gives the values of the k-th of `count` moments. */
@@ -382,8 +429,9 @@ export class Drawing {
     this.trails = [];
   }
 
-  ink(colour: string): void {
+  ink(colour: string, dark: boolean): void {
     for (const material of this.inks) material.color.set(colour);
+    if (this.shadow) (this.shadow.material as ShadowMaterial).opacity = dark ? 0.55 : 0.18;
   }
 
   private clear(): void {
@@ -400,6 +448,23 @@ export class Drawing {
     this.solids = [];
     this.inks = [];
   }
+}
+
+/** The coordinates that slide a body. */
+function sliding(body: Body): number {
+  return body.joint.hinges.filter((hinge) => hinge.slides).length;
+}
+
+/** Whether something else shows along what a body slides: a track, a spring, a damper. */
+function isHeld(body: Body | undefined): boolean {
+  if (!body) return false;
+  const tied = [...body.joint.sprung, ...body.joint.damped];
+  return body.cart || body.joint.hinges.some((hinge) => hinge.slides && hinge.coordinates.some((name) => tied.includes(name)));
+}
+
+/** Whether something is on the frame: what only floats has no ground. */
+function grounded(picture: Picture): boolean {
+  return picture.arrows.some((arrow) => arrow.of === "gravity");
 }
 
 /** The angles about which a joint turns; one that turns about a single axis is drawn as its hinge. */

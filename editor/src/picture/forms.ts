@@ -2,16 +2,21 @@
 
 import {
   BoxGeometry,
-  BufferAttribute,
   BufferGeometry,
   CapsuleGeometry,
+  CatmullRomCurve3,
   ConeGeometry,
   CylinderGeometry,
+  Float32BufferAttribute,
+  LatheGeometry,
   Matrix4,
   SphereGeometry,
+  TubeGeometry,
+  Vector2,
+  Vector3,
 } from "three";
 
-import type { Shape } from "./types.js";
+import type { Shape, Triple } from "./types.js";
 
 /** Along the third axis from 0 to 1, of radius 1. */
 export function rod(sides = 8): BufferGeometry {
@@ -27,27 +32,45 @@ export function ball(pieces: number): BufferGeometry {
   return new SphereGeometry(1, pieces, Math.ceil(pieces * 0.66));
 }
 
-/** A coil of wire along the third axis from 0 to 1, of radius 1: a spring, as a band of triangles. */
-export function coil(turns = 8, pieces = 12): BufferGeometry {
-  const places: number[] = [];
-  const normals: number[] = [];
-  const order: number[] = [];
-  const count = turns * pieces;
+/** A ball on which it is seen that it turns. */
+export function globe(pieces: number): BufferGeometry {
+  return patched(new SphereGeometry(1, 4 * Math.ceil(pieces / 4), 2 * Math.ceil(pieces / 3)));
+}
+
+/** Every other octant a little darker. */
+function patched(geometry: BufferGeometry): BufferGeometry {
+  const places = geometry.getAttribute("position");
+  const shades = Array.from({ length: places.count }, (_, k) => (places.getX(k) * places.getY(k) * (places.getZ(k) || 1) > 0 ? 0.8 : 1));
+  geometry.setAttribute("color", new Float32BufferAttribute(shades.flatMap((x) => [x, x, x]), 3));
+  return geometry;
+}
+
+/** How long a coil is beside its radius when its wire is round. */
+const COIL = 9;
+const WIRE = 0.16;
+
+/** A coil of wire along the third axis from 0 to 1, of radius 1: a spring, straight at both ends. */
+export function coil(turns = 9): BufferGeometry {
+  const points = [new Vector3(0, 0, 0), new Vector3(0, 0, 0.06 * COIL)];
+  const count = 10 * turns;
   for (let k = 0; k <= count; k += 1) {
-    const angle = (2 * Math.PI * k) / pieces;
-    const along = k / count;
-    const [x, y] = [Math.cos(angle), Math.sin(angle)];
-    for (const side of [-1, 1]) {
-      places.push(x, y, Math.min(1, Math.max(0, along + (side * 0.22) / turns)));
-      normals.push(x, y, 0);
-    }
-    if (k < count) order.push(2 * k, 2 * k + 2, 2 * k + 1, 2 * k + 1, 2 * k + 2, 2 * k + 3);
+    const angle = (2 * Math.PI * turns * k) / count;
+    points.push(new Vector3(Math.cos(angle), Math.sin(angle), (0.1 + (0.8 * k) / count) * COIL));
   }
-  const found = new BufferGeometry();
-  found.setAttribute("position", new BufferAttribute(new Float32Array(places), 3));
-  found.setAttribute("normal", new BufferAttribute(new Float32Array(normals), 3));
-  found.setIndex(order);
-  return found;
+  points.push(new Vector3(0, 0, 0.94 * COIL), new Vector3(0, 0, COIL));
+  return new TubeGeometry(new CatmullRomCurve3(points), 3 * count, WIRE, 5).scale(1, 1, 1 / COIL);
+}
+
+/** A damper along the third axis from 0 to 1, of radius 1: a rod that goes into a cylinder. */
+export function dashpot(): BufferGeometry {
+  const profile: [number, number][] = [[0.28, 0], [0.28, 0.3], [1, 0.3], [1, 0.66], [0.28, 0.66], [0.28, 1]];
+  return new LatheGeometry(profile.map(([r, z]) => new Vector2(r, z)), 16).rotateX(Math.PI / 2);
+}
+
+/** A curve as a tube. */
+export function tube(points: Triple[], closed: boolean, radius: number): BufferGeometry {
+  const through = (closed ? points.slice(0, -1) : points).map((point) => new Vector3(...point));
+  return new TubeGeometry(new CatmullRomCurve3(through, closed), 6 * through.length, radius, 8, closed);
 }
 
 /** A shape about its middle, in axes of its own, then placed in those of the body. */
@@ -58,11 +81,11 @@ export function shapeOf(shape: Shape): BufferGeometry {
       case "box":
         return new BoxGeometry(a, b, c);
       case "sphere":
-        return new SphereGeometry(a, 28, 18);
+        return globe(28).scale(a, a, a);
       case "ellipsoid":
-        return new SphereGeometry(1, 28, 18).scale(a, b, c);
+        return globe(28).scale(a, b, c);
       case "cylinder":
-        return new CylinderGeometry(a, a, b, 32).rotateX(Math.PI / 2);
+        return patched(new CylinderGeometry(a, a, b, 32).rotateX(Math.PI / 2));
       case "capsule":
         return new CapsuleGeometry(a, b, 6, 24).rotateX(Math.PI / 2);
     }

@@ -1,10 +1,11 @@
 // The canvas: three's renderer, drawn when something has changed, as finely as the machine keeps up with.
 
-import { Color, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
+import { BasicShadowMap, Color, PCFShadowMap, SRGBColorSpace, Vector3, WebGLRenderer } from "three";
 
-import { make } from "../elements.js";
+import { make, makeSvg } from "../elements.js";
 import { Eye } from "./camera.js";
 import { Drawing } from "./drawing.js";
+import { Flat } from "./flat.js";
 import { inks } from "./inks.js";
 import type { Picture } from "./types.js";
 
@@ -25,30 +26,26 @@ export class Stage {
   readonly broken: string;
   /** Milliseconds of the last frames, in script and in all: for measuring. */
   readonly spent: number[] = [];
-  private readonly renderer: WebGLRenderer | null;
-  private readonly name = make("div", { class: "viewer-name", "aria-hidden": "true" });
+  private readonly renderer: WebGLRenderer | Flat | null;
+  private readonly corner = makeSvg("svg", { class: "viewer-axes", viewBox: "-40 -40 80 80", "aria-hidden": "true" });
+  private labels: HTMLElement[] = [];
   private asked = false;
   private fine = 1;
   private last = 0;
-  private named: { body: number; text: string } | null = null;
+  private called: number | null = null;
   private moving = false;
   private frames = 0;
   private took = 0;
   private quick = 0;
 
   constructor(private readonly before: (seconds: number) => boolean) {
-    let renderer: WebGLRenderer | null = null;
     let broken = "";
-    try {
-      renderer = new WebGLRenderer({ canvas: this.canvas, antialias: !inSoftware(), powerPreference: "high-performance" });
-      renderer.outputColorSpace = SRGBColorSpace;
-    } catch {
-      broken = "This browser draws nothing in three dimensions (no WebGL): positions are told below in words.";
-    }
-    this.renderer = renderer;
+    this.renderer = drawnBy(this.canvas);
+    if (!this.renderer) broken = "This browser draws nothing (neither WebGL nor a flat canvas): positions are told below in words.";
     this.broken = broken;
-    this.element = make("div", { class: "viewer-stage" }, broken ? make("p", {}, broken) : this.canvas, this.name);
+    this.element = make("div", { class: "viewer-stage" }, broken ? make("p", {}, broken) : this.canvas);
     if (broken) return;
+    this.element.append(this.corner);
     new ResizeObserver(() => this.resize()).observe(this.element);
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => this.wanted());
@@ -79,6 +76,7 @@ export class Stage {
     }
     this.renderer.render(this.drawing.scene, this.eye.camera);
     this.label();
+    this.axes();
     this.spent.push(performance.now() - began);
     if (this.spent.length > 240) this.spent.shift();
     this.moving = going;
@@ -113,8 +111,9 @@ export class Stage {
 
   ink(): void {
     const found = inks(this.element, { line: "#c9ced6", back: "#ffffff" });
-    this.drawing.ink(found.line);
-    this.drawing.scene.background = new Color(found.back);
+    const back = new Color(found.back);
+    this.drawing.ink(found.line, back.getHSL({ h: 0, s: 0, l: 0 }).l < 0.4);
+    this.drawing.scene.background = back;
     this.wanted();
   }
 
@@ -136,28 +135,58 @@ export class Stage {
     return [((place.x + 1) / 2) * this.element.clientWidth, ((1 - place.y) / 2) * this.element.clientHeight];
   }
 
+  /** Bodies with their names, and where they are, looked up at every frame. */
+  name(names: string[], place: (body: number) => [Float64Array, [number, number, number]]): void {
+    this.labels.forEach((label) => label.remove());
+    this.called = null;
+    this.labels = names.map((name) => make("div", { class: "viewer-name", "aria-hidden": "true", hidden: true }, name));
+    this.element.append(...this.labels);
+    this.place = place;
+  }
+
   /** A name beside a body: that which was pressed. */
-  call(body: number | null, text = ""): void {
-    this.named = body === null ? null : { body, text };
+  call(body: number | null): void {
+    this.called = body;
     this.wanted();
   }
 
-  private place: (() => [number, number]) | null = null;
-
-  /** Where the called body is, looked up at every frame. */
-  follow(place: (body: number) => [Float64Array, [number, number, number]] | null): void {
-    this.place = () => {
-      const found = this.named && place(this.named.body);
-      return found ? this.projected(...found) : [-1000, -1000];
-    };
-  }
+  private place: ((body: number) => [Float64Array, [number, number, number]]) | null = null;
 
   private label(): void {
-    this.name.hidden = this.named === null;
-    if (!this.named || !this.place) return;
-    if (this.name.textContent !== this.named.text) this.name.textContent = this.named.text;
-    const [x, y] = this.place();
-    this.name.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    this.labels.forEach((label, k) => {
+      label.hidden = k !== this.called && !this.drawing.shown.names;
+      if (label.hidden || !this.place) return;
+      const [x, y] = this.projected(...this.place(k));
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    });
+  }
+
+  /** The directions of the axes of the frame, in a corner. */
+  private axes(): void {
+    const turn = this.eye.camera.quaternion.clone().invert();
+    this.corner.replaceChildren(
+      ...[0, 1, 2].flatMap((k) => {
+        const way = new Vector3().setComponent(k, 1).applyQuaternion(turn);
+        if (Math.hypot(way.x, way.y) < 0.1) return []; // it points at the eye, or away
+        const at = (far: number) => [far * way.x, -far * way.y] as const;
+        const [[x, y], [u, v]] = [at(24), at(33)];
+        return [makeSvg("line", { x1: 0, y1: 0, x2: x, y2: y }), makeSvg("text", { x: u, y: v }, String(k + 1))];
+      }),
+    );
+  }
+}
+
+/** What draws on a canvas: a graphics card, or the processor where there is none. */
+function drawnBy(canvas: HTMLCanvasElement): WebGLRenderer | Flat | null {
+  try {
+    if (!document.createElement("canvas").getContext("webgl2")) return new Flat(canvas);
+    const found = new WebGLRenderer({ canvas, antialias: !inSoftware(), powerPreference: "high-performance" });
+    found.outputColorSpace = SRGBColorSpace;
+    found.shadowMap.enabled = true;
+    found.shadowMap.type = inSoftware() ? BasicShadowMap : PCFShadowMap;
+    return found;
+  } catch {
+    return null;
   }
 }
 

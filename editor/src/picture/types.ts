@@ -12,6 +12,8 @@ export interface Program {
 
 export interface Coordinate {
   name: string;
+  /** With Greek letters and indices. */
+  label: string;
   kind: "angle" | "length" | "other";
   unit: string;
   value: number;
@@ -35,9 +37,25 @@ export interface Body {
   origin: Triple;
   centre: Triple;
   massive: boolean;
-  joint: { hinges: { along: Triple; coordinates: string[]; slides: boolean }[]; sprung: string[]; damped: string[] };
+  /** It has no look of its own and only slides, along a straight line in the frame. */
+  cart: boolean;
+  joint: { hinges: Hinge[]; sprung: string[]; damped: string[] };
   shapes: Shape[];
-  ellipsoid: { halfAxes: Triple; axes: [Triple, Triple, Triple]; trueSize: boolean } | null;
+  ellipsoid: { halfAxes: Triple; axes: [Triple, Triple, Triple]; trueSize: boolean; telling: boolean } | null;
+}
+
+export interface Hinge {
+  along: Triple;
+  coordinates: string[];
+  slides: boolean;
+  straight: boolean;
+}
+
+/** A hoop: points in the axes of the parent of the body that slides along it. */
+export interface Guide {
+  body: string;
+  points: Triple[];
+  closed: boolean;
 }
 
 export interface Arrow {
@@ -68,11 +86,12 @@ export interface Picture {
   frame: string;
   units: { length?: string; time?: string };
   coordinates: Coordinate[];
-  parameters: Record<string, number | null>;
+  parameters: { name: string; label: string; value: number | null; unit: string; meaning: string }[];
   program: Program;
   bodies: Body[];
   arrows: Arrow[];
   lines: Line[];
+  guides: Guide[];
   closure: Closure | null;
   view: { up: Triple; azimuth: number; elevation: number; plane: boolean };
   middle: Triple;
@@ -91,6 +110,8 @@ export interface Motion {
   drift: (number | null)[];
   driftOf: string;
   units: { time?: string; energy?: string };
+  /** Why it may be wrong. */
+  doubts: string[];
   sentences: string[];
 }
 

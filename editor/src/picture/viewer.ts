@@ -47,14 +47,10 @@ export class Viewer {
   private readonly speed = make("select", { "aria-label": "Speed" });
   private readonly bar = make("div", { class: "viewer-bar", hidden: true }, this.play, this.scrub, this.clock, this.speed);
   private readonly said = make("p", { class: "viewer-said", "aria-live": "polite" });
-  private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "shown" | "words", HTMLDetailsElement>;
+  private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "words", HTMLDetailsElement>;
 
   constructor(readonly host: HTMLElement) {
     this.stage = new Stage((seconds) => this.step(seconds));
-    this.stage.follow((body) => {
-      const one = this.picture?.bodies[body];
-      return one && this.poses ? [this.poses.values, one.centre] : null;
-    });
     const section = (title: string, open: boolean, ...inside: Node[]) =>
       make("details", { open, class: "viewer-section" }, make("summary", {}, title), ...inside);
     this.sections = {
@@ -62,7 +58,6 @@ export class Viewer {
       motion: section("Motion", true),
       modes: section("Linear modes", false),
       equilibria: section("Equilibria", false),
-      shown: section("Shown", false, this.switches()),
       words: section("In words", false),
     };
     for (const name of ["motion", "modes", "equilibria"] as const) this.sections[name].hidden = true;
@@ -75,7 +70,7 @@ export class Viewer {
     const corner = make("div", { class: "viewer-corner" },
       press("+", "Closer", () => eye.closer(1.2)), press("−", "Further", () => eye.closer(1 / 1.2)), press("⌂", "First view", () => eye.reset()));
     if (!this.stage.broken) this.stage.element.append(corner);
-    const main = make("div", { class: "viewer-main" }, this.stage.element, this.bar, this.said);
+    const main = make("div", { class: "viewer-main" }, this.stage.element, this.bar, ...(this.stage.broken ? [] : [this.switches()]), this.said);
     host.replaceChildren(make("div", { class: "viewer" }, main, make("div", { class: "viewer-side" }, ...Object.values(this.sections))));
     if (!this.stage.broken) {
       eye.listen(this.stage.canvas, (x, y) => this.pressed(x, y));
@@ -97,8 +92,10 @@ export class Viewer {
     this.stop();
     this.forget();
     this.sliders.build(picture.coordinates);
-    this.stage.drawing.build(picture, Float64Array.from(this.poses.at(begun(picture))));
+    this.stage.drawing.build(picture, Float64Array.from(this.poses.at(begun(picture))), begun(picture));
     this.stage.ink();
+    const { values } = this.poses;
+    this.stage.name(picture.bodies.map((body) => body.name), (k) => [values, picture.bodies[k]!.centre]);
     this.stage.eye.look(picture);
     this.place();
   }
@@ -109,12 +106,19 @@ export class Viewer {
     this.traces.show(this.track);
     const { atZero = [] } = this.picture ?? {};
     const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
-    this.fill("motion", this.traces.element, ...[...first, ...motion.sentences].map((text) => make("p", { class: "viewer-soft" }, text)));
+    const stays = Object.values(motion.coordinates).every((column) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12));
+    if (stays) first.unshift("Nothing moves: it rests here. It would from elsewhere, or with a velocity.");
+    const lines = (sentences: string[]) => sentences.map((text) => make("p", { class: "viewer-soft" }, text));
+    const how = make("details", { class: "viewer-how" }, make("summary", {}, "How it was computed"), ...lines(motion.sentences));
+    this.fill("motion", this.traces.element, ...lines([...first, ...motion.doubts]), how);
     const { track, poses } = this;
     if (poses && track.times.length > 1) {
       const count = Math.min(PATH, track.times.length);
       this.journey = new Journey(this.picture!, poses, track);
-      this.stage.eye.fit(this.journey.middle, this.journey.extent);
+      const start = begun(this.picture!);
+      this.stage.drawing.build(this.picture!, Float64Array.from(poses.at(start)), start, this.journey.ranges);
+      this.stage.ink();
+      this.stage.eye.fit(this.journey.room);
       this.stage.drawing.trace(count, (k) => poses.at(track.state((track.end * k) / (count - 1))));
     }
     this.playing = { what: "motion", t: 0 };
@@ -149,7 +153,7 @@ export class Viewer {
 
   select(name: string | null): void {
     const at = this.picture?.bodies.findIndex((body) => body.name === name) ?? -1;
-    this.stage.call(at < 0 ? null : at, name ?? "");
+    this.stage.call(at < 0 ? null : at);
   }
 
   /** Coordinates that sliders have put elsewhere than the description, and those of which it says nothing: what a motion
@@ -223,7 +227,7 @@ export class Viewer {
     const offset = this.journey && playing?.what === "motion" ? this.journey.offset(values, this.gone) : this.gone.set(0, 0, 0);
     this.stage.eye.follow(offset);
     this.stage.drawing.carry(offset);
-    this.stage.drawing.move(values);
+    this.stage.drawing.move(values, this.state);
     this.tell(!this.going);
     return this.going;
   }
@@ -324,17 +328,22 @@ export class Viewer {
   }
 
   private switches(): HTMLElement {
-    const names: [keyof Shown, string][] = [
-      ["inertia", "ellipsoids of inertia"], ["arrows", "forces"], ["frames", "axes of bodies"], ["paths", "paths of mass centres"],
+    const names: [keyof Shown, string, string][] = [
+      ["names", "Names", "Names of bodies"],
+      ["frames", "Axes", "Axes of bodies: the first red, the second green, the third blue"],
+      ["arrows", "Forces", "Forces and torques of loads"],
+      ["paths", "Paths", "Paths of mass centres"],
+      ["inertia", "Inertia", "Ellipsoids of inertia, of rods and in the plane, too"],
     ];
-    return make("div", { class: "viewer-switches" }, ...names.map(([name, text]) => {
-      const box = make("input", { type: "checkbox" });
-      box.checked = this.stage.drawing.shown[name];
-      box.addEventListener("change", () => {
-        this.stage.drawing.shown[name] = box.checked;
+    const { shown } = this.stage.drawing;
+    return make("div", { class: "viewer-switches", role: "group", "aria-label": "Shown in the picture" }, ...names.map(([name, text, title]) => {
+      const button = make("button", { type: "button", title, "aria-pressed": String(shown[name]) }, text);
+      button.addEventListener("click", () => {
+        shown[name] = !shown[name];
+        button.setAttribute("aria-pressed", String(shown[name]));
         this.stage.wanted();
       });
-      return make("label", {}, box, ` ${text}`);
+      return button;
     }));
   }
 }

@@ -8,7 +8,8 @@ greatest decay -Re lambda is looked at.  Where
 
 stability bounds the steps.  Then a few implicit steps are tried from there; where these are longer by more than they
 are dearer, the run goes on with them.  Of implicit steps h every tenth is followed by the question whether explicit
-ones of min(h, STABLE / -Re lambda) would lead further at equal cost, with a margin; if so the run goes back.
+ones of min(h, STABLE / -Re lambda) would lead further at equal cost, with a margin; if so the run goes back.  Compiled
+implicit steps are hardly dearer: once stability would not shorten explicit ones, some of these are tried, too.
 
 How much dearer a step is, is a fixed estimate, not a measured time: equal runs change at equal times.  Where nothing is
 ever stiff, steps, rows and results are those of the explicit method to the last bit.
@@ -19,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -43,6 +45,7 @@ from mbsym.numerics.methods.interface import (
 from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.stepping import Stepping
+from mbsym.numerics.methods.tableaux import RODAS5P
 
 #: Explicit methods of high order are stable for steps up to about this over |Re lambda|.
 STABLE = 5.0
@@ -131,8 +134,12 @@ class SwitchingRun(Stepping):
         self._since = 0, float(at)  # steps and time at the last look at the eigenvalues
         self._stiff = method.stiff
         self.work = Work()
-        operations = 12 * dynamics.right_hand_side.operations * OPERATION
-        self._dearer = IMPLICIT_STEP.get(method.implicit.traits.name, 5e-4) / (operations + STEP)
+        one, size, stages = dynamics.right_hand_side.operations, dynamics.dimension, len(RODAS5P.stages)
+        # Of the compiled one a Jacobian is about as many right-hand sides as the state has numbers.
+        compiled = OPERATION * ((stages + size) * one + size**3 / 3 + stages * size**2) + STEP
+        implicit = IMPLICIT_STEP.get(method.implicit.traits.name, compiled)
+        self._dearer = implicit / (12 * one * OPERATION + STEP)
+        self._compiled = implicit == compiled
         self._patience = 1
         self._turned(self._stiff, at, state)
         self.time, self.state = float(at), np.array(self.end)
@@ -212,31 +219,35 @@ class SwitchingRun(Stepping):
             steps = Message("[[count]] steps", count=self.work.steps)
             raise Breakdown(STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
         made = self.work.steps - self._since[0]
-        if made < (IMPLICIT_WINDOW if self._stiff else WINDOW * self._patience):
+        if made < (IMPLICIT_WINDOW if self._stiff and not self._compiled else WINDOW * self._patience):
             return
         step = (self.reached - self._since[1]) / made
         decay, frequency = rates(self._dynamics, self.end, self.reached)
         if self._stiff:
-            possible = min(step, STABLE / decay) if decay > 0 else step
-            if self._dearer * possible > MARGIN * step:
+            bound = STABLE / decay if decay > 0 else inf
+            untried = self._compiled and bound > step
+            if self._dearer * min(step, bound) > MARGIN * step or (untried and self._pays(False, step / self._dearer)):
                 text = "stiff no longer: motions die out at rates up to [[rate]]"
                 self._change(False, Message(text, rate=f"{decay:.3g}"))
                 return
         elif step * decay > LIMITED and decay > STIFF * frequency:
-            longer = self._tried()
-            if longer > self._dearer * step:
-                self._patience = 1
+            if self._pays(True, self._dearer * step):
                 text = "stiff: motions die out at rates up to [[rate]], explicit steps were [[step]]"
                 self._change(True, Message(text, rate=f"{decay:.3g}", step=f"{step:.2g}"))
                 return
-            self._patience *= PATIENCE
         else:
             self._patience = 1
         self._since = self.work.steps, self.reached
 
-    def _tried(self) -> float:
-        """The length of the last of some implicit steps from here; 0 where they fail."""
-        run = self._run(True, self.reached, self.end)
+    def _pays(self, stiff: bool, step: float) -> bool:
+        """Whether steps of the other method are longer than so much; if not, it is asked again the later."""
+        longer = self._tried(stiff) > step
+        self._patience = 1 if longer else self._patience * PATIENCE
+        return longer
+
+    def _tried(self, stiff: bool) -> float:
+        """The length of the last of some steps of a method from here; 0 where they fail."""
+        run = self._run(stiff, self.reached, self.end)
         before = run.reached
         try:
             for _ in range(TRIAL):

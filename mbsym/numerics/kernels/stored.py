@@ -1,9 +1,10 @@
-"""Machine code that outlives the process, under the SHA-256 of all that it was made of: compiled once, loaded after.
+"""Machine code and measurements that outlive the process, under the SHA-256 of all that they were made of.
 
-The folder is ``MBSYM_CACHE``, or else ``mbsym`` in ``XDG_CACHE_HOME`` or ``~/.cache``; ``MBSYM_CACHE=`` (empty) keeps
-nothing.  It may be deleted at any time.  What stands in it is executed, as Python's own compiled modules are: a folder
-that belongs to another user, or that others may write to, is not looked at, and a file whose digest does not fit is no
-file.  Whatever goes wrong with it, the code is compiled.
+Code is compiled once and loaded after, each kind of thing in a folder of its own.  That of all is ``MBSYM_CACHE``, or
+else ``mbsym`` in ``XDG_CACHE_HOME`` or ``~/.cache``; ``MBSYM_CACHE=`` (empty) keeps nothing.  It may be deleted at any
+time.  What stands in it is executed, as Python's own compiled modules are: a folder that belongs to another user, or
+that others may write to, is not looked at, and a file whose digest does not fit is no file.  Whatever goes wrong with
+it, the work is done again.
 """
 
 from __future__ import annotations
@@ -20,16 +21,19 @@ MOST_BYTES = 2**28
 
 _DIGEST = sha256().digest_size
 
+#: Kinds of things: machine code; what was measured.
+CODE, MEASURED = "kernels", "measured"
+
 
 def key_of(parts: Sequence[str]) -> str:
     """One name for all of the parts, in their order."""
     return sha256("".join(f"{len(part)}:{part}" for part in parts).encode()).hexdigest()
 
 
-def load(key: str) -> bytes | None:
+def load(key: str, kind: str = CODE) -> bytes | None:
     """What was kept under a key; None where there is nothing, or it is not whole."""
     with suppress(OSError):
-        folder = _folder()
+        folder = _folder(kind)
         if folder is not None and _own(folder):
             kept = (folder / key).read_bytes()
             if kept[:_DIGEST] == _digest(key, kept[_DIGEST:]):
@@ -37,10 +41,10 @@ def load(key: str) -> bytes | None:
     return None
 
 
-def keep(key: str, code: bytes) -> None:
+def keep(key: str, code: bytes, kind: str = CODE) -> None:
     """Keeps it where that can be done; a reader sees all of it or nothing."""
     with suppress(OSError):
-        folder = _folder()
+        folder = _folder(kind)
         if folder is None:
             return
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -56,14 +60,14 @@ def keep(key: str, code: bytes) -> None:
             os.unlink(aside)
 
 
-def _folder() -> Path | None:
-    """Where code is kept; None where nothing is to be, or where nobody is at home."""
+def _folder(kind: str = CODE) -> Path | None:
+    """Where a kind of thing is kept; None where nothing is to be, or where nobody is at home."""
     told = os.environ.get("MBSYM_CACHE")
     if told is not None:
-        return Path(told) / "kernels" if told else None
+        return Path(told) / kind if told else None
     with suppress(RuntimeError):
         base = os.environ.get("XDG_CACHE_HOME", "")
-        return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "mbsym" / "kernels"
+        return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "mbsym" / kind
     return None
 
 

@@ -17,6 +17,7 @@ from math import log
 
 import numpy as np
 
+from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.llvm import Scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value
 from mbsym.numerics.methods.tableaux import (
@@ -26,6 +27,7 @@ from mbsym.numerics.methods.tableaux import (
     EVALUATIONS,
     FRESH,
     INFINITE,
+    JACOBIANS,
     LAST,
     LEFT,
     LONGEST,
@@ -43,6 +45,7 @@ from mbsym.numerics.methods.tableaux import (
     TIME,
     TIME_CARRY,
     UNTIL,
+    Rosenbrock,
     Stages,
     Tableau,
     add_compensated,
@@ -165,12 +168,14 @@ def _stop_before_singular(f: Function) -> None:
         pass
 
 
-def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = False) -> str:
+def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, constrained: bool = False) -> str:
     """Steps by the error estimate, with the controller of Hairer, Norsett & Wanner.
 
     Where it is ``constrained``, every step that is accepted ends on the constraints, and the next one begins with the
     slope there.
     """
+    explicit = isinstance(tableau, Tableau)
+    at_the_end = isinstance(tableau, Tableau) and tableau.first_same_as_last
     f = Function("march", [(name, POINTER) for name in ARGUMENTS])
     s = Stages(f, size, scalar)
     x, k, clock, count = f["x"], f["k"], f["clock"], f["count"]
@@ -193,23 +198,28 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     f.leave(STOPPED)
     f.place(large)
     # The last slope of an accepted step is the first of the next; it is copied late because dense output needs both.
-    with f.when(f.load(INTEGER, count, FRESH).compare("!=", 0)):
-        s.copy(s.slope(k, stages), s.slope(k, 0))
-        f.store(0, INTEGER, count, FRESH)
+    if explicit:
+        with f.when(f.load(INTEGER, count, FRESH).compare("!=", 0)):
+            s.copy(s.slope(k, stages), s.slope(k, 0))
+            f.store(0, INTEGER, count, FRESH)
     f.jump(step_now)
     f.place(step_now)
-    for place, row in enumerate(tableau.stages[1:], 1):
-        s.stage(x, k, row, place, time, step)
-    h = step.converted(s.kind)
+    if isinstance(tableau, Tableau):
+        for place, row in enumerate(tableau.stages[1:], 1):
+            s.stage(x, k, row, place, time, step)
+        evaluations, weight = stages - 1 + at_the_end, step
+    else:
+        _linear_stages(f, s, tableau, time, step)
+        evaluations, weight = stages, f.number(1, s.clock)
+    h = weight.converted(s.kind)
     for i in f.each(size):
         change = h * s.combination(k, tableau.weights, i)
         f.store(change, s.kind, unchanged, i)
         f.store(f.load(s.kind, x, i) + change, s.kind, candidate, i)
-    if tableau.first_same_as_last:
+    if at_the_end:
         s.state_argument(candidate)
         s.evaluate(time + step, s.slope(k, stages))
-    error = _error(f, s, tableau, x, candidate, k, step, relative, absolute)
-    evaluations = stages - 1 + tableau.first_same_as_last
+    error = _error(f, s, tableau, x, candidate, k, weight, relative, absolute)
     f.store(f.load(INTEGER, count, EVALUATIONS) + evaluations, INTEGER, count, EVALUATIONS)
     f.jump(tried)
     f.place(tried)
@@ -237,7 +247,7 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
     add_compensated(f, s.clock, clock, f.at(s.clock, clock, TIME_CARRY), TIME, step)
     if constrained:
         near = _led_back(f, s)
-    if constrained or not tableau.first_same_as_last:
+    if explicit and (constrained or not at_the_end):
         s.state_argument(x)
         s.evaluate(f.load(s.clock, clock, TIME), s.slope(k, stages))
         f.store(f.load(INTEGER, count, EVALUATIONS) + 1, INTEGER, count, EVALUATIONS)
@@ -249,6 +259,39 @@ def adaptive_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool
         _note(f, near)
     f.jump(again)
     return f.text()
+
+
+def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, step: Value) -> None:
+    """The u_i of a step in the rows of ``k``, and f at its begin behind them; the matrix is factorised once."""
+    x, k, size = f["x"], f["k"], s.size
+    slopes = f.slot(s.kind, size + size * size)
+    matrix, exchanged = f.slot(s.kind, size * size), f.slot(INTEGER, size)
+    inverse, h = (1 / step).converted(s.kind), step.converted(s.kind)
+    begin = s.slope(k, tableau.begin)
+    s.state_argument(x)
+    s.evaluate(time, begin)
+    f.do("slopes", s.argument, slopes)
+    f.store(f.load(INTEGER, f["count"], JACOBIANS) + 1, INTEGER, f["count"], JACOBIANS)
+    with f.repeat(size * size) as entry:
+        f.store(0 - f.load(s.kind, slopes, entry + size), s.kind, matrix, entry)
+    with f.repeat(size) as row:
+        place = row * (size + 1)
+        f.store(f.load(s.kind, matrix, place) + inverse / tableau.gamma, s.kind, matrix, place)
+    factorise(f, s.kind, matrix, size, exchanged)
+    for number, (stage, coupling) in enumerate(zip(tableau.stages, tableau.coupling, strict=True)):
+        own = s.slope(k, number)
+        if number:
+            for i in f.each(size):
+                f.store(f.load(s.kind, x, i) + s.combination(k, stage, i), s.kind, s.argument, i + 1)
+            s.evaluate(time + step * tableau.times[number], own)
+        else:
+            s.copy(begin, own)
+        for i in f.each(size):
+            total = f.load(s.kind, own, i) + h * tableau.slopes[number] * f.load(s.kind, slopes, i)
+            if number:
+                total = total + inverse * s.combination(k, coupling, i)
+            f.store(total, s.kind, own, i)
+        solve(f, s.kind, matrix, own, size, exchanged)
 
 
 @contextmanager
@@ -265,7 +308,7 @@ def _leaving(f: Function, bit: Value, result: int) -> Iterator[None]:
 def _error(
     f: Function,
     s: Stages,
-    tableau: Tableau,
+    tableau: Tableau | Rosenbrock,
     x: Value,
     new: Value,
     k: Value,
@@ -276,7 +319,8 @@ def _error(
     """The estimated error of a step, 1 where it is just tolerable.
 
     One estimate e:  h |e|;  two, as in DOP853:  h e5^2 / sqrt(e5^2 + e3^2/100)  (root mean squares, e_i in units of
-    ``absolute`` L_i + ``relative`` |x_i|, the L_i being the sizes).
+    ``absolute`` L_i + ``relative`` |x_i|, the L_i being the sizes).  ``step`` is h, or 1 where estimates are those of a
+    whole step.
     """
     totals = [f.slot("double") for _ in tableau.errors]
     for total in totals:
@@ -298,7 +342,7 @@ def _error(
     return h * squares[0] / root
 
 
-def _grow(f: Function, s: Stages, tableau: Tableau, error: Value, step: Value) -> None:
+def _grow(f: Function, s: Stages, tableau: Tableau | Rosenbrock, error: Value, step: Value) -> None:
     """h <- h min(6, max(1/5, 3/4 err^-a before^b)) with a = 1/q - 3b/4; no growth right after a rejected step."""
     clock, count = f["clock"], f["count"]
     integral = INTEGRAL[tableau.order]

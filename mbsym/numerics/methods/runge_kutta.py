@@ -1,10 +1,10 @@
-"""Explicit Runge-Kutta methods whose loop over steps runs in machine code.
+"""Runge-Kutta methods whose loop over steps runs in machine code: explicit ones, and of Rosenbrock's kind.
 
-``rk4`` takes fixed steps; ``rk45`` and ``dop853`` choose theirs from an error estimate, with the controller of
-Hairer, Norsett & Wanner (Solving Ordinary Differential Equations I, II.4; proportional and integral part, IV.2 of
-volume II).  Sums over steps are compensated (Kahan), so that a million small steps lose no more digits than a thousand
-large ones.  Times between the ends of steps come from dense output, in machine code as well: rows cost a polynomial
-each, however many there are.
+``rk4`` takes fixed steps; ``rk45``, ``dop853`` and, for stiff systems, ``rodas5p`` choose theirs from an error
+estimate, with the controller of Hairer, Norsett & Wanner (Solving Ordinary Differential Equations I, II.4; proportional
+and integral part, IV.2 of volume II).  Sums over steps are compensated (Kahan), so that a million small steps lose no
+more digits than a thousand large ones.  Times between the ends of steps come from dense output, in machine code as
+well: rows cost a polynomial each, however many there are.
 """
 
 from __future__ import annotations
@@ -50,6 +50,7 @@ from mbsym.numerics.methods.tableaux import (
     EVALUATIONS,
     FRESH,
     INFINITE,
+    JACOBIANS,
     LAST,
     LEFT,
     LONGEST,
@@ -62,6 +63,7 @@ from mbsym.numerics.methods.tableaux import (
     REPLY,
     RK4,
     RK45,
+    RODAS5P,
     SINGULARLY,
     SLACK,
     START,
@@ -71,6 +73,7 @@ from mbsym.numerics.methods.tableaux import (
     TIME,
     TIME_CARRY,
     UNTIL,
+    Rosenbrock,
     Stages,
     Tableau,
     address,
@@ -95,15 +98,14 @@ from mbsym.numerics.methods.tableaux import (
 # the cubic that fits x and x' at both ends, with an error of order h^4.
 
 
-def terms_of(tableau: Tableau) -> int:
-    """How many terms F there are."""
-    return 3 + (len(tableau.dense) or 2)
-
-
-def dense_text(tableau: Tableau, size: int, scalar: Scalar, pairs: bool = True) -> str:
+def dense_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, pairs: bool = True) -> str:
     """``@prepare``, ``@rows`` and ``@fill``; see there.  ``pairs``: the states are (q, q')."""
-    prepare = _prepare_text if tableau.errors else _prepare_fixed_text if pairs else _prepare_cubic_text
-    return prepare(tableau, size, scalar) + _rows_text(terms_of(tableau), size, scalar) + _fill_text(scalar)
+    if isinstance(tableau, Rosenbrock):
+        prepared = _prepare_linear_text(tableau, size, scalar)
+    else:
+        prepare = _prepare_text if tableau.errors else _prepare_fixed_text if pairs else _prepare_cubic_text
+        prepared = prepare(tableau, size, scalar)
+    return prepared + _rows_text(tableau.terms, size, scalar) + _fill_text(scalar)
 
 
 def _prepare_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
@@ -122,6 +124,18 @@ def _prepare_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
         terms += [h * s.combination(k, row, i) for row in tableau.dense]
         _keep(f, s, terms, i)
     _count(f, len(tableau.extra))
+    f.leave(0)
+    return f.text()
+
+
+def _prepare_linear_text(tableau: Rosenbrock, size: int, scalar: Scalar) -> str:
+    """The same of what linear equations gave: nothing is evaluated."""
+    f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
+    s = Stages(f, size, scalar)
+    for i in f.each(size):
+        change = f.load(s.kind, f["x"], i) - f.load(s.kind, f["old"], i)
+        _keep(f, s, [change, *(s.combination(f["k"], row, i) for row in tableau.dense)], i)
+    _count(f, 0)
     f.leave(0)
     return f.text()
 
@@ -270,6 +284,9 @@ def _fill_text(scalar: Scalar) -> str:
 #: Machine code is left after about so many operations, so that Ctrl-C and progress bars work.
 OPERATIONS_AT_A_TIME = 20_000_000
 
+#: Their matrix and its factors stand on the stack.
+MOST_EQUATIONS = 200
+
 #: A time that a step of fixed length misses by less than this part of the length needs no further step.
 MISSED = 1e-9
 
@@ -281,17 +298,21 @@ def mathematics(codes: Iterable[Code], scalar: Scalar) -> str:
     return "".join(f"declare double @{name}(double) #1\n" for name in missing)
 
 
-def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
+def driver(dynamics: Dynamics, tableau: Tableau | Rosenbrock, scalar: str) -> Library:
     """The compiled method on the compiled right-hand side."""
 
     def make() -> Library:
         chosen, code = SCALARS[scalar], code_of(dynamics, "right_hand_side", scalar)
         size = dynamics.dimension
-        march = adaptive_text if tableau.errors else fixed_text
-        codes = {"rhs": code}
-        if dynamics.correction is not None:
+        codes, constrained = {"rhs": code}, dynamics.correction is not None
+        if constrained:
             codes["correct"] = code_of(dynamics, "correction", scalar)
-        text = march(tableau, size, chosen, len(codes) > 1)
+        if isinstance(tableau, Rosenbrock):
+            codes["slopes"] = code_of(dynamics, "slopes", scalar)
+        if isinstance(tableau, Tableau) and not tableau.errors:
+            text = fixed_text(tableau, size, chosen, constrained)
+        else:
+            text = adaptive_text(tableau, size, chosen, constrained)
         text += dense_text(tableau, size, chosen, pairs=not dynamics.in_states)
         if tableau.errors:
             text = mathematics(codes.values(), chosen) + text
@@ -303,7 +324,7 @@ def driver(dynamics: Dynamics, tableau: Tableau, scalar: str) -> Library:
 class CompiledRun(Stepping):
     """Steps and rows in machine code: what runs of either kind share."""
 
-    def __init__(self, dynamics: Dynamics, tableau: Tableau, setting: Setting, scalar: str) -> None:
+    def __init__(self, dynamics: Dynamics, tableau: Tableau | Rosenbrock, setting: Setting, scalar: str) -> None:
         chosen = SCALARS[scalar]
         size = self.size = dynamics.dimension
         self.tableau, self.limit = tableau, setting.step_limit
@@ -316,15 +337,18 @@ class CompiledRun(Stepping):
         self.x, self.carry, self.old, self.sizes = (aligned(size, self.dtype) for _ in range(4))
         rows = len(tableau.stages) + 2 + len(tableau.extra)
         self.k = aligned((rows, size), self.dtype)
-        self.terms = aligned((terms_of(tableau), size), self.dtype)
+        self.terms = aligned((tableau.terms, size), self.dtype)
         self.clock = aligned(12, self.clock_type)
-        self.count = aligned(11, np.int64)
+        self.count = aligned(12, np.int64)
         arrays = (self.x, self.carry, self.old, self.k, self.clock, self.count, self.sizes)
         self._pointers = tuple(address(array) for array in arrays)
         for_terms = (self.x, self.old, self.k, self.terms, self.clock, self.count)
         self._for_terms = tuple(address(array) for array in for_terms)
         self.work = Work()
-        self._at_once = max(1, OPERATIONS_AT_A_TIME // (rows * (dynamics.right_hand_side.operations + 10)))
+        operations = rows * (dynamics.right_hand_side.operations + 10)
+        if isinstance(tableau, Rosenbrock):
+            operations += dynamics.slopes.operations + size**3 + 2 * rows * size**2
+        self._at_once = max(1, OPERATIONS_AT_A_TIME // operations)
 
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state."""
@@ -448,7 +472,8 @@ class CompiledRun(Stepping):
         work, count = self.work, self.count
         work.steps, work.rejected = int(count[STEPS]), int(count[REJECTED])
         work.evaluations += int(count[EVALUATIONS])
-        count[EVALUATIONS] = 0
+        work.jacobians += int(count[JACOBIANS])
+        count[EVALUATIONS] = count[JACOBIANS] = 0
 
     def _fail(self, kind: str, message: str, time: Any, state: Any) -> Breakdown:
         return Breakdown(kind, message, float(time), np.array(state, dtype=float))
@@ -494,7 +519,13 @@ class AdaptiveRun(CompiledRun):
     """Steps chosen by the error estimate."""
 
     def __init__(
-        self, dynamics: Dynamics, tableau: Tableau, setting: Setting, scalar: str, initial: Any, at: float
+        self,
+        dynamics: Dynamics,
+        tableau: Tableau | Rosenbrock,
+        setting: Setting,
+        scalar: str,
+        initial: Any,
+        at: float,
     ) -> None:
         super().__init__(dynamics, tableau, setting, scalar)
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
@@ -516,7 +547,7 @@ class AdaptiveRun(CompiledRun):
         self.sizes[:] = np.maximum(np.abs(self.x), floor)
         order = self.tableau.order
         steps, slopes = first_steps(self._rates, order, self._magnitudes, begin, state, absolute, relative)
-        self.k[0] = slopes[:, 0]
+        self.k[self.tableau.begin] = slopes[:, 0]
         self.clock[STEP] = min(float(steps[0]), float(self.clock[LONGEST]))
 
     def one(self, until: float | None = None) -> None:
@@ -549,10 +580,11 @@ class AdaptiveRun(CompiledRun):
 
     def _stopped(self) -> Breakdown:
         usual, unit = self._magnitudes.sizes[:, 0], float(self._magnitudes.times[0])
+        slopes = np.abs(self.k[self.tableau.begin])
         size = float(np.max(np.abs(self.x) / usual, initial=0.0))
-        steep = float(np.max(np.abs(self.k[0]) / usual, initial=0.0)) * unit
+        steep = float(np.max(slopes / usual, initial=0.0)) * unit
         if self.count[INFINITE] or not size < LARGEST or not steep < LARGEST:
-            fastest = float(np.max(np.abs(self.k[0]), initial=0.0))
+            fastest = float(np.max(slopes, initial=0.0))
             text = "values or rates grow too large to go on (largest rate [[rate]])"
             message = Message(text, rate=f"{fastest:.2g}")
             return self._fail(BLOW_UP, message, self.clock[TIME], self.x)
@@ -565,29 +597,40 @@ class AdaptiveRun(CompiledRun):
 class RungeKutta:
     """A method given by its tableau."""
 
-    tableau: Tableau
+    tableau: Tableau | Rosenbrock
 
     @property
     def traits(self) -> Traits:
-        tableau = self.tableau
-        scalars = (FLOAT64, FLOAT32, EXTENDED)
+        tableau, implicit = self.tableau, isinstance(self.tableau, Rosenbrock)
         return Traits(
             name=tableau.name,
             title=Message("[[method]], compiled", method=Message(tableau.title)),
             order=tableau.order,
             fixed=not tableau.errors,
-            scalars=scalars,
+            scalars=(FLOAT64,) if implicit else (FLOAT64, FLOAT32, EXTENDED),  # its coefficients have 16 digits
+            implicit=implicit,
         )
 
     def start(
         self, dynamics: Dynamics, setting: Setting, scalar: str = FLOAT64, initial: Any = None, at: float = 0.0
     ) -> FixedRun | AdaptiveRun:
-        """A run of compiled steps.  Raises Unusable for an arithmetic that this machine lacks, or without a step."""
+        """A run of compiled steps.
+
+        Raises Unusable for an arithmetic that this machine or the method lacks, without a step where it needs one, and
+        for linear equations that are too many.
+        """
+        tableau, name = self.tableau, self.tableau.name
+        if scalar not in self.traits.scalars:
+            raise Unusable(Message("[[name]] runs in float64 only", name=name))
         if not available(scalar):
             raise Unusable(Message("this machine has no [[scalar]] arithmetic", scalar=scalar))
-        run = AdaptiveRun if self.tableau.errors else FixedRun
         state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial
-        return run(dynamics, self.tableau, setting, scalar, state, at)
+        if isinstance(tableau, Tableau) and not tableau.errors:
+            return FixedRun(dynamics, tableau, setting, scalar, state, at)
+        if isinstance(tableau, Rosenbrock) and dynamics.dimension > MOST_EQUATIONS:
+            text = "[[name]] solves up to [[most]] linear equations; here are [[count]]"
+            raise Unusable(Message(text, name=name, most=MOST_EQUATIONS, count=dynamics.dimension))
+        return AdaptiveRun(dynamics, tableau, setting, scalar, state, at)
 
 
-METHODS: Sequence[RungeKutta] = tuple(RungeKutta(tableau) for tableau in (RK4, RK45, DOP853))
+METHODS: Sequence[RungeKutta] = tuple(RungeKutta(tableau) for tableau in (RK4, RK45, DOP853, RODAS5P))

@@ -38,6 +38,7 @@ from mbsym.algebra.program import Node
 from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
+from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
@@ -189,14 +190,15 @@ def _substep_text(size: int, scalar: Scalar) -> str:
         f.store(latest + (latest - f.load(kind, guess, i + size)) * slope, kind, rates, i)
     f.do("newton", argument, result)
     f.store(f.load(INTEGER, count, JACOBIANS) + 1, INTEGER, count, JACOBIANS)
-    _factorise(f, kind, matrix, size)
+    # Its symmetric part is M - O(h^2), positive definite for every step that is not far too long.
+    factorise(f, kind, matrix, size)
     f.store(0, INTEGER, rounds)
     f.store(Fraction(10) ** 30, kind, before)
     again, done, more, failed, next_one = (f.label() for _ in range(5))
     f.jump(again)
 
     f.place(again)
-    _solve(f, kind, matrix, result, size)
+    solve(f, kind, matrix, result, size)
     f.store(0, kind, change)
     f.store(f.load(clock, f["clock"], LARGEST_RATE).converted(kind), kind, largest)
     with f.repeat(size) as i:
@@ -242,35 +244,6 @@ def _raise_to(f: Function, kind: str, place: Value, value: Value) -> None:
     """place <- max(place, value)."""
     now = f.load(kind, place)
     f.store(value.compare(">", now).choose(value, now), kind, place)
-
-
-def _factorise(f: Function, kind: str, matrix: Value, size: int) -> None:
-    """matrix <- its L U factors.
-
-    No pivots are exchanged: the symmetric part of the matrix is M - O(h^2), which is positive definite for every step
-    that is not far too long.
-    """
-    with f.repeat(size) as k:
-        inverse = 1 / f.load(kind, matrix, k * (size + 1))
-        with f.repeat(size, k + 1) as i:
-            factor = f.load(kind, matrix, i * size + k) * inverse
-            f.store(factor, kind, matrix, i * size + k)
-            with f.repeat(size, k + 1) as j:
-                entry = f.load(kind, matrix, i * size + j) - factor * f.load(kind, matrix, k * size + j)
-                f.store(entry, kind, matrix, i * size + j)
-
-
-def _solve(f: Function, kind: str, matrix: Value, vector: Value, size: int) -> None:
-    """vector <- (L U)^-1 vector."""
-    with f.repeat(size) as i, f.repeat(i) as j:
-        entry = f.load(kind, vector, i) - f.load(kind, matrix, i * size + j) * f.load(kind, vector, j)
-        f.store(entry, kind, vector, i)
-    with f.repeat(size) as back:
-        i = (size - 1) - back
-        with f.repeat(size, i + 1) as j:
-            entry = f.load(kind, vector, i) - f.load(kind, matrix, i * size + j) * f.load(kind, vector, j)
-            f.store(entry, kind, vector, i)
-        f.store(f.load(kind, vector, i) / f.load(kind, matrix, i * (size + 1)), kind, vector, i)
 
 
 class MidpointRun(Stepping):

@@ -1,6 +1,6 @@
 """Every method by its name.
 
-compiled      rk4 (fixed step), rk45, dop853
+compiled      rk4 (fixed step), rk45, dop853; stiff: rodas5p
 conservative  midpoint, midpoint4, midpoint6 (fixed step)
 SciPy         scipy-rk45, scipy-dop853; stiff: lsoda, radau, bdf
 heyoka        taylor

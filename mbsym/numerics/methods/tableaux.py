@@ -1,9 +1,10 @@
-"""Coefficients of explicit Runge-Kutta methods, as exact decimals and fractions.
+"""Coefficients of explicit Runge-Kutta methods, and of one of Rosenbrock's kind, as exact decimals and fractions.
 
 Sources: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (2nd ed.), II.1 (the classical method),
 II.5 and II.6 (Dormand & Prince 5(4) with its continuous extension), and the coefficients of DOP853 that E. Hairer and
 G. Wanner publish with their code to 30 digits (method of order 8, error estimates of orders 5 and 3, continuous
-extension of order 7).
+extension of order 7); G. Steinebach, Construction of Rosenbrock-Wanner method Rodas5P and numerical benchmarks within
+the Julia Differential Equations package, BIT 63 (2023) 27.
 """
 
 from __future__ import annotations
@@ -47,6 +48,53 @@ class Tableau:
     def first_same_as_last(self) -> bool:
         """Whether an error estimate uses f at the new point."""
         return any(row[-1] != 0 for row in self.errors)
+
+    @property
+    def terms(self) -> int:
+        """How many terms F there are."""
+        return 3 + (len(self.dense) or 2)
+
+    @property
+    def begin(self) -> int:
+        """Which row of what is computed for a step holds f at its begin."""
+        return 0
+
+
+@dataclass(frozen=True)
+class Rosenbrock:
+    """A method for stiff systems that solves linear equations, all with one matrix a step: J = df/dx at its begin, and
+
+        (1/(gamma h) - J) u_i = f(t + c_i h, x + sum_j a_ij u_j) + sum_j (C_ij/h) u_j + d_i h df/dt,    j < i,
+        x_new = x + sum_j m_j u_j,     error = sum_j e_j u_j,
+
+    in the form of Hairer & Wanner, Solving Ordinary Differential Equations II, IV.7.  ``stages`` has the a_ij,
+    ``coupling`` the C_ij, ``times`` the c_i, ``slopes`` the d_i.  ``dense`` has the weights of F1, F2, F3 in
+
+        x(s) = x + s (F0 + (1 - s) (F1 + s (F2 + (1 - s) F3))),     F0 = x_new - x,     Fk = sum_j dense_kj u_j.
+    """
+
+    name: str
+    title: str
+    order: int
+    gamma: Fraction
+    stages: tuple[Row, ...]
+    coupling: tuple[Row, ...]
+    times: Row
+    slopes: Row
+    weights: Row
+    errors: tuple[Row, ...]
+    dense: tuple[Row, ...]
+    extra: tuple[Row, ...] = ()
+
+    @property
+    def terms(self) -> int:
+        """How many terms F there are."""
+        return 1 + len(self.dense)
+
+    @property
+    def begin(self) -> int:
+        """Which row of what is computed for a step holds f at its begin."""
+        return len(self.stages)
 
 
 def _row(length: int, entries: Mapping[int, str]) -> Row:
@@ -289,12 +337,116 @@ DOP853 = Tableau(
 )
 
 
+_SIXTH = _fractions(
+    "-7.502846399306121", "2.561846144803919", "-11.627539656261098", "-0.18268767659942256", "0.030198172008377946"
+)
+_ONE = Fraction(1)
+
+#: Weights of k2, k3, k4 in x(s) = (1 - s) x + s (x_new + (1 - s) (k2 + s (k3 + s k4))), as they are published.
+_RODAS5P_DENSE = (
+    _fractions(
+        "25.948786856663858",
+        "-2.5579724845846235",
+        "10.433815404888879",
+        "-2.3679251022685204",
+        "0.524948541321073",
+        "1.1241088310450404",
+        "0.4272876194431874",
+        "-0.17202221070155493",
+    ),
+    _fractions(
+        "-9.91568850695171",
+        "-0.9689944594115154",
+        "3.0438037242978453",
+        "-24.495224566215796",
+        "20.176138334709044",
+        "15.98066361424651",
+        "-6.789040303419874",
+        "-6.710236069923372",
+    ),
+    _fractions(
+        "11.419903575922262",
+        "2.8879645146136994",
+        "72.92137995996029",
+        "80.12511834622643",
+        "-52.072871366152654",
+        "-59.78993625266729",
+        "-0.15582684282751913",
+        "4.883087185713722",
+    ),
+)
+
+RODAS5P = Rosenbrock(
+    name="rodas5p",
+    title="Rodas5P of Steinebach, for stiff systems",
+    order=5,
+    gamma=Fraction("0.21193756319429014"),
+    stages=(
+        _fractions(),
+        _fractions("3.0"),
+        _fractions("2.849394379747939", "0.45842242204463923"),
+        _fractions("-6.954028509809101", "2.489845061869568", "-10.358996098473584"),
+        _fractions("2.8029986275628964", "0.5072464736228206", "-0.3988312541770524", "-0.04721187230404641"),
+        _SIXTH,
+        (*_SIXTH, _ONE),
+        (*_SIXTH, _ONE, _ONE),
+    ),
+    coupling=(
+        _fractions(),
+        _fractions("-14.155112264123755"),
+        _fractions("-17.97296035885952", "-2.859693295451294"),
+        _fractions("147.12150275711716", "-1.41221402718213", "71.68940251302358"),
+        _fractions("165.43517024871676", "-0.4592823456491126", "42.90938336958603", "-5.961986721573306"),
+        _fractions(
+            "24.854864614690072", "-3.0009227002832186", "47.4931110020768", "5.5814197821558125", "-0.6610691825249471"
+        ),
+        _fractions(
+            "30.91273214028599",
+            "-3.1208243349937974",
+            "77.79954646070892",
+            "34.28646028294783",
+            "-19.097331116725623",
+            "-28.087943162872662",
+        ),
+        _fractions(
+            "37.80277123390563",
+            "-3.2571969029072276",
+            "112.26918849496327",
+            "66.9347231244047",
+            "-40.06618937091002",
+            "-54.66780262877968",
+            "-9.48861652309627",
+        ),
+    ),
+    times=_fractions(
+        "0", "0.6358126895828704", "0.4095798393397535", "0.9769306725060716", "0.4288403609558664", "1", "1", "1"
+    ),
+    slopes=_fractions(
+        "0.21193756319429014",
+        "-0.42387512638858027",
+        "-0.3384627126235924",
+        "1.8046452872882734",
+        "2.325825639765069",
+        "0",
+        "0",
+        "0",
+    ),
+    weights=(*_SIXTH, _ONE, _ONE, _ONE),
+    errors=(_row(8, {8: "1"}),),
+    dense=(
+        _RODAS5P_DENSE[0],
+        tuple(a + b for a, b in zip(*_RODAS5P_DENSE[1:], strict=True)),
+        tuple(-a for a in _RODAS5P_DENSE[2]),
+    ),
+)
+
+
 # What the machine code of Runge-Kutta methods is written with: stages of a tableau, compensated sums, places.
 
 
 # Places in the arrays that the machine code and Python share.
 TIME, TIME_CARRY, START, STEP, LAST, UNTIL, RELATIVE, ABSOLUTE, PREVIOUS, LONGEST, BASE, SLACK = range(12)
-STEPS, REJECTED, EVALUATIONS, FRESH, INFINITE, CAREFUL, LEFT, NUMBER, PREPARED, REPLY, SINGULARLY = range(11)
+STEPS, REJECTED, EVALUATIONS, FRESH, INFINITE, CAREFUL, LEFT, NUMBER, PREPARED, REPLY, SINGULARLY, JACOBIANS = range(12)
 REACHED, PAUSED, STOPPED = range(3)
 
 

@@ -17,7 +17,7 @@ from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.prices import cost
+from mbsym.numerics.planning.prices import COMPILED, cost
 
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
@@ -29,7 +29,7 @@ OF_NO_ACCOUNT = 100
 TRIAL_STEPS, TRIAL_COST = 2_000, 0.3
 
 #: Preferred explicit methods, implicit ones to try on stiff systems, and the one that a run changes to on its way.
-EXPLICIT, IMPLICIT, ALONG = ("dop853", "scipy-dop853", "rk45"), ("radau", "lsoda"), "radau"
+EXPLICIT, IMPLICIT, ALONG = ("dop853", "scipy-dop853", "rk45"), ("rodas5p", "radau", "lsoda"), "rodas5p"
 
 
 @dataclass(frozen=True)
@@ -89,10 +89,12 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
     setting = Setting(tolerance=tolerance)
     best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
     first = least
-    for name in IMPLICIT[: 1 if dynamics.correction is not None else None]:
+    for name in IMPLICIT[: 2 if dynamics.correction is not None else None]:
         found = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
         if found is not None and found < least:
             best, least = METHODS[name], found
+        if found is not None and name in COMPILED:
+            break  # what is not compiled costs more, its trial, too
     if best is explicit:
         text = "motions die out at rates up to [[rate]], yet explicit steps cost less here, by counted work"
         measured = Message("about [[cost]] s by the counted work of a short trial", cost=f"{first:.2g}")

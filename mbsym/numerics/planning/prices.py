@@ -32,8 +32,12 @@ COEFFICIENT = 6.0
 #: An evaluation, with its share of the linear algebra, by methods that are not compiled.
 INTERPRETED = {"lsoda": 13e-6, "radau": 5e-5, "bdf": 7e-5, "scipy-rk45": 2e-5, "scipy-dop853": 2e-5}
 
-#: A Jacobian of an implicit method, with all that is done between two of them, in a run that began with another.
+#: A Jacobian of an implicit method of SciPy's, with all that is done between two of them, in a run that began with
+#: another.
 JACOBIAN = 1e-2
+
+#: Implicit methods with machine code of their own for Jacobians, and solutions with one matrix.
+COMPILED, SOLVED = ("midpoint", "midpoint4", "midpoint6", "rodas5p"), 8
 
 #: A step that is made from outside of machine code, and looked at, as so many at most are (``trade.comparison``); one
 #: where switches or narrow loads are looked for.
@@ -64,8 +68,10 @@ def cost(dynamics: Dynamics, method: str, scalar: str, work: Work, looked_at: bo
         return work.evaluations * (INTERPRETED[method] + _operations(dynamics) * OPERATION) + besides
     operations = _operations(dynamics) * (COEFFICIENT if method == "taylor" else 1.0)
     whole = work.evaluations * (CALL + operations * OPERATION) * DEARER[scalar]
-    if method.startswith("midpoint"):  # its Jacobians are compiled: one is about as many right-hand sides as the state
-        return whole * (1 + len(dynamics.scenario.state) * work.jacobians / max(1, work.evaluations)) + besides
+    if method in COMPILED:  # a Jacobian is about as many right-hand sides as the state
+        size = len(dynamics.scenario.state)
+        linear = OPERATION * (size**3 / 3 + SOLVED * size**2)
+        return whole * (1 + size * work.jacobians / max(1, work.evaluations)) + work.jacobians * linear + besides
     return whole + work.jacobians * JACOBIAN + besides
 
 

@@ -61,13 +61,15 @@ class Variant:
 
 @dataclass(frozen=True)
 class ModelError:
-    """A variant with the error of its model against the most faithful one, and what it costs.
+    """The error of a model against the most faithful one, and what it costs.
 
-    ``operations`` are those of one right-hand side; ``seconds`` of the processor the median for the same
-    tolerance.
+    ``label``, ``neglected`` and ``rank`` are those of its ``Variant``; ``operations`` those of one right-hand side;
+    ``seconds`` of the processor the median for the same tolerance.
     """
 
-    variant: Variant
+    label: str
+    neglected: str
+    rank: int
     error: float
     operations: int
     evaluations: int
@@ -144,19 +146,19 @@ def measured(
     rows = []
     for variant, states, operations, evaluations, seconds, trouble in runs:
         largest = inf if states is None else float(np.max(np.abs(states - truth) / scale))
-        rows.append(
-            ModelError(variant, largest if isfinite(largest) else inf, operations, evaluations, seconds, trouble)
-        )
+        error = largest if isfinite(largest) else inf
+        named = variant.label, variant.neglected, variant.rank
+        rows.append(ModelError(*named, error, operations, evaluations, seconds, trouble))
     return tuple(rows)
 
 
 def model_advice(models: Sequence[ModelError], target: float) -> str:
     """How far the model that was simulated is from the most faithful one; empty where that is the same or unknown."""
-    own = next((row for row in models if row.variant.label == DESCRIBED), None)
-    best = max((row for row in models if not row.trouble), key=lambda row: row.variant.rank, default=None)
+    own = next((row for row in models if row.label == DESCRIBED), None)
+    best = max((row for row in models if not row.trouble), key=lambda row: row.rank, default=None)
     if own is None or best is None or best is own or own.trouble or not own.error > RESOLVED:
         return ""
-    far, rich = f"{own.error:.1e}", best.variant.label
+    far, rich = f"{own.error:.1e}", best.label
     text = Message("The model as described is [[error]] away from [[model]]", error=far, model=rich)
     if own.error > target:
         said = "[[what]]: an error of [[target]] is one of its equations, not of the motion."

@@ -6,7 +6,7 @@ differ is the error that the reference is said to have.
 extrapolation    in 160 bits, twice, with other columns and steps; between its steps an explicit method in extended
                  arithmetic, started anew at each of them, which has to arrive at the next one
 explicit         two methods in extended arithmetic that agree
-implicit         two methods of different order in float64 that agree (stiff scenes)
+implicit         two methods in float64 that agree, of Rosenbrock's kind and Radau's (stiff scenes)
 
 Two solutions that do not agree are no reference, whatever each of them says of itself.  What a search may cost is
 counted work: no clock decides which way is taken.
@@ -433,9 +433,8 @@ def _explicit(search: _Search) -> Reference:
 def _implicit(search: _Search) -> Reference:
     longest = search.longest
     failed: Breakdown | None = None
-    beside = "lsoda" if search.dynamics.constraints is None else "bdf"  # ODEPACK's does not keep to constraints
     for tolerance in (1e-12, 1e-9):
-        first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("radau", beside))
+        first, second = ((METHODS[name], Setting(tolerance, longest=longest)) for name in ("rodas5p", "radau"))
         try:
             return _agreeing(search, first, second, FLOAT64, IMPLICIT)
         except Breakdown as reason:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,11 +20,19 @@ class Conditions:
     """What vanishes at rest in one chart as polynomials, what must not vanish, and which coordinates occur.
 
     Under constraints that is one ``case`` of the rank of J, which elsewhere is ``rank``, where that is known.
+    ``parameters`` without numbers are unknowns, too.
     """
 
     def __init__(
-        self, chart: Chart, within: float, limits: Limits, case: Case | None = None, rank: int | None = None
+        self,
+        chart: Chart,
+        within: float,
+        limits: Limits,
+        case: Case | None = None,
+        rank: int | None = None,
+        parameters: tuple[str, ...] = (),
     ) -> None:
+        self.parameters = parameters
         self.chart, self.found, self.within, self.limits = chart, chart.found, within, limits
         self.case = case or Case(self.found.at_rest)
         self.ranks = (self.case.rank, rank)
@@ -107,7 +115,8 @@ class Conditions:
     def _obstacle(self, used: set[int]) -> str:
         """Why the equations are not polynomials in sines, cosines and plain coordinates; empty if they are."""
         ring = self.ring
-        pending, seen = list(used), set()
+        unknown = {ring.index("parameter", name) for name in self.parameters}
+        pending, seen = list(used - unknown), set()
         kinds: dict[str, set[str]] = {}
         while pending:
             k = pending.pop()
@@ -130,6 +139,8 @@ class Conditions:
                 pending += occurring([g.argument])
             elif g.kind in ("sine", "cosine", "coordinate"):
                 kinds.setdefault(g.name, set()).add("plain" if g.kind == "coordinate" else "angle")
+            elif g.name in self.parameters:
+                return Message("[[name]] stands in a root or a function", name=g.name)
             else:
                 return Message("[[name]] is transcendental", name=g.name)
         mixed = [name for name, both in kinds.items() if len(both) > 1]
@@ -178,12 +189,19 @@ Polynomials = tuple[Polynomial, ...]
 
 @dataclass(frozen=True)
 class Case:
-    """``left`` have to vanish at rest where ``zero`` vanish and ``nonzero`` do not: there J has this ``rank``."""
+    """``left`` have to vanish at rest where ``zero`` vanish and ``nonzero`` do not: there J has this ``rank``.
+
+    ``pivots``: their places (row of the table that is left, constraint), one after the other.
+    """
 
     left: Polynomials
     zero: Polynomials = ()
     nonzero: Polynomials = ()
-    rank: int = 0
+    pivots: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def rank(self) -> int:
+        return len(self.pivots)
 
 
 def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> Iterator[Case]:
@@ -192,8 +210,7 @@ def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> 
     ``possible``: False of (zero, nonzero) that no position has.  Raises NoClosedForm where there are too many.
     """
     ring = found.ring
-    table = [[*(row.partials[i] for row in found.rows), f] for i, f in enumerate(found.at_rest)]
-    pending: list[tuple[list[list[Polynomial]], Case]] = [(table, Case(()))]
+    pending: list[tuple[list[list[Polynomial]], Case]] = [(_table(found), Case(()))]
     looked_at = 0
     while pending:
         rows, case = pending.pop()
@@ -204,18 +221,33 @@ def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> 
             continue
         place = _pivot(rows)
         if place is None:
-            yield Case(tuple(row[-1] for row in rows), case.zero, case.nonzero, case.rank)
+            yield replace(case, left=tuple(row[-1] for row in rows))
             continue
         i, k = place
         pivot = rows[i][k]
         numerator, _ = ring.fraction(pivot)
-        if numerator.is_constant():
-            pending.append((_eliminated(ring, rows, i, k), Case((), case.zero, case.nonzero, case.rank + 1)))
-            continue
-        without = [[ring.zero if x == pivot or x == -pivot else x for x in row] for row in rows]
-        pending.append((without, Case((), (*case.zero, numerator), case.nonzero, case.rank)))
-        regular = Case((), case.zero, (*case.nonzero, numerator), case.rank + 1)
+        regular = replace(case, pivots=(*case.pivots, place))
+        if not numerator.is_constant():
+            without = [[ring.zero if x == pivot or x == -pivot else x for x in row] for row in rows]
+            pending.append((without, replace(case, zero=(*case.zero, numerator))))
+            regular = replace(regular, nonzero=(*case.nonzero, numerator))
         pending.append((_eliminated(ring, rows, i, k), regular))
+
+
+def near(found: Rest, case: Case) -> tuple[Polynomials, tuple[int, ...]]:
+    """What has to vanish at rest near positions of a case, and which constraints are independent there.
+
+    The pivots are those of the case, but what vanishes in it is not left out: so these may be differentiated.
+    """
+    rows = _table(found)
+    for i, k in case.pivots:
+        rows = _eliminated(found.ring, rows, i, k)
+    return tuple(row[-1] for row in rows), tuple(k for _, k in case.pivots)
+
+
+def _table(found: Rest) -> list[list[Polynomial]]:
+    """[J^T | f]."""
+    return [[*(row.partials[i] for row in found.rows), f] for i, f in enumerate(found.at_rest)]
 
 
 def _pivot(rows: Sequence[Sequence[Polynomial]]) -> tuple[int, int] | None:

@@ -80,30 +80,27 @@ REDUCTION = 4_000_000
 
 
 def equilibria(
-    system: System, values: Mapping[str, Value], within: float = WITHIN, limits: Limits | None = None
+    system: System,
+    values: Mapping[str, Value],
+    within: float = WITHIN,
+    limits: Limits | None = None,
+    rank: int | None = None,
 ) -> Equilibria:
     """All relative equilibria of a system at parameter values.
 
-    Raises KeyError for a missing value, NoClosedForm where the equations outgrow their budget, SingularPoint,
-    Constrained where no position keeps the constraints, they contradict one another, or tie what moves.
+    ``rank``: of the constraints near positions that keep them, where it is known.  Raises KeyError for a missing value,
+    NoClosedForm where the equations outgrow their budget, SingularPoint, Constrained where no position keeps the
+    constraints, they contradict one another, or tie what moves.
     """
     first = rest(at_numbers(system, values))
-    if first.tied_in_motion:
-        raise Constrained(
-            Message(
-                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
-                "looked for",
-                names=", ".join(first.tied_in_motion),
-            ),
-            remedy="'mbsym run' judges such a motion where the description gives it",
-        )
-    found = _listed(first, first.system, within, limits or Limits())
+    rank = rank_of(first) if rank is None else rank
+    found = _listed(first, first.system, within, limits or Limits(), rank)
     if found.complete or not found.families:
         return found
     symmetric, changed = with_cyclic_last_angles(first)
     if not changed:
         return found
-    counted = _listed(symmetric, first.system, within, limits or Limits())
+    counted = _listed(symmetric, first.system, within, limits or Limits(), rank)
     if not counted.complete:
         return found
     turns = (
@@ -115,7 +112,7 @@ def equilibria(
     return replace(counted, remarks=(*counted.remarks, *turns))
 
 
-def _listed(first: Rest, described_by: System, within: float, limits: Limits) -> Equilibria:
+def _listed(first: Rest, described_by: System, within: float, limits: Limits, rank: int | None) -> Equilibria:
     """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``."""
     remarks: list[str] = []
     found: list[Solution] = []
@@ -123,10 +120,9 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     complete = True
     uncounted: list[bool] = []
     covering = charts(first, described_by)
-    rank = _rank(first) if first.rows else None
     limits = replace(limits, reduction=REDUCTION) if first.rows and not limits.reduction else limits
     for chart in covering:
-        searches = list(_searches(chart, within, limits, rank))
+        searches = list(searches_of(chart, limits, rank, within))
         for search in searches:
             search.run()
             if families and chart.restrictions:
@@ -190,20 +186,36 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits) ->
     )
 
 
-def _rank(first: Rest) -> int:
-    """How many constraints are independent near positions that keep them.  Raises Constrained."""
+def rank_of(first: Rest) -> int | None:
+    """How many constraints are independent near positions that keep them; None where there are none.
+
+    Raises Constrained where no such position is found, they contradict one another, or tie what moves.
+    """
+    if not first.rows:
+        return None
     from mbsym.problems.constraints import constraints  # most systems have none
 
+    if first.tied_in_motion:
+        raise Constrained(
+            Message(
+                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+                "looked for",
+                names=", ".join(first.tied_in_motion),
+            ),
+            remedy="'mbsym run' judges such a motion where the description gives it",
+        )
     plain = first.system.without_speeds
     return constraints(Scene(plain, first.ring, ring_environment(plain, first.ring), first.ring)).velocity_rank
 
 
-def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> Iterator[_ChartSearch]:
-    """One search for each case of the rank of constraints."""
+def searches_of(
+    chart: Chart, limits: Limits, rank: int | None, within: float = WITHIN, parameters: tuple[str, ...] = ()
+) -> Iterator[_ChartSearch]:
+    """One search for each case of the rank of constraints; ``parameters`` are unknowns, too."""
     left_out, real = [], list[tuple[Polynomials, Polynomials]]()
 
     def possible(zero: Polynomials, nonzero: Polynomials) -> bool:
-        probe = _ChartSearch(chart, within, limits, Case((), zero, nonzero))
+        probe = _ChartSearch(chart, within, limits, Case((), zero, nonzero), parameters=parameters)
         there = probe.exists()
         if probe.is_real:
             real.append((zero, nonzero))
@@ -213,7 +225,7 @@ def _searches(chart: Chart, within: float, limits: Limits, rank: int | None) -> 
         return there
 
     for case in cases(chart.found, possible):
-        search = _ChartSearch(chart, within, limits, case, rank)
+        search = _ChartSearch(chart, within, limits, case, rank, parameters)
         search.is_real = (case.zero, case.nonzero) in real
         if left_out:
             search.leaves_out_singular()
@@ -289,7 +301,7 @@ class _ChartSearch(SearchInBoxes):
             self._add_free_point()
             return
         if self.reason:
-            self.remarks.append(Message("not solved exactly: [[why]]", why=self.reason))
+            self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
             self._search_numerically(bisect=True)
             return
         self._solve_exactly()

@@ -68,9 +68,15 @@ class Listing(Conditions):
     """Solutions of one chart, as they are found."""
 
     def __init__(
-        self, chart: Chart, within: float, limits: Limits, case: Case | None = None, rank: int | None = None
+        self,
+        chart: Chart,
+        within: float,
+        limits: Limits,
+        case: Case | None = None,
+        rank: int | None = None,
+        parameters: tuple[str, ...] = (),
     ) -> None:
-        super().__init__(chart, within, limits, case, rank)
+        super().__init__(chart, within, limits, case, rank, parameters)
         self.points: list[Solution] = []
         self.families: list[EquilibriumFamily] = []
         self.family_equations: list[list[Polynomial]] = []

@@ -155,7 +155,7 @@ class LinearAtRest:
         Y^T X Y,    Y^T (K - sum lambda_k dJ_k/dq) Y,    J Y = 0,    f + J^T lambda = 0
         """
         if not all(row.name.holonomic for row in self.found.rows):
-            return undecided(Because.NO_EQUATIONS, _OF_VELOCITIES)
+            return undecided(Because.NO_EQUATIONS, OF_VELOCITIES)
         numbers: Algebra[Any] = Balls({}) if place.modulus is None else NumberField(place.modulus, place.enclose)
         look = place.ball if place.modulus is None else place.residue
         n = len(self.found.system.coordinates)
@@ -277,7 +277,7 @@ def has_energy(found: Rest) -> bool:
         return False
 
 
-_OF_VELOCITIES = Message("constraints of velocities: 'mbsym run' judges a rest that the description gives")
+OF_VELOCITIES = Message("constraints of velocities: 'mbsym run' judges a rest that the description gives")
 _CONSTANTS = fmpq_mpoly_ctx.get(["unused"])
 
 

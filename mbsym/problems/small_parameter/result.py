@@ -8,7 +8,7 @@ from enum import Enum
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.algebra.quotients import Series
+from mbsym.algebra.quotients import Quotient, Series
 
 
 class Outcome(Enum):
@@ -18,6 +18,15 @@ class Outcome(Enum):
     FAILS = "fails"
     CONDITIONAL = "conditional"
     UNDECIDED = "undecided"
+
+
+class Choice(Enum):
+    """Which root of the lowest order an expansion begins at."""
+
+    ONLY = "only"
+    ON_MOTION = "on the motion"
+    ATTRACTING = "attracting"
+    FIRST = "first"
 
 
 @dataclass(frozen=True)
@@ -52,12 +61,33 @@ class SteadyStates:
     """The first approximation about a steady state on the manifold.
 
     det(S - A) = S^zeros slow(S) fast(S); ``remainder``: the order of eps to which slow(S) is seen to divide it.
+
+    ``free``: variables that may have any values while the others keep theirs, where every such state is steady and
+    they are as many as roots are zero: a set Omega of steady states.  Empty where none is seen.  By Lyapunov and Malkin
+    Omega is then asymptotically stable with respect to the other variables, and stabilizable, where all roots but the
+    zero ones have negative real parts: disturbed motions tend to points of Omega (V. V. Rumyantsev, A. S. Oziraner,
+    Stability and stabilization of motion with respect to a part of the variables, 1987).
     """
 
     zeros: int
     slow: Hurwitz
     fast: Hurwitz
     remainder: int
+    free: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Adjoined:
+    """rho = sqrt(``square``) under the name ``label`` at ``place``, where the generator ``instead`` stood before.
+
+    ``square`` is over the context without rho, ``value`` what ``instead`` is in that with rho.
+    """
+
+    label: str
+    place: int
+    instead: str
+    square: Polynomial
+    value: Quotient
 
 
 @dataclass(frozen=True)
@@ -66,6 +96,7 @@ class SlowManifold:
 
     ``functions``: h by name of the fast variables; ``flow`` by name of the slow ones; ``residuals``: for each fast
     variable the order of eps that is left when h, cut off, is put into the equations exactly (None: nothing is left).
+    ``root``: the square root in the coefficients, which ``field`` holds as one of its generators.
     """
 
     field: ScaledField
@@ -76,6 +107,7 @@ class SlowManifold:
     flow: tuple[Series, ...]
     residuals: tuple[int | None, ...]
     steady: SteadyStates | None = None
+    root: Adjoined | None = None
 
     @property
     def verified(self) -> bool:

@@ -1,20 +1,28 @@
-"""The lowest order of the equations of fast variables, solved: z = h_0(s), and the matrix L of derivatives there."""
+"""The lowest order of the equations of fast variables, solved: z = h_0(s), and the matrix L of derivatives there.
+
+A root that is a square root of slow variables or parameters, rho^2 = d, is made rational by another choice of these:
+where d is linear in one of them, d = a k + b, rho stands in the place of  k = (rho^2 - b)/a.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+from flint import fmpq_mpoly_ctx
+
+from mbsym.algebra.factors import irreducible_factors, occurring, square_apart
+from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.quotients import Quotient
-from mbsym.problems.small_parameter.result import ScaledField
+from mbsym.problems.small_parameter.result import Adjoined, ScaledField
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 
 
 @dataclass(frozen=True)
 class Root:
-    """g(s, z) = 0 at z = ``values``(s), the only root where ``determinant`` = det dg/dz there is not zero.
+    """g(s, z) = 0 at z = ``values``(s), where ``determinant`` = det dg/dz is not zero.
 
     ``inverse`` is that of the matrix dg/dz at the root.
     """
@@ -24,46 +32,139 @@ class Root:
     determinant: Quotient
 
 
-def root(there: ScaledField, fast: Sequence[int], constant: bool = False) -> Root | None:
-    """Of the rows ``fast`` at their lowest order; None where they do not determine these variables.
+@dataclass(frozen=True)
+class Roots:
+    """``known`` ones; ``squares``: what needs a square root for two more each; ``others``: how many are neither."""
+
+    known: tuple[Root, ...] = ()
+    squares: tuple[Polynomial, ...] = ()
+    others: int = 0
+
+    @property
+    def any(self) -> bool:
+        return bool(self.known or self.squares)
+
+
+def roots(there: ScaledField, fast: Sequence[int], constant: bool = False) -> Roots:
+    """Of the rows ``fast`` at their lowest order; none where they do not determine these variables.
 
     Equations are taken that are linear in one variable with a factor that holds no fast variable, one after the other;
-    what they give is put into the others.  With ``constant`` the matrix must be one of parameters alone.
+    what they give is put into the others.  Where none is left, one that holds a single fast variable is taken apart
+    into factors of degree 1 and 2.  With ``constant`` the matrix must be one of parameters alone.
     """
     first = len(there.field.parameters)
     if any(-there.scales[i] not in there.rows[i] for i in fast):
-        return None
+        return Roots()
     rows = [there.rows[i][-there.scales[i]] for i in fast]
     places = [first + i for i in fast]
     slopes = [[row.derivative(place) for place in places] for row in rows]
     if constant and any(any(x.degrees()[first:]) for line in slopes for x in line if x != 0):
-        return None
-    solved = _solved(rows, places)
-    if solved is None:
-        return None
-    matrix = [[put(x, solved) for x in line] for line in slopes]
-    found = inverse(matrix)
-    if found is None:
-        return None
-    inverted, determinant = found
-    return Root(tuple(solved[place] for place in places), tuple(map(tuple, inverted)), determinant)
+        return Roots()
+    known, squares, others = [], [], 0
+    for solved in _solutions([Quotient.of(row) for row in rows], places):
+        if isinstance(solved, int):
+            others += solved
+        elif isinstance(solved, dict):
+            found = inverse([[put(x, solved) for x in line] for line in slopes])
+            if found is not None:
+                inverted, determinant = found
+                known.append(Root(tuple(solved[k] for k in places), tuple(map(tuple, inverted)), determinant))
+        else:
+            squares.append(solved)
+    return Roots(tuple(known), tuple(squares), others)
 
 
-def _solved(rows: Sequence[Polynomial], places: Sequence[int]) -> dict[int, Quotient] | None:
-    """Values of the generators at ``places``, each free of all of them."""
-    left, unknown = [Quotient.of(row) for row in rows], list(places)
-    solved: dict[int, Quotient] = {}
-    while unknown:
-        chosen = _linear_in_one(left, unknown)
-        if chosen is None:
-            return None
+def _solutions(left: Sequence[Quotient], unknown: Sequence[int]) -> Iterator[dict[int, Quotient] | Polynomial | int]:
+    """Values of the generators ``unknown``, each free of all of them; what needs a square root; how many others."""
+    if not unknown:
+        yield {}
+        return
+    linear = _linear_in_one(left, unknown)
+    for chosen in [linear] if linear is not None else _by_factors(left, unknown):
+        if not isinstance(chosen, tuple):
+            yield chosen
+            continue
         at, place, value = chosen
-        left.pop(at)
-        unknown.remove(place)
-        left = [put(x.top, {place: value}) for x in left]
-        solved = {k: put(x.top, {place: value}) / put(x.bottom, {place: value}) for k, x in solved.items()}
-        solved[place] = value
-    return solved
+        further = [put(x.top, {place: value}) for k, x in enumerate(left) if k != at]
+        for solved in _solutions(further, [k for k in unknown if k != place]):
+            if not isinstance(solved, dict):
+                yield solved
+            elif not (below := put(value.bottom, solved)).is_zero:
+                yield solved | {place: put(value.top, solved) / below}
+
+
+def _by_factors(
+    left: Sequence[Quotient], unknown: Sequence[int]
+) -> Iterator[tuple[int, int, Quotient] | Polynomial | int]:
+    """What ``_linear_in_one`` gives, by the factors of the shortest equation that holds a single unknown one."""
+    held = [
+        (len(row.top), at, places[0])
+        for at, row in enumerate(left)
+        if len(places := [k for k in unknown if row.top.degrees()[k] > 0]) == 1
+    ]
+    if not held:
+        return
+    _, at, place = min(held)
+    for factor, exponent in irreducible_factors(left[at].top)[1]:
+        degree = factor.degrees()[place]
+        if degree < 1 or exponent > 1:  # of a multiple root L is singular
+            continue
+        slope = factor.derivative(place)
+        z = factor.context().gen(place)
+        if degree == 1:
+            yield at, place, Quotient.of(slope * z - factor, slope)
+        elif degree == 2:
+            a = slope.derivative(place) / 2
+            b = slope - 2 * a * z
+            yield square_apart(b**2 - 4 * a * (factor - a * z**2 - b * z))[1]
+        else:
+            yield int(degree)
+
+
+def adjoined(
+    field: PolynomialField, square: Polynomial, held: Collection[str]
+) -> tuple[PolynomialField, Adjoined] | None:
+    """The field with rho in the place of a parameter or variable k, rho^2 = ``square`` = a k + b, not one of ``held``.
+
+    With a variable in ``square`` it is one of those:  rho' = (d square/dt)/(2 rho).  None where there is no such k.
+    """
+    names, first = field.context.names(), len(field.parameters)
+    inside = occurring([square])
+    moving = [k for k in inside if k >= first]
+    linear = [k for k in moving or inside if names[k] not in held and square.degrees()[k] == 1]
+    if not linear:
+        return None
+    k = min(linear, key=lambda k: (len(square.derivative(k)), not square.derivative(k).is_constant()))
+    rho, slope = field.context.gen(k), square.derivative(k)
+    value = Quotient.of(rho**2 - (square - slope * rho), slope)
+    rates, below = [*field.numerators], field.denominator
+    if moving:
+        rates[k - first] = field.derivative(square)
+        rates = [x if i == k - first else x * 2 for i, x in enumerate(rates)]
+    moved = [put(x, {k: value}) for x in (below * 2 if moving else below, *rates)]
+    if moving:
+        moved = [x if i == k - first + 1 else x * Quotient.of(rho) for i, x in enumerate(moved)]
+    common = field.context.constant(1)
+    for x in moved:
+        common = common * (x.bottom / x.bottom.gcd(common))
+    cleared = [x.top * (common / x.bottom) for x in moved]
+    label = f"sqrt({square})"
+    context = fmpq_mpoly_ctx.get([label if i == k else name for i, name in enumerate(names)], field.context.ordering())
+
+    def renamed(p: Polynomial) -> Polynomial:
+        return context.from_dict(p.to_dict())
+
+    tops, bottom = in_lowest_terms(cleared[1:], cleared[0])
+    found = replace(
+        field,
+        context=context,
+        parameters=tuple(context.names()[:first]),
+        variables=tuple(context.names()[first:]),
+        numerators=tuple(map(renamed, tops)),
+        denominator=renamed(bottom),
+        relations=tuple(renamed(put(p, {k: value}).top) for p in field.relations),
+    )
+    return found, Adjoined(label, k, names[k], square, Quotient(renamed(value.top), renamed(value.bottom)))
 
 
 def _linear_in_one(left: Sequence[Quotient], unknown: Sequence[int]) -> tuple[int, int, Quotient] | None:

@@ -18,13 +18,15 @@ perturbations, Springer 2014, chapter 2.)
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 from itertools import combinations
+from operator import add
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Series
 from mbsym.expressions.message import Message
-from mbsym.problems.small_parameter.result import ScaledField
-from mbsym.problems.small_parameter.root import root
+from mbsym.problems.small_parameter.result import Adjoined, ScaledField
+from mbsym.problems.small_parameter.root import Root, Roots, roots
 
 #: Choices of fast variables that are looked at.
 MOST_CHOICES = 2000
@@ -55,7 +57,7 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
             if looked > MOST_CHOICES:
                 raise NoClosedForm("too many variables to find the fast ones among them", remedy=DECLARE)
             places = tuple(sorted((*swift, *chosen)))
-            if root(there, places, constant) is not None:
+            if roots(there, places, constant).any:
                 found.append(places)
         if len(found) > 1:
             told = "; ".join(", ".join(names[i] for i in one) for one in found[:3])
@@ -64,9 +66,24 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
             return tuple(names[i] for i in found[0])
     raise NoClosedForm(
         "the lowest order in the small parameter does not determine fast variables by slow ones: it is singular, or "
-        "not solved by equations that are linear in one of them",
+        "not solved by equations that are linear or quadratic in one of them",
         remedy=DECLARE,
     )
+
+
+def roots_of(there: ScaledField, fast: Sequence[str]) -> Roots:
+    """Where the lowest order of the equations of ``fast`` vanishes.  Raises NoClosedForm where that is not known."""
+    found = roots(there, [there.field.variables.index(name) for name in fast])
+    if not found.any:
+        raise NoClosedForm(
+            Message(
+                "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
+                "singular, or not solved by equations that are linear or quadratic in one of them",
+                small=there.small,
+                fast=", ".join(fast),
+            )
+        )
+    return found
 
 
 DECLARE = "declare them: 'small parameter: {eps: {fast: [x, y]}}'"
@@ -78,20 +95,11 @@ def _on(there: ScaledField, fast: Sequence[str]) -> Composition:
     return Composition(there.field.context, [first + there.field.variables.index(name) for name in fast])
 
 
-def manifold(there: ScaledField, fast: Sequence[str], order: int) -> list[Series]:
-    """h up to eps^order.  Raises NoClosedForm where the lowest order is not solved, or the steps do not settle."""
+def manifold(there: ScaledField, fast: Sequence[str], order: int, start: Root | None = None) -> list[Series]:
+    """h up to eps^order from the root ``start``, else the first.  Raises NoClosedForm where the steps do not settle."""
     variables = there.field.variables
     indices = [variables.index(name) for name in fast]
-    start = root(there, indices)
-    if start is None:
-        raise NoClosedForm(
-            Message(
-                "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
-                "singular, or not solved by equations that are linear in one of them",
-                small=there.small,
-                fast=", ".join(fast),
-            )
-        )
+    start = roots_of(there, fast).known[0] if start is None else start
     on = _on(there, fast)
     slow = [i for i in range(len(variables)) if i not in indices]
     functions = [Series.constant(value) for value in start.values]
@@ -143,11 +151,13 @@ def equations(
     return found
 
 
-def divisors(there: ScaledField, fast: Sequence[str], functions: Sequence[Series]) -> tuple[Polynomial, ...]:
+def divisors(
+    there: ScaledField, fast: Sequence[str], functions: Sequence[Series], start: Root | None = None
+) -> tuple[Polynomial, ...]:
     """What is not zero where the expansion holds: det L, and the denominator of the equations at eps = 0 on h_0."""
-    found = root(there, [there.field.variables.index(name) for name in fast])
+    start = roots_of(there, fast).known[0] if start is None else start
     below = _on(there, fast)(there.denominator, [one.up_to(1) for one in functions], 1).coefficients.get(0)
-    quotients = [one for one in (None if found is None else found.determinant, below) if one is not None]
+    quotients = [one for one in (start.determinant, below) if one is not None]
     parts = [p for one in quotients for p in (one.top, one.bottom)]
     return tuple(p for p in parts if not p.is_constant())
 
@@ -169,3 +179,17 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
         if name not in fast:
             found[name] = on(row, near, None).over(below, order + 1)
     return found
+
+
+def without_root(flow: dict[str, Series], root: Adjoined, names: Sequence[str]) -> dict[str, Series]:
+    """The flow with k' = sum_j dk/ds_j s_j' in place of rho', k the variable that rho stands for."""
+    if root.label not in flow:
+        return flow
+    rates = [
+        Series.constant(slope) * flow[name]
+        for name in flow
+        if not (slope := root.value.derivative(names.index(name))).is_zero
+    ]
+    total = reduce(add, rates)
+    named = {root.label: root.instead}
+    return {named.get(name, name): total if name in named else x for name, x in flow.items()}

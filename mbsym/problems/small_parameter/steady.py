@@ -90,7 +90,29 @@ def steady_states(
         if one.coefficients:
             raise NoClosedForm("the roots of the flow on the manifold are none of the system: the expansion is wrong")
     remainder = min((one.known for one in rest if one.known is not None), default=order + 1)
-    return SteadyStates(zeros, hurwitz(context, narrow), hurwitz(context, quotient), remainder)
+    free = _free(there, values)
+    return SteadyStates(
+        zeros, hurwitz(context, narrow), hurwitz(context, quotient), remainder, free if len(free) == zeros else ()
+    )
+
+
+def _free(there: ScaledField, values: Mapping[str, Quotient]) -> tuple[str, ...]:
+    """The variables of which every one, and all together, may have any values in a steady state, eps being what it is.
+
+    Empty where each may, but not all together: then Omega is no plane along axes.
+    """
+    field, first = there.field, len(there.field.parameters)
+    formulas = [p for row in there.rows for p in row.values()] + list(field.relations)
+
+    def steady(free: Sequence[str]) -> bool:
+        at = [
+            Quotient.of(x) if name in free else values[name]
+            for name, x in zip(field.variables, field.context.gens()[first:], strict=True)
+        ]
+        return all(_put(Quotient.of(p), first, at).is_zero for p in formulas)
+
+    free = tuple(name for name in field.variables if steady((name,)))
+    return free if steady(free) else ()
 
 
 def characteristic(context: object, matrix: Sequence[Sequence[Series]]) -> list[Series]:

@@ -79,7 +79,8 @@ class CriticalValue(Part, frozen=True):
     continuum: Annotated[bool, "whether some equilibria there are not isolated"]
     border: Annotated[
         bool,
-        "whether on some solution an unknown is at infinity, a root or denominator zero, or the mass matrix singular",
+        "whether on some solution an unknown is at infinity, a root or denominator zero, or the mass matrix or the "
+        "constraints singular",
     ]
     counts_agree: Annotated[
         bool | None, "whether the events account for the counts on both sides; null where there is nothing to compare"

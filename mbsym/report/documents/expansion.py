@@ -6,7 +6,7 @@ from typing import Annotated, Generic, TypeVar
 
 from msgspec import UNSET, UnsetType, field
 
-from mbsym.problems.small_parameter.result import Outcome
+from mbsym.problems.small_parameter.result import Choice, Outcome
 from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
 
 #: Text, or in results.json text or its length.
@@ -60,6 +60,16 @@ class Steady(Part, Generic[F], frozen=True):
     divided_up_to: Annotated[int, "up to this order the polynomial of the flow is seen to divide that of all variables"]
     attracts: Hurwitz[F]
     flow: Annotated[Hurwitz[F], "the roots of the flow on the manifold but those that are zero"]
+    free: Annotated[
+        list[str],
+        "variables that may have any values while the others keep theirs: then the state is steady; as many as roots "
+        "are zero, or none",
+    ]
+    stabilizable: Annotated[
+        Outcome | None,
+        "whether this set of steady states is asymptotically stable with respect to the other variables and disturbed "
+        "motions tend to its points (Rumyantsev), under the conditions of attracts and flow; null: no set is seen",
+    ]
 
 
 class Measured(Part, frozen=True):
@@ -71,6 +81,15 @@ class Measured(Part, frozen=True):
     distances: Annotated[list[float] | UnsetType, "largest distances as a part of the size"] = UNSET
     orders: Annotated[list[float] | UnsetType, "log2 of their ratios"] = UNSET
     expected: Annotated[int | UnsetType, "the order that is expected where eps is small enough"] = UNSET
+
+
+class Roots(Part, Generic[F], frozen=True, kw_only=True):
+    """solutions of the lowest order for the fast variables, where there are several"""
+
+    chosen: Annotated[Choice, "which of them the expansion begins with"]
+    others: Annotated[list[dict[str, F]], "the fast variables at the others"]
+    unknown: Annotated[int, "how many are neither rational nor square roots"]
+    positive: Annotated[list[F], "what stands under the square root and is positive where it is real"]
 
 
 class SlowManifold(Part, Generic[F], frozen=True, kw_only=True):
@@ -86,6 +105,7 @@ class SlowManifold(Part, Generic[F], frozen=True, kw_only=True):
     flow: Annotated[
         list[SlowVariable[F]], "derivatives of the slow variables on the manifold", told_apart_by("variable")
     ]
+    roots: Roots[F] | UnsetType = UNSET
     missing: Annotated[str | UnsetType, "why nothing is said of a steady state"] = UNSET
     steady: Steady[F] | UnsetType = UNSET
 

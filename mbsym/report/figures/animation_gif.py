@@ -1,7 +1,8 @@
-"""``animation.gif``: the moving system in a loop of some seconds, for slides and chats."""
+"""``animation.gif``: the moving system as it is drawn on paper, in a loop of some seconds, for slides and chats."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
 
@@ -9,22 +10,36 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mbsym.model.quantities import time_unit, with_unit
-from mbsym.picture.looking import projection
-from mbsym.report.figures.animation import Animation, dots, moving_points, view
+from mbsym.picture.sketch import Dot, Film, Ink, Mark, Place
+from mbsym.report.viewer.motion import moving_picture
+from mbsym.simulation import Simulation
 
 #: Pixels of the picture, how many times larger it is drawn, most frames, and seconds of the loop.
 WIDE, TALL, FINER, MOST, SECONDS = 560, 420, 2, 120, 6.0
 #: Hundredths of a second that a frame stands at least: viewers do not go faster.
 SHORTEST = 4
-PAPER, INK, SOFT = (255, 255, 255), (29, 36, 48), (120, 130, 145)
+#: Height of the words above.
+WORDS = 40
+#: Points between two of a smooth curve.
+SMOOTH = 4
+PAPER, INK, SOFT, TINT = (255, 255, 255), (29, 36, 48), (120, 130, 145), (226, 234, 244)
 PATHS = ((179, 55, 47), (46, 139, 87), (217, 130, 43), (142, 94, 162), (23, 162, 184), (122, 92, 62))
+THICK = {Ink.BODY: 4, Ink.GUIDE: 3, Ink.SOLID: 2, Ink.THIN: 1, Ink.HIDDEN: 1}
 
 
-def animation_gif(found: Animation) -> bytes:
-    """The file; the same animation gives the same bytes (with one version of Pillow)."""
-    chosen = np.unique(np.linspace(0, found.frames - 1, min(found.frames, MOST)).round().astype(int))
-    picture = _Picture(found)
-    frames = [picture.frame(int(k)) for k in chosen]
+def animation_gif(run: Simulation) -> bytes | None:
+    """The file; None where nothing can be drawn.  The same run gives the same bytes (with one version of Pillow)."""
+    found = moving_picture(run)
+    if found is None:
+        return None
+    picture, motion = found
+    film = Film(picture, run.system, motion.times, {**motion.coordinates, **motion.velocities})
+    count = len(motion.times)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
+    drawn = _Picture(film, [int(k) for k in chosen], run)
+    if not drawn.size > 0:
+        return None
+    frames = [drawn.frame(k) for k in drawn.marks]
     each = max(SHORTEST, round(100 * SECONDS / len(frames)))
     palette = frames[-1].quantize(64, Image.Quantize.MEDIANCUT)
     shown = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
@@ -34,68 +49,68 @@ def animation_gif(found: Animation) -> bytes:
 
 
 class _Picture:
-    def __init__(self, found: Animation) -> None:
-        self.found = found
-        look = np.array(projection(view(found.positions)))
-        self.flat = np.einsum("ij,pjm->pim", look, found.positions.places)
-        self.bodies = [(np.einsum("ij,pjm->pim", look, item.axes), look @ item.places) for item in found.ellipsoids]
-        self.look = look
-        low, high = np.min(self.flat[:, :2], axis=(0, 2)), np.max(self.flat[:, :2], axis=(0, 2))
-        for axes, place in self.bodies:
-            reach = np.sqrt(np.sum(axes[:, :2] ** 2, axis=0))
-            low = np.minimum(low, np.min(place[:2] - reach, axis=1))
-            high = np.maximum(high, np.max(place[:2] + reach, axis=1))
-        for outline in found.outlines:
-            place = (look @ outline.places)[:2]
-            low = np.minimum(low, np.min(place - outline.reach, axis=1))
-            high = np.maximum(high, np.max(place + outline.reach, axis=1))
+    def __init__(self, film: Film, chosen: Sequence[int], run: Simulation) -> None:
+        self.run, self.film = run, film
+        self.marks: dict[int, Sequence[Mark]] = {k: film.marks(k) for k in chosen}
+        points = [point for marks in self.marks.values() for mark in marks for point in _points(mark)]
+        points += [point for path in film.paths for point in path]
+        every = np.array(points or [(0.0, 0.0)])
+        low, high = np.min(every, axis=0), np.max(every, axis=0)
         self.middle = (low + high) / 2
-        size = np.maximum(high - low, 1e-12 * max(1.0, float(np.max(np.abs(high)))))
-        self.scale = 0.86 * FINER * min(WIDE / float(size[0]), (TALL - 40) / float(size[1]))
+        room = np.maximum(high - low, 1e-9)
+        self.size = float(np.max(high - low))
+        self.scale = 0.9 * FINER * min(WIDE / float(room[0]), (TALL - WORDS) / float(room[1]))
         try:
             self.font: Any = ImageFont.load_default(size=13 * FINER)
         except TypeError:  # Pillow before 10.1 has one size only
             self.font = ImageFont.load_default()
 
-    def at(self, places: Any) -> list[tuple[float, float]]:
-        """Pixels of (2 or 3, n) on the paper."""
-        x = FINER * WIDE / 2 + self.scale * (places[0] - self.middle[0])
-        y = FINER * (TALL + 26) / 2 - self.scale * (places[1] - self.middle[1])
-        return list(zip(map(float, np.atleast_1d(x)), map(float, np.atleast_1d(y)), strict=True))
+    def at(self, places: Sequence[Place]) -> list[tuple[float, float]]:
+        """Pixels."""
+        x0, y0 = FINER * WIDE / 2, FINER * (TALL + 26) / 2
+        return [(x0 + self.scale * (x - self.middle[0]), y0 - self.scale * (y - self.middle[1])) for x, y in places]
 
     def frame(self, k: int) -> Image.Image:
         """One frame, drawn finer and made smaller: its lines are smooth then."""
         image = Image.new("RGB", (FINER * WIDE, FINER * TALL), PAPER)
         draw = ImageDraw.Draw(image)
-        for number, (i, _) in enumerate(moving_points(self.found.positions)):
-            path = self.at(self.flat[i, :, : k + 1])
-            if len(path) > 1:
-                draw.line(path, fill=PATHS[number % len(PATHS)], width=FINER)
-        around = np.linspace(0, 2 * np.pi, 49)
-        for axes, place in self.bodies:
-            for p, q in ((0, 1), (1, 2), (2, 0)):
-                ring = (
-                    place[:, k, None]
-                    + np.outer(axes[p, :, k], np.cos(around))
-                    + np.outer(axes[q, :, k], np.sin(around))
-                )
-                draw.line(self.at(ring), fill=SOFT, width=FINER)
-        for outline in self.found.outlines:
-            for line in outline.at(k):
-                draw.line(self.at(self.look @ line), fill=SOFT, width=FINER)
-        drawn = self.found.positions
-        for pairs, width in ((drawn.slides, FINER), (drawn.links, 3 * FINER)):
-            for i, j in pairs:
-                draw.line(self.at(self.flat[[i, j], :, k].T), fill=INK, width=width)
-        joints, centres = dots(drawn)
-        for points, radius, fill in ((joints, 3, PAPER), (centres, 4, INK)):
-            for i in points:
-                (x, y), r = self.at(self.flat[i, :, k])[0], radius * FINER
+        for number, path in enumerate(self.film.paths):
+            if k > 0:
+                draw.line(self.at(path[: k + 1]), fill=PATHS[number % len(PATHS)], width=FINER)
+        for mark in self.marks[k]:
+            if isinstance(mark, Dot):
+                ((x, y),), r = self.at([mark.place]), max(2.0 * FINER, self.scale * mark.radius)
+                fill = PAPER if mark.open else INK
                 draw.ellipse((x - r, y - r, x + r, y + r), fill=fill, outline=INK, width=FINER)
-        name = drawn.system.name
+                continue
+            points = self.at(_smooth(mark.points, mark.closed) if mark.smooth else mark.points)
+            if mark.closed:
+                points = [*points, points[0]]
+            if mark.tinted:
+                draw.polygon(points, fill=TINT)
+            ink = SOFT if mark.ink in (Ink.THIN, Ink.HIDDEN) else INK
+            draw.line(points, fill=ink, width=THICK[mark.ink] * FINER, joint="curve")
+        name = self.run.system.name
         title = name if len(name) <= 44 else name[:43] + "\u2026"
         printable = "".join(c if 32 <= ord(c) < 127 else "?" for c in title.replace("\u2026", "..."))
         draw.text((10 * FINER, 7 * FINER), printable, fill=INK, font=self.font)
-        now = with_unit(f"t = {float(self.found.times[k]):.3g}", time_unit(drawn.system))
+        now = with_unit(f"t = {self.film.times[k]:.3g}", time_unit(self.run.system))
         draw.text((10 * FINER, 24 * FINER), now, fill=SOFT, font=self.font)
         return image.reduce(FINER)
+
+
+def _points(mark: Mark) -> list[Place]:
+    if not isinstance(mark, Dot):
+        return list(mark.points)
+    (x, y), r = mark.place, mark.radius
+    return [(x - r, y - r), (x + r, y + r)]
+
+
+def _smooth(points: Sequence[Place], closed: bool) -> list[Place]:
+    """A curve through points: Catmull and Rom's cubics."""
+    own = np.array(points)
+    every = np.concatenate((own[-1:], own, own[:2]) if closed else (own[:1], own, own[-1:]))
+    a, b, c, d = (every[i : len(every) - 3 + i, None, :] for i in range(4))
+    s = (np.arange(SMOOTH) / SMOOTH)[:, None]
+    curve = b + s * ((c - a) / 2 + s * (a - 2.5 * b + 2 * c - d / 2 + s * (1.5 * (b - c) + (d - a) / 2)))
+    return [(float(x), float(y)) for x, y in (*curve.reshape(-1, 2), *(() if closed else own[-1:]))]

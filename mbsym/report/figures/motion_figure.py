@@ -21,8 +21,8 @@ from mbsym.expressions.message import Message
 from mbsym.model.quantities import length_unit, time_unit, with_unit
 from mbsym.model.system import INERTIAL
 from mbsym.numerics.positions import AXIS, JOINT, Positions
-from mbsym.picture.looking import projection
-from mbsym.report.figures.animation import view
+from mbsym.picture.looking import looked_at, projection
+from mbsym.picture.values import View
 from mbsym.report.figures.drawing import pictures, spoken, thinned, title_of
 from mbsym.report.outlines import Outline
 from mbsym.report.unit_text import labelled, pretty
@@ -59,6 +59,11 @@ def motion_figures(
         title = title_of(found.system, number + 1, len(pages))
         drawings[name] = lambda page=page, title=title: _histories(found, page, title, note)  # type: ignore[misc]
     return pictures(drawings, formats)
+
+
+def view(found: Positions) -> View:
+    """The first look: into the plane of a plane motion, else from above."""
+    return looked_at(found.up, None if found.plane is None else found.plane - 1)
 
 
 # --- the picture ---

@@ -92,7 +92,7 @@ def _drawn(system: System, until: float, found: Tradeoff, target: float, models:
     if found.smallest_judged > finest / 100:
         _line(axes, found.smallest_judged, GREY, say("limit of the reference"))
     for model in _drawable(models):
-        _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.variant.label)))
+        _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.label)))
     # Patterns of lines need some length to be told apart.
     figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
     return figure

@@ -17,14 +17,22 @@ from markupsafe import Markup
 from mbsym.report.environment import compiled, templates
 
 
-def page(template: str, known: Mapping[str, Callable[..., Any]], scripts: tuple[str, ...], **values: Any) -> str:
+def page(
+    template: str,
+    known: Mapping[str, Callable[..., Any]],
+    scripts: tuple[str, ...],
+    bundle: tuple[str, str] = ("", ""),
+    **values: Any,
+) -> str:
     """A template of ``mbsym_templates/html`` filled in; ``known`` are the functions that it may call.
 
-    ``scripts`` names the files of that folder that the page runs.  An unknown name in a template is an error.
+    ``scripts`` names the files of that folder that the page runs, ``bundle`` is a (script, style) that it has besides.
+    An unknown name in a template is an error.
     """
     folder = templates() / "html"
-    style = "".join((folder / name).read_text(encoding="utf-8") for name in ("page.css", "pictures.css"))
-    code = [(folder / name).read_text(encoding="utf-8") for name in scripts]
+    more, own = bundle
+    style = own + "".join((folder / name).read_text(encoding="utf-8") for name in ("page.css", "pictures.css"))
+    code = [(folder / name).read_text(encoding="utf-8") for name in scripts] + [more] * bool(more)
     values |= {
         "style": Markup(style),
         "scripts": [Markup(text) for text in code],

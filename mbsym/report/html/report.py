@@ -14,8 +14,7 @@ from markupsafe import Markup, escape
 from mbsym import __version__
 from mbsym.expressions.message import Message, counted
 from mbsym.expressions.tree import text
-from mbsym.formulas.mathml import letter, mathml_names
-from mbsym.formulas.names import parts
+from mbsym.formulas.mathml import mathml_names, spelled_name
 from mbsym.model.system import System
 from mbsym.problems import NUMBERS
 from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
@@ -29,7 +28,6 @@ from mbsym.source.yaml_writer import meaning
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.report.figures.animation_page import Motion
 
 
 #: The order of the sections: as a reader wants them, as in report.tex.
@@ -41,9 +39,13 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     motion, no_motion = asked_motion(
         analysis.system, analysis.animate, Language(analysis.language or analysis.system.language)
     )
-    scripts = ("report.js", "motion.js") if motion is not None else ("report.js",)
     known, values = context(analysis, problems)
-    return page("report.html.j2", known, scripts, motion=motion, no_motion=no_motion, **values)
+    viewer = ("", "")
+    if motion is not None:
+        from mbsym.report.viewer.page import bundle
+
+        viewer = bundle()
+    return page("report.html.j2", known, ("report.js",), viewer, motion=motion, no_motion=no_motion, **values)
 
 
 def context(
@@ -91,14 +93,13 @@ def title_in(analysis: Analysis, part: int | str) -> Markup:
 # The motion in ``report.html``: integrated only where that was asked for, and told why there is none.
 
 
-def asked_motion(system: System, time: float | None, language: Language) -> tuple[Motion | None, str]:
-    """(the motion from 0 to ``time``, "") or (None, why there is none); (None, "") where it was not asked for."""
+def asked_motion(system: System, time: float | None, language: Language) -> tuple[Markup | None, str]:
+    """What the viewer reads of the motion from 0 to ``time``, or None and why; (None, "") where it is not asked for."""
     if time is None:
         return None, ""
     from mbsym.algebra.failures import Failure, message_of
     from mbsym.numerics.scenario import Incomplete, scenario
-    from mbsym.report.figures.animation import animation
-    from mbsym.report.figures.animation_page import run_motion
+    from mbsym.report.viewer.page import run_data
     from mbsym.simulation import Request, simulate
     from mbsym.simulation.request import COORDINATES
 
@@ -106,9 +107,8 @@ def asked_motion(system: System, time: float | None, language: Language) -> tupl
         run = simulate(scenario(system), Request(time, variables=COORDINATES))
     except (Incomplete, Failure) as reason:
         return None, language.say(message_of(reason))
-    found = animation(run)
-    nothing = language.say(Message("no body has a place that could be drawn"))
-    return (None, nothing) if found is None else (run_motion(found, run, language), "")
+    data = run_data(run)
+    return data, "" if data is not None else language.say(Message("no body has a place that could be drawn"))
 
 
 # The interconnection of the bodies as SVG, drawn from its layout; text of the page's own fonts and colours.
@@ -222,19 +222,13 @@ def _loads(found: Interconnection) -> Iterator[str]:
         yield f'<text class="load middle" x="{x:g}" y="{y:g}">{escape(load.kind)}</text>'
 
 
-_SUBSCRIPTS = str.maketrans("0123456789", "\u2080\u2081\u2082\u2083\u2084\u2085\u2086\u2087\u2088\u2089")
-
-
 def _readable(words: str) -> str:
     """An expression with Greek letters, indices that are numbers below the line, and a proper minus."""
-    return re.sub(r"[A-Za-z_]\w*", lambda found: _name(found[0]), words).replace("-", "\u2212").replace("*", "\u2009")
-
-
-def _name(name: str) -> str:
-    split = parts(name)
-    if not all(piece.isdigit() for piece in split.indices):
-        return name
-    return (letter(split.greek) if split.greek else split.stem) + "".join(split.indices).translate(_SUBSCRIPTS)
+    return (
+        re.sub(r"[A-Za-z_]\w*", lambda found: spelled_name(found[0]), words)
+        .replace("-", "\u2212")
+        .replace("*", "\u2009")
+    )
 
 
 # Parts of ``report.html`` one by one, as fragments for a page that fills while results are derived.

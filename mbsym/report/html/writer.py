@@ -29,7 +29,7 @@ from mbsym.formulas.mathml import (
 )
 from mbsym.formulas.mathml import row as bracketed_row
 from mbsym.formulas.names import greek
-from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.straight_line import Dialect, short_listing
 from mbsym.formulas.told import Told
 from mbsym.picture.sketch import Dot, Mark, Place, Sketch
 from mbsym.report import content
@@ -425,9 +425,10 @@ class Writer:
     @block.register
     def _(self, value: content.Steps) -> Markup:
         same = {name: name for name in value.names} | {"pi": "pi"}
-        body = listing(value.program, [node for _, node in value.results], same, _DIALECT)
-        if len(body.assignments) > PAPER_PROGRAM:
-            return Markup("<p>{}</p>").format(self.said(program_not_printed(len(body.assignments))))
+        nodes = [node for _, node in value.results]
+        body = short_listing(value.program, nodes, same, _DIALECT, PAPER_PROGRAM)
+        if body is None:
+            return Markup("<p>{}</p>").format(self.said(program_not_printed(value.program, nodes)))
         called = [(_PLAIN.inline(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
         lines = "\n".join(f"{left} = {right}" for left, right in [*body.assignments, *called])
         return Markup("<details><summary>{}</summary>\n<pre>{}</pre></details>").format(self.said(value.title), lines)

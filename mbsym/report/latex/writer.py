@@ -15,7 +15,7 @@ from mbsym.expressions.message import GAP, Message, Said, pieces
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import LatexNames, latex_matrix, latex_names, latex_symbol, latex_text
-from mbsym.formulas.straight_line import Dialect, listing
+from mbsym.formulas.straight_line import Dialect, short_listing
 from mbsym.formulas.told import Told
 from mbsym.model.system import System
 from mbsym.picture.sketch import Dot, Mark, Sketch
@@ -387,9 +387,10 @@ class Writer:
     @block.register
     def _(self, value: content.Steps) -> str:
         names = {name: self.math(item) for name, item in value.names.items()} | {"pi": r"\pi"}
-        body = listing(value.program, [node for _, node in value.results], names, _DIALECT)
-        if len(body.assignments) > PAPER_PROGRAM:
-            return self._display(f"\\text{{({self.said(program_not_printed(len(body.assignments)))})}}")
+        nodes = [node for _, node in value.results]
+        body = short_listing(value.program, nodes, names, _DIALECT, PAPER_PROGRAM)
+        if body is None:
+            return self._display(f"\\text{{({self.said(program_not_printed(value.program, nodes))})}}")
         called = [(self.math(symbol), text) for (symbol, _), text in zip(value.results, body.results, strict=True)]
         return "\n".join(self._display(f"{left} = {right}") for left, right in [*body.assignments, *called])
 

@@ -213,6 +213,7 @@ _DOUBTS = {
 }
 
 _BORDER = "equilibria at infinity or at a border (a root or denominator is zero, or the mass matrix singular)"
+_RANK_LOST = "equilibria in positions in which the constraints are singular"
 _CHANGE = "the verdict of a branch changes"
 _DIFFER = "the verdicts at the samples on both sides differ"
 
@@ -234,7 +235,7 @@ def critical_words(found: Branches, at: Cell) -> str:
         return Message(EVENTS[Event.DEGENERATE])
     parts = [event_words(one.events)] if one.events else []
     if found.leaves(at) and not one.continuum:
-        parts.append(Message(_BORDER))
+        parts.append(Message(_RANK_LOST if one.rank_lost else _BORDER))
     if found.verdict_changes(at) and not parts and not found.count_changes(at):
         parts.append(Message(_CHANGE if found.certain(at) else _DIFFER))
     if not parts and found.happens(at):

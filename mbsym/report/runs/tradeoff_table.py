@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf, isfinite
 from typing import Any
 
@@ -46,7 +47,7 @@ def fidelity_csv(rows: Sequence[ModelError]) -> str:
     """One row a model."""
     lines = []
     for row in rows:
-        what = (row.variant.label, row.variant.neglected)
+        what = (row.label, row.neglected)
         lines.append((*what, _number(row.error), row.operations, row.evaluations, _number(row.seconds), row.trouble))
     return text_table(MODEL_COLUMNS, lines)
 
@@ -73,6 +74,23 @@ def _row(row: Measured, tied: bool) -> Sequence[object]:
 
 def _number(value: float) -> str:
     return f"{value:.17g}" if isfinite(value) else ""
+
+
+def compared(found: Sequence[tuple[str, Tradeoff, float]]) -> list[tuple[str, ...]]:
+    """Cells for the terminal, a line a scene (name, what was measured, target): what reaches the target in least time.
+
+    Where nothing does it is the most accurate setting; nothing is said of a scene of which no run came to the end.
+    """
+    lines = []
+    for name, trade, target in found:
+        best = trade.cheapest(target) if target >= trade.smallest_judged else None
+        row = best or min(trade.rows, key=lambda one: one.error, default=None)
+        if row is None or not isfinite(row.error):
+            lines.append((name, *[""] * 7, Message("no")))
+            continue
+        method, setting, error, _, *rest = shown([replace(row, strayed=None)], trade.smallest_judged)[0]
+        lines.append((name, method, setting, error, *rest[:-1], Message("no") if best is None else Message("yes")))
+    return lines
 
 
 def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, ...]]:
@@ -114,5 +132,5 @@ def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:
         error = (
             worded(row.trouble) if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
         )
-        lines.append((row.variant.label, row.variant.neglected, error, str(row.operations), duration(row.seconds)))
+        lines.append((row.label, row.neglected, error, str(row.operations), duration(row.seconds)))
     return lines

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import fields, is_dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from mbsym.algebra.factors import rational_ratio
+from mbsym.algebra.factors import occurring, rational_ratio
 from mbsym.expressions.message import worded
+from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
 from mbsym.model.system import INERTIAL, System
@@ -21,6 +23,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
+    Beside,
     Block,
     Drawing,
     Emphasis,
@@ -43,6 +46,7 @@ from mbsym.report.content import (
     named,
     say,
 )
+from mbsym.report.letters import letters_of
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.energy import is_felt
 from mbsym.report.sections.equations import is_short, short_equations
@@ -50,7 +54,7 @@ from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.integrals import CONSTANT
 from mbsym.report.sections.stability import condition_keys, label_of
 from mbsym.report.sections.system import unperturbed_motion
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, titles, verdict, where
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, names_in, titles, verdict, where
 from mbsym.report.words.stabilisation_words import controllability
 
 if TYPE_CHECKING:
@@ -60,6 +64,9 @@ if TYPE_CHECKING:
 
 #: More conditions of a case, cases of a subsystem, coordinates of a motion are left to the problems.
 MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
+
+#: More letters, or what they stand for in more characters, are left to problem 5.
+MOST_LETTERS, LONGEST_MEANINGS = 12, 200
 
 #: Nor is a position told by more coordinates.
 MOST_DRAWN = 6
@@ -74,7 +81,7 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
     yield from drawing(results.analysis)
-    yield finding(results)
+    yield Beside(names_in(results.analysis.claims, results.system), (finding(results),))
 
 
 def drawing(analysis: Analysis) -> tuple[Drawing, ...]:
@@ -120,7 +127,8 @@ def _facts(results: Results) -> Iterator[Fact]:
     if 6 in found:
         if found[6].numerical is not None:
             yield Fact(Said("At given values"), (_at_values(found[6], system),))
-        yield Fact(Said("Stability"), tuple(_stability(found[6], results)))
+        lines = tuple(_stability(found[6], results))
+        yield Fact(Said("Stability"), (*lines, *_meanings(lines, system)))
     if 8 in found and found[8].control:
         yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(found[8])))
     if 7 in found:
@@ -209,6 +217,27 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
 
 
+def _meanings(lines: Iterable[Inline], system: System) -> Iterator[Inline]:
+    """What the author's letters in the conditions stand for; where that is long, where it is told."""
+    meant = letters_of(system).definitions(_names(lines))
+    if len(meant) > MOST_LETTERS or sum(len(text(value)) for _, value in meant) > LONGEST_MEANINGS:
+        yield Link(say("[[letters]]: letters of problem 5", letters=named(name for name, _ in meant)), "problem-5")
+    elif meant:
+        definitions = joined((Relation(Name(name), "=", value) for name, value in meant), ", ")
+        yield say("where [[definitions]]", definitions=definitions)
+
+
+def _names(part: object) -> set[str]:
+    """The names in the formulas of a line, however deep they stand in it."""
+    if isinstance(part, Formula):
+        return {part.ring.generators[k].name for k in occurring([part.polynomial])}
+    if isinstance(part, Said):
+        return _names(tuple(part.gaps.values()))
+    if isinstance(part, tuple | list):
+        return set().union(*map(_names, part))
+    return _names([getattr(part, x.name) for x in fields(part)]) if is_dataclass(part) else set()
+
+
 def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
     theory = part.theory
@@ -276,7 +305,8 @@ def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition
     if len(either) > 1 and not every and [one.parts for one, _ in either] == [_reversed(one) for one, _ in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    of = next(((" (", Said("characteristic polynomial"), ")") for one, _ in (*every, *either) if _is_named(one)), ())
+    place = (" (", Link(Said("characteristic polynomial, problem 6"), "problem-6"), ")")
+    of = place if any(_is_named(one) for one, _ in (*every, *either)) else ()
     told = joined((Phrase((one, *number)) for one, number in every), ", ")
     others = joined((Phrase((one, *number)) for one, number in either), " ", Said("or"), " ")
     conditions = Phrase((told, *between, others, *of))

@@ -13,7 +13,7 @@ from mbsym.analysis.small import Averaging, SmallParameters
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.result import Outcome
+from mbsym.problems.small_parameter.result import Choice, Outcome
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 SERIES = (
     "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]] as functions of the slow "
     "ones [[slow]], and the flow on it. The coefficient of the power $k$ of [[small]] has the index $(k)$."
+)
+CONSTANTS = (
+    "Slow integral manifold up to order [[order]] of [[small]]: the fast variables [[fast]], which depend on no slow "
+    "one. The coefficient of the power $k$ of [[small]] has the index $(k)$."
 )
 NOTHING = (
     "The description names no small parameter, and no prescribed quantity has a parameter as its rate: nothing is "
@@ -66,6 +70,41 @@ class Coefficient:
         return Relation(Raised(Name(self.variable, self.rate), self.order), "=", self.formula)
 
 
+@dataclass(frozen=True)
+class Sums:
+    """Functions called ``name``: of every variable in ``series``, by its own name and with its rate in primes,
+
+        x = sum_k small^k parts[k],
+
+    where the ``phase``, if there is one, is the time by the sum that is called after it.
+    """
+
+    name: str
+    small: str
+    series: tuple[tuple[str, tuple[tuple[int, Formula], ...]], ...]
+    phase: str = ""
+
+
+def sum_of_powers(parts: Iterable[tuple[int, str]], small: str, power: str) -> str:
+    """Terms written as (coefficient)*small**k."""
+    factors = {0: "", 1: f"*{small}"}
+    return " + ".join(
+        f"({x}){factors.get(k, f'*{small}{power}{k}' if k > 0 else f'*{small}{power}({k})')}" for k, x in parts
+    )
+
+
+def summed(
+    name: str, small: str, listed: Iterable[Coefficient], powers: Iterable[tuple[str, int]] = (), phase: str = ""
+) -> Sums:
+    """The sums of which coefficients are told; a variable x with a power stands for x times that of ``small``."""
+    series: dict[str, list[tuple[int, Formula]]] = {}
+    shift = {without_velocity(variable): power for variable, power in powers}
+    for x in listed:
+        parts = series.setdefault(x.variable + "'" * (x.rate if x.variable != phase else 0), [])
+        parts.append((x.order + shift.get(x.variable, 0), x.formula))
+    return Sums(name, small, tuple((key, tuple(parts)) for key, parts in series.items()), phase)
+
+
 _FAST = {
     Outcome.HOLDS: "The manifold attracts near this motion for all sufficiently small $[[small]] > 0$ (proved: "
     "Hurwitz's minors of the fast roots, by their first coefficients).",
@@ -96,6 +135,18 @@ _SLOW = {
     Outcome.UNDECIDED: "Whether the roots of the flow on it have negative real parts is undecided: a Hurwitz minor "
     "vanishes to the order of the expansion, or has no sign.",
 }
+#: Of a set of steady states.
+_OMEGA = {
+    Outcome.HOLDS: "For all sufficiently small $[[small]] > 0$ it is asymptotically stable with respect to [[others]] "
+    "near this motion, and stabilizable (Rumyantsev): disturbed motions tend to points of $\\Omega$ "
+    "(Lyapunov-Malkin).",
+    Outcome.CONDITIONAL: "For all sufficiently small $[[small]] > 0$ it is asymptotically stable with respect to "
+    "[[others]] near this motion, and stabilizable (Rumyantsev), where [[conditions]]: disturbed motions tend to "
+    "points of $\\Omega$ (Lyapunov-Malkin).",
+    Outcome.FAILS: "It is not stable with respect to [[others]] near this motion for any sufficiently small "
+    "$[[small]] > 0$: a root has a positive real part.",
+    Outcome.UNDECIDED: "Whether it is stable with respect to [[others]] near this motion is undecided.",
+}
 
 
 def coefficients(found: Expansion) -> Iterator[Coefficient]:
@@ -124,7 +175,8 @@ def opening(found: Expansion) -> Iterator[Said]:
     small = Name(manifold.field.small)
     yield from scaled(manifold.field.powers, manifold.field.small)
     fast, slow = (tuple(_variable(found, name) for name in names) for names in (manifold.fast, manifold.slow))
-    yield say(SERIES, order=str(manifold.order), small=small, fast=fast, slow=slow)
+    gaps: Gaps = {"order": str(manifold.order), "small": small, "fast": fast}
+    yield Said(SERIES, gaps | {"slow": slow}) if slow else Said(CONSTANTS, gaps)
 
 
 def _variable(found: Expansion, name: str) -> Name:
@@ -150,6 +202,9 @@ def sentences(found: Expansion) -> Iterator[Said]:
         )
     else:
         yield Said("Put into the equations at a random rational state, it leaves nothing (verified).", values)
+    yield from _choice(found)
+    if found.real:
+        yield say("It is real where [[conditions]].", conditions=_told(found, found.real))
     if found.provided:
         yield say(
             "It holds where these are not zero, which were divided by: [[provided]].",
@@ -165,6 +220,8 @@ def sentences(found: Expansion) -> Iterator[Said]:
         outcome, conditions = found.slow
         told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
         yield Said(told[outcome], values | {"conditions": _told(found, conditions)})
+    elif manifold.steady.free:
+        yield Said("All roots of the flow on it are zero.")
     elif manifold.steady.zeros:
         yield Said("All roots of the flow on it are zero: the first approximation decides nothing there.")
     yield Said(
@@ -172,6 +229,7 @@ def sentences(found: Expansion) -> Iterator[Said]:
         "[[known]] (verified).",
         values | {"known": str(manifold.steady.remainder - 1)},
     )
+    yield from _of_set(found, manifold.steady.free, values)
     if found.fast[0] is Outcome.FAILS:  # a negative minor: a root to the right, whatever the flow on the manifold does
         yield Said(
             "A fast root has a positive real part: this motion is unstable for all sufficiently small $[[small]] > 0$.",
@@ -184,6 +242,55 @@ def sentences(found: Expansion) -> Iterator[Said]:
         "from this: at given values problem 6 decides.",
         values,
     )
+
+
+_CHOICE = {
+    Choice.ON_MOTION: "At the lowest order the fast variables have solutions; their number: [[count]]. This one holds "
+    "the unperturbed motion.",
+    Choice.ATTRACTING: "At the lowest order the fast variables have solutions; their number: [[count]]. This one "
+    "attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the fast rate by [[fast]] is "
+    "negative there).",
+    Choice.FIRST: "At the lowest order the fast variables have solutions; their number: [[count]]. This is the first; "
+    "which of them attract is not decided.",
+}
+
+
+def _choice(found: Expansion) -> Iterator[Said]:
+    """Which solution of the lowest order this one begins with, and the others."""
+    if found.choice is Choice.ONLY:
+        return
+    fast = [_variable(found, name) for name in found.manifold.fast]
+    count = str(1 + len(found.others) + found.unknown)
+    small = Name(found.manifold.field.small)
+    gaps: Gaps = {"count": count, "small": small, "fast": tuple(fast)}
+    yield Said(_CHOICE[found.choice], {k: x for k, x in gaps.items() if f"[[{k}]]" in _CHOICE[found.choice]})
+    for values in found.others:
+        shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
+        yield say("Another one begins with [[values]].", values=shown)
+    if found.unknown:
+        text = "Solutions that are neither rational nor square roots are not expanded; their number: [[count]]."
+        yield say(text, count=str(found.unknown))
+
+
+def _of_set(found: Expansion, free: Sequence[str], values: Gaps) -> Iterator[Said]:
+    """The set of steady states, in the words of Rumyantsev."""
+    known = {*found.manifold.fast, *found.manifold.slow}
+    order = [name for name in found.transfer.variables if name in known]
+    others = [name for name in order if name not in free]
+    if not (free and others):
+        return
+    outcome, conditions = found.stabilizable
+    values = values | {
+        "free": tuple(_variable(found, name) for name in free),
+        "others": tuple(_variable(found, name) for name in others),
+        "conditions": _told(found, conditions),
+    }
+    yield Said(
+        "Every state near this motion with any [[free]], and with [[others]] as on the motion, is steady: a set "
+        "$\\Omega$ of as many dimensions as roots are zero.",
+        values,
+    )
+    yield Said(_OMEGA[outcome], values)
 
 
 def of_measured(small: str, told: Measured | str) -> Iterator[Said]:

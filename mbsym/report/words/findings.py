@@ -6,7 +6,7 @@ A ``Finding`` is a complaint with its file.  Each format escapes what it must by
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from urllib.parse import quote
 
@@ -40,18 +40,18 @@ class Finding:
         return safe(self.message) + (f"; hint: {safe(self.hint)}" if self.hint else "")
 
 
-def findings_of(path: str, complaints: Iterable[Complaint], say: Callable[[str], str] = str) -> tuple[Finding, ...]:
-    """The complaints about a file as findings; ``say`` says their sentences in its language."""
+def findings_of(path: str, complaints: Iterable[Complaint]) -> tuple[Finding, ...]:
+    """The complaints about a file as findings."""
     return tuple(
         Finding(
             path,
             one.code,
-            say(one.message),
+            one.message,
             one.severity,
             None if one.span is None else one.span.line,
             None if one.span is None else one.span.column,
             1 if one.span is None else max(1, one.span.length),
-            one.hint and say(one.hint),
+            one.hint,
         )
         for one in complaints
     )

@@ -116,7 +116,7 @@ class _Speaker:
     def __call__(self, meaning: Meaning | None) -> tuple[str, str]:
         """The phrase, and the coordinate whose symbol ends it."""
         if meaning is None:
-            return "Abbreviations, numbered as they come", ""
+            return Message("Abbreviations, numbered as they come"), ""
         body = self.system.body(meaning.body) if meaning.body else None
         gravity = self._gravity(meaning.body) if meaning.quantity in _LESS_GRAVITY else []
         about = self._expanded_about(meaning.load) if meaning.quantity in _FROM_ORIGIN else ""

@@ -5,7 +5,7 @@ The list is told in ``listed.py``, branches over a parameter in ``branches.py``.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated, Any, cast
@@ -75,12 +75,13 @@ class Request:
         return "" if self.vary is None else self.vary.name
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.mechanics.rest import missing_values
 
-    if "vary" not in typed:
+    system = asked.system
+    if "vary" not in asked.typed:
         for name in ("format", "language"):
-            if name in typed:
+            if name in asked.typed:
                 yield Unfit(f"--{name}", *UNWRITTEN)
     elif request.vary is None:
         return

@@ -6,7 +6,7 @@ where another one has a value in ``levels.py``.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +17,6 @@ from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Stud
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import InvariantRelations, Setting
-    from mbsym.model.system import System
     from mbsym.problems.polynomial_integrals import Along, Cases, DarbouxAlong, PolynomialIntegrals
     from mbsym.report.content import Block
 
@@ -75,14 +74,14 @@ class Request:
     )
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
-    if "vary" in typed and request.cases:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+    if "vary" in asked.typed and request.cases:
         told = "with --vary other parameters are numbers"
         yield Unfit("--cases", "not-together", told, "choose one of them")
     if request.vary is not None and request.vary.name in request.values:
         told = Message("'[[name]]' has an interval and a number", name=request.vary.name)
         yield Unfit("--set", "repeated-name", told, "leave one of them out")
-    if "budget" in typed and not request.cases:
+    if "budget" in asked.typed and not request.cases:
         yield Unfit("--budget", "missing-option", "--budget goes with --cases", "add --cases")
 
 
@@ -200,4 +199,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return Refusal(f"no integrals: {error}")
 
 
-STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)
+STUDY = Study(
+    "integrals", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None, letters=True
+)

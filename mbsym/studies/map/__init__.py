@@ -5,7 +5,7 @@ What is said and written of a map, whatever it is over and of, is in ``answer.py
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -21,7 +21,6 @@ from mbsym.studies.study import Answer, Asked, Folder, NotFit, Refusal, Study, U
 
 if TYPE_CHECKING:
     from mbsym.maps.result import Map
-    from mbsym.model.system import System
     from mbsym.report.maps.located import Points
 
 KINDS = ("stability", "signature", "equilibria")
@@ -122,22 +121,22 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
     return found, tuple(told)
 
 
-def unfit(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.studies.map.answer import fitting
 
     of_one = request.of != "equilibria"
-    if "as_json" in typed and "json" not in (request.format or FORMATS):
+    if "as_json" in asked.typed and "json" not in (request.format or FORMATS):
         yield Unfit("--json", "conflicting-options", "--format leaves JSON out", "add json to --format")
-    if "z" in typed and "y" not in typed:
+    if "z" in asked.typed and "y" not in asked.typed:
         yield Unfit("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
-    if request.by == "boxes" and of_one and ("y" not in typed or "z" in typed):
+    if request.by == "boxes" and of_one and ("y" not in asked.typed or "z" in asked.typed):
         yield Unfit("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     yield from distinct(request.axes, request.values)
-    read = len(request.axes) == sum(name in typed for name in ("x", "y", "z")) > 0
+    read = len(request.axes) == sum(name in asked.typed for name in ("x", "y", "z")) > 0
     if read:
         yield from request.located[1]
     if not of_one:
-        yield from fitting(request, system, typed)
+        yield from fitting(asked, request)
 
 
 class NoMap(Exception):

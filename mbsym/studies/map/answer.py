@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ from mbsym.report.content import Block, Table, aligned, column, paragraph
 from mbsym.report.language import Language
 from mbsym.report.maps.words import LACKS, cell_words, condition_words, row_words, share, stem, telling
 from mbsym.studies.section import against_sign, unless_parameter
-from mbsym.studies.study import Answer, Exit, Unfit, Watch, missing
+from mbsym.studies.study import Answer, Asked, Exit, Unfit, Watch, missing
 
 if TYPE_CHECKING:
     from mbsym.maps.equilibria_map import EquilibriaMap
@@ -441,12 +441,13 @@ def _why(found: Map, one: Cell) -> Message:
 # ``mbsym map --of equilibria``: what fits, and the numbers of relative equilibria over a plane.
 
 
-def fitting(request: Request, system: System, typed: Collection[str]) -> Iterator[Unfit]:
+def fitting(asked: Asked, request: Request) -> Iterator[Unfit]:
     """What keeps numbers of equilibria from being mapped."""
-    if "y" not in typed and "x" in typed:
+    system = asked.system
+    if "y" not in asked.typed and "x" in asked.typed:
         hint = "give the second parameter as --y, or use mbsym equilibria --vary"
         yield Unfit("--y", "missing-option", "numbers of equilibria are mapped over a plane", hint)
-    if "z" in typed:
+    if "z" in asked.typed:
         hint = "leave it out, and map at some of its values, each with an --out: --set NAME=VALUE"
         yield Unfit("--z", "not-of-equilibria", "there are no slices of numbers of equilibria", hint)
     if request.by == "boxes":
@@ -462,7 +463,7 @@ def fitting(request: Request, system: System, typed: Collection[str]) -> Iterato
 
     chosen = {axis.name for axis in request.axes}
     lacking = [name for name in missing_values(system, _numbers(system, request)) if name not in chosen]
-    if lacking and all(name not in typed or getattr(request, name) is not None for name in ("x", "y", "z")):
+    if lacking and all(name not in asked.typed or getattr(request, name) is not None for name in ("x", "y", "z")):
         yield missing(lacking, "rational number")
 
 

@@ -20,6 +20,7 @@ from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Outcome, scaled
 from mbsym.problems.small_parameter.steady import steady_states
+from mbsym.report.words.expansion_words import sentences
 
 REFERENCE = reference("satellite-with-damper-slow")
 
@@ -235,8 +236,8 @@ def test_a_lowest_order_that_is_solved_by_elimination():
     [
         ((lambda eps, s, z: eps * z, lambda eps, s, z: -s), "no variable is fast"),
         ((lambda eps, s, z: -s * eps, lambda eps, s, z: 1 * s), "does not determine fast variables"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**2), "does not determine fast variables"),
-        ((lambda eps, s, z: -s * eps, lambda eps, s, z: z * (s - z)), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: s - z**3), "does not determine fast variables"),
+        ((lambda eps, s, z: -s * eps, lambda eps, s, z: (s - z) ** 2), "does not determine fast variables"),
     ],
 )
 def test_where_there_is_none_it_is_said(rows, reason):
@@ -258,6 +259,46 @@ def test_repelling_and_undecided_manifolds(damper, third):
     second = expansion(damper, 2)
     assert second.slow[0] is Outcome.UNDECIDED  # friction comes in with the third order
     assert not second.manifold.steady.slow.decided
+
+
+@pytest.mark.parametrize(
+    ("rows", "free"),
+    [
+        # s steady whatever it is, z on the manifold with it: 1 zero root, a line of steady states
+        ((lambda eps, s, u, z: 0 * s, lambda eps, s, u, z: -eps * u, lambda eps, s, u, z: u * s - z), ("s",)),
+        # two zero roots, and a plane of steady states that is bent: z = u s
+        ((lambda eps, s, u, z: 0 * s, lambda eps, s, u, z: 0 * s, lambda eps, s, u, z: u * s - z), ()),
+        ((lambda eps, s, u, z: eps * z * s, lambda eps, s, u, z: eps * z * u, lambda eps, s, u, z: -z), ("s", "u")),
+        # a Jordan block: s grows as u t
+        ((lambda eps, s, u, z: eps * u, lambda eps, s, u, z: 0 * s, lambda eps, s, u, z: -z), ()),
+        # a root that is zero in first approximation only
+        ((lambda eps, s, u, z: -eps * s**3, lambda eps, s, u, z: -eps * u, lambda eps, s, u, z: -z), ()),
+        # two lines that cross: not a plane
+        ((lambda eps, s, u, z: eps * s * u, lambda eps, s, u, z: eps * s * u, lambda eps, s, u, z: -z), ()),
+    ],
+)
+def test_a_set_of_steady_states_has_as_many_dimensions_as_roots_are_zero(rows, free):
+    """eps z' = ..., about s = u = z = 0."""
+    field = made(("s", "u", "z"), rows, denominator=lambda eps, **_: eps)
+    there = scaled(field, "eps", {})
+    functions = slow.manifold(there, ("z",), 2)
+    zero = Quotient.of(field.context.constant(0))
+    flow = slow.flow(there, ("z",), functions, 2)
+    at = dict.fromkeys(("s", "u", "z"), zero)
+    assert steady_states(there, flow, {"z": functions[0]}, at, 2).free == free
+
+
+def test_the_words_of_rumyantsev(third):
+    """Section 3 of the paper: steady with any rate of spin; stabilizable where all roots but one are to the left."""
+    assert third.manifold.steady.free == ("r",)
+    assert third.stabilizable[0] is Outcome.CONDITIONAL
+    (stabilizable,) = (one for one in sentences(third) if "and stabilizable" in one.text)
+    assert {x.name for x in stabilizable.gaps["others"]} == {"p", "q", "x", "y"}
+    told = [one.text for one in sentences(changed("delta: {sign: positive", "delta: {sign: negative"))]
+    assert any("It is not stable with respect to" in text for text in told)
+    assert not any("stabilizable" in text for text in told)
+    without = changed("  - damper: {coordinate: x, coefficient: eps*delta*A}\n", "")
+    assert without.stabilizable[0] is Outcome.UNDECIDED
 
 
 def changed(old, new):

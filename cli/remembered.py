@@ -1,0 +1,51 @@
+"""What a study has measured before: asked again, the same question costs nothing.
+
+A question is known by the description's meaning with its numbers and by what was asked, under the source of mbsym, the
+libraries that compute, and this machine: what differs in any of these is another question.  Answers stand beside the
+machine code (``mbsym.numerics.kernels.stored``), by its rules of whom to trust; the folder may be deleted.
+"""
+
+from __future__ import annotations
+
+import pickle
+import platform
+import sys
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from importlib import metadata
+from typing import TypeVar
+
+from mbsym.batch.digests import derivation
+from mbsym.numerics.kernels import stored
+
+T = TypeVar("T")
+
+#: Libraries whose versions decide what a run gives, or how long it takes.
+LIBRARIES = ("numpy", "scipy", "llvmlite", "heyoka", "python-flint")
+
+
+def remembered(
+    question: Sequence[str], measure: Callable[[], T], sound: Callable[[T], bool], anew: bool
+) -> tuple[T, bool]:
+    """(the answer, whether it is an earlier one); only ``sound`` ones are kept, and ``anew`` none is looked for."""
+    key = stored.key_of([derivation(), *_surroundings(), *question])
+    kept = None if anew else stored.load(key, stored.MEASURED)
+    if kept is not None:
+        with suppress(Exception):  # written by ourselves, but by another Python
+            found: T = pickle.loads(kept)
+            return found, True
+    found = measure()
+    if sound(found):
+        with suppress(pickle.PicklingError, TypeError):
+            stored.keep(key, pickle.dumps(found, pickle.HIGHEST_PROTOCOL), stored.MEASURED)
+    return found, False
+
+
+def _surroundings() -> list[str]:
+    machine = [sys.version, platform.node(), platform.machine(), platform.processor()]
+    for name in LIBRARIES:
+        try:
+            machine.append(metadata.version(name))
+        except metadata.PackageNotFoundError:
+            machine.append("")
+    return machine

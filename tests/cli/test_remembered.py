@@ -1,0 +1,158 @@
+"""What a study measured before: the same question costs nothing, any other is measured, several scenes in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from conftest import SHIPPED
+
+from mbsym.expressions.tree import Number
+from mbsym.numerics.kernels import stored
+from mbsym.numerics.scenario import scenario
+from mbsym.source import load
+from mbsym.studies.tradeoff import identity
+from mbsym_cli.beside import Beside
+from mbsym_cli.main import main
+from mbsym_cli.remembered import remembered
+
+PENDULUM = SHIPPED / "simple-pendulum.yaml"
+QUICK = ("--time", 1, "--budget", 1, "--methods", "rk45")
+
+
+def mbsym(*words: object) -> Result:
+    return CliRunner().invoke(main, list(map(str, words)))
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("MBSYM_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache" / stored.MEASURED
+
+
+class Asking:
+    """Answers that count how often they are found."""
+
+    def __init__(self) -> None:
+        self.count = 0
+
+    def __call__(self, question: Sequence[str], sound: bool = True, anew: bool = False) -> tuple[int, bool]:
+        def measure() -> int:
+            self.count += 1
+            return self.count
+
+        return remembered(question, measure, lambda found: sound, anew)
+
+
+def test_an_answer_is_found_once(cache: Path) -> None:
+    ask = Asking()
+    assert ask(["a", "b"]) == (1, False)
+    assert ask(["a", "b"]) == (1, True)
+    assert ask(["ab"]) == (2, False)
+    assert ask(["a", "b"], anew=True) == (3, False)
+    assert ask(["a", "b"]) == (3, True)
+
+
+def test_what_is_not_sound_is_not_kept(cache: Path) -> None:
+    ask = Asking()
+    assert ask(["a"], sound=False) == (1, False)
+    assert ask(["a"]) == (2, False)
+
+
+def test_what_was_spoiled_is_found_again(cache: Path) -> None:
+    ask = Asking()
+    ask(["a"])
+    (kept,) = cache.iterdir()
+    kept.write_bytes(kept.read_bytes()[:-1] + b"!")
+    assert ask(["a"]) == (2, False)
+    kept.unlink()
+    assert ask(["a"]) == (3, False)
+
+
+def test_nothing_is_kept_where_nothing_is_to_be(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MBSYM_CACHE", "")
+    ask = Asking()
+    assert ask(["a"]) == (1, False)
+    assert ask(["a"]) == (2, False)
+
+
+def test_another_source_or_another_library_is_another_question(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    ask = Asking()
+    ask(["a"])
+    for name, other in (("derivation", lambda: "another source"), ("_surroundings", lambda: ["another library"])):
+        with monkeypatch.context() as patched:
+            patched.setattr(f"mbsym_cli.remembered.{name}", other)
+            assert not ask(["a"])[1]
+    assert ask(["a"])[1]
+
+
+def test_scenarios_are_known_by_what_they_mean() -> None:
+    system, _, _ = load(PENDULUM)
+    other, _, _ = load(SHIPPED / "double-pendulum.yaml")
+    again, _, _ = load(PENDULUM)
+    assert identity(scenario(system)) == identity(scenario(again))
+    (name,) = system.coordinates
+    changed = [{system.parameter_names[0]: Number(7)}, {name: Number(1)}, {f"{name}_dot": Number(1)}]
+    texts = {identity(scenario(system, values)) for values in ({}, *changed)}
+    assert len(texts | {identity(scenario(other))}) == 5
+
+
+def test_a_second_question_measures_nothing(cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other targets, and the same rows but for where they stand; --anew measures."""
+    monkeypatch.setattr(Beside, "allowed", True)
+    first = mbsym("tradeoff", PENDULUM, *QUICK, "-o", tmp_path / "out")
+    assert first.exit_code == 0, first.output
+    assert "--anew" not in first.output
+    table = (tmp_path / "out" / "tradeoff.csv").read_bytes()
+
+    measured: list[object] = []
+
+    def forbidden(*asked: object, **_: object) -> None:
+        measured.append(asked)
+        raise ValueError("measured again")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("mbsym.numerics.trade.tradeoff.studied", forbidden)
+        again = mbsym("tradeoff", PENDULUM, *QUICK, "--target", "1e-5", "-o", tmp_path / "out")
+        assert (again.exit_code, measured) == (0, []), again.output
+        assert "measured by an earlier command, seconds too; --anew measures again" in again.output
+        assert (tmp_path / "out" / "tradeoff.csv").read_bytes() == table
+        for more in (("--anew",), ("--set", "l=2"), ("--time", "2"), ("--no-fidelity",)):
+            before = len(measured)
+            assert mbsym("tradeoff", PENDULUM, *QUICK, *more, "-o", tmp_path / "out").exit_code
+            assert len(measured) == before + 1, more
+
+
+def test_several_scenes_are_compared_in_one_table(tmp_path: Path) -> None:
+    done = mbsym("tradeoff", PENDULUM, SHIPPED / "spring-pendulum.yaml", *QUICK, "-o", tmp_path)
+    assert done.exit_code == 0, done.output
+    heads, *rows = [line.split() for line in done.output.splitlines() if line.strip()]
+    assert heads[:4] == ["scene", "method", "setting", "error"]
+    assert len(rows) == 2
+    assert all("rk45" in row and row[-1] in ("yes", "no") for row in rows)
+    for name in ("simple-pendulum", "spring-pendulum"):
+        assert (tmp_path / name / "tradeoff.csv").exists()
+
+
+def test_one_scene_that_has_no_solution_leaves_the_others(tmp_path: Path) -> None:
+    falling = tmp_path / "pole.yaml"
+    falling.write_text(
+        "mbsym: 1\nname: pole\nbodies:\n"
+        "  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\n"
+        "loads:\n  - generalized force: {x: 2*x**3}\ninitial: {x: {position: 1, velocity: 1}}\n"
+    )
+    done = mbsym("tradeoff", falling, PENDULUM, "--time", 2, *QUICK[2:], "-o", tmp_path / "out")
+    assert done.exit_code == 3
+    assert "there is no reference solution" in done.output + done.stderr
+    assert "rk45" in done.output
+
+
+def test_two_files_of_one_name_would_share_a_folder(tmp_path: Path) -> None:
+    copy = tmp_path / PENDULUM.name
+    copy.write_bytes(PENDULUM.read_bytes())
+    done = mbsym("tradeoff", PENDULUM, copy, *QUICK, "-o", tmp_path / "out")
+    assert done.exit_code == 2
+    assert "conflicting-files" in done.output + done.stderr
+    assert not (tmp_path / "out").exists()
