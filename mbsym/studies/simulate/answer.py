@@ -71,8 +71,8 @@ def _motion(asked: Asked, request: Command, result: Motion) -> Answer:
 
     run = result.run
     files = motion_files(run, result.derivatives, request.formats)
-    told = (*result_lines(run, asked.file), *method_lines(run)) if request.verbose else result_lines(run, asked.file)
-    lines: list[Line | Block] = [facts(told)]
+    how = method_lines(run) if request.verbose else ()
+    lines: list[Line | Block] = [facts((*result_lines(run, asked.file), *how))]
     if result.derivatives is not None:
         from mbsym.report.runs.sensitivity_csv import sentences  # few ask for them
 

@@ -74,9 +74,9 @@ def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Se
     table: Hashed | None = None
     if "csv" in formats:
         shown = {} if run.dynamics.in_states else run.speeds  # they are columns already
-        further = shown | {kept.column: kept.values for kept in run.invariants}
+        further = shown | {integral.column: integral.values for integral in run.invariants}
         units: dict[str, str | None] = {name: unit_of(run.system, name) for name in shown}
-        units |= {kept.column: kept.unit for kept in run.invariants}
+        units |= {integral.column: integral.unit for integral in run.invariants}
         if run.trajectory.table is None and not run.dynamics.in_states:
             further |= input_columns(run.scenario, run.times, run.coordinates, run.velocities)
         drifts = {**drift_columns(run), **norm_columns(run)}
@@ -144,9 +144,11 @@ def _bodies(run: Simulation) -> Iterator[BodyMotions]:
     from mbsym.numerics.between import accelerations
     from mbsym.numerics.body_motion import followed_bodies
 
-    found, motions = run.trajectory, followed_bodies(run.scenario)
-    own = [(found.times, found.states)]
-    for times, states in own if found.table is None else ((rows[0], rows[1:]) for rows, _ in found.table.blocks()):
+    trajectory, motions = run.trajectory, followed_bodies(run.scenario)
+    own = [(trajectory.times, trajectory.states)]
+    for times, states in (
+        own if trajectory.table is None else ((rows[0], rows[1:]) for rows, _ in trajectory.table.blocks())
+    ):
         yield motions(times, states, accelerations(run.dynamics, times, states))
 
 
@@ -157,10 +159,10 @@ def _happened(run: Simulation) -> dict[str, str]:
     if run.happened is None:
         return {}
     radii = run.certificate.passages or None if run.certificate is not None else None
-    found = (
+    tables = (
         {"events": events_csv(run.happened.occurrences, run.system, radii)} if run.happened.occurrences.events else {}
     )
-    return found | ({} if run.section is None else {"section": section_csv(run.section, run.system)})
+    return tables | ({} if run.section is None else {"section": section_csv(run.section, run.system)})
 
 
 def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
@@ -196,11 +198,11 @@ def _animation(run: Simulation, formats: Sequence[str]) -> tuple[dict[str, bytes
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.report.figures.figures import figures
 
-    found, rates = run.trajectory, rates_along(run)
+    trajectory, rates = run.trajectory, rates_along(run)
     conserved = run.conservation.standing.conserved is True
     if run.dynamics.in_states:
-        return figures(found, kinds, note(found), conserved, rates) | _places(run, kinds)
-    return figures(found, kinds, note(found), conserved, rates) | _motion(run, kinds, rates)
+        return figures(trajectory, kinds, note(trajectory), conserved, rates) | _places(run, kinds)
+    return figures(trajectory, kinds, note(trajectory), conserved, rates) | _motion(run, kinds, rates)
 
 
 def rates_along(run: Simulation) -> Any:
@@ -221,18 +223,18 @@ def _places(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.numerics.states import StateDynamics, in_coordinates
     from mbsym.report.figures.motion_figure import motion_figures
 
-    found, dynamics, given = run.trajectory, run.dynamics, run.given
+    trajectory, dynamics, given = run.trajectory, run.dynamics, run.given
     assert isinstance(dynamics, StateDynamics)
-    every = -(-len(found.times) // min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies))))
-    rows = in_coordinates(dynamics, found.states[:, ::every])
-    if rows is None or given is None or len(found.times) < 2:
+    every = -(-len(trajectory.times) // min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies))))
+    rows = in_coordinates(dynamics, trajectory.states[:, ::every])
+    if rows is None or given is None or len(trajectory.times) < 2:
         return {}
     try:
         plain = replace(given, system=dynamics.plain)
-        places = positions(plain, found.times[::every], np.vstack([rows, np.zeros_like(rows)]))
+        places = positions(plain, trajectory.times[::every], np.vstack([rows, np.zeros_like(rows)]))
     except Failure:
         return {}
-    return motion_figures(places, kinds, note(found)) if places is not None else {}
+    return motion_figures(places, kinds, note(trajectory)) if places is not None else {}
 
 
 def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, bytes]:
@@ -246,10 +248,10 @@ def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, byte
     from mbsym.report.figures.motion_figure import motion_figures
     from mbsym.report.outlines import Outline, outlines
 
-    found = run.trajectory
+    trajectory = run.trajectory
     most = min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies)))
-    every = -(-len(found.times) // most)  # a picture of a million samples would only be slow
-    times, states, rates = found.times[::every], found.states[:, ::every], rates[:, ::every]
+    every = -(-len(trajectory.times) // most)  # a picture of a million samples would only be slow
+    times, states, rates = trajectory.times[::every], trajectory.states[:, ::every], rates[:, ::every]
     pieces = min(most // len(times), SMOOTHER)
     if pieces > 1:
         times, states = between(times, states, rates, [pieces] * (len(times) - 1))
@@ -263,4 +265,4 @@ def _motion(run: Simulation, kinds: Sequence[str], rates: Any) -> dict[str, byte
             shapes = outlines(run.scenario, body_motions(run.scenario, times, states, still, places.frame))
     except Failure:
         return {}
-    return motion_figures(places, kinds, note(found), shapes)
+    return motion_figures(places, kinds, note(trajectory), shapes)

@@ -85,7 +85,7 @@ def basic(request: Request, seen: System, wrong: Reasons | None = None) -> Run:
 
     Raises ValueError for texts that cannot be read, where there are no Reasons that take them.
     """
-    found = simulation.read_watch(
+    conditions = simulation.read_watch(
         seen, _several(request.events), _several(request.stop), request.section, request.axes,
         None if wrong is None else wrong.unread,
     )  # fmt: skip
@@ -95,7 +95,7 @@ def basic(request: Request, seen: System, wrong: Reasons | None = None) -> Run:
         arithmetic=request.arithmetic or "float64",
         step_limit=request.step_limit or 1,
         longest=request.max_step,
-        events=found,
+        events=conditions,
         variables=request.variables or simulation.request.DECLARED,
         certify_seconds=inf if request.certify_seconds is None else request.certify_seconds,
         **{name: getattr(request, name) for name in ("samples", "every", "tolerance", "step")},
@@ -183,8 +183,8 @@ def _fixed(request: Run, names: Sequence[str], system: System, wrong: Reasons) -
     for name in names:
         if name not in known:
             way = did_you_mean(name, known) or listed("these can be fixed", known)
-            told = Message("there is nothing called [[name]] to be fixed", name=quoted(name))
-            wrong.complain("--fixed", "unknown-name", told, way)
+            message = Message("there is nothing called [[name]] to be fixed", name=quoted(name))
+            wrong.complain("--fixed", "unknown-name", message, way)
     return replace(request, fixed=tuple(name for name in names if name in known))
 
 
@@ -243,8 +243,8 @@ def _check_held(request: Run, system: System, many: bool, wrong: Reasons) -> Non
         words = "at most [[most]] for this system, or leave out [[options]]"
         hint = Message(words, most=most_rows(system), options=", ".join(needing))
     option = "--every" if request.every is not None else "--samples"
-    told = Message("[[rows]] rows are too many to be held in memory, as they have to be here", rows=rows)
-    wrong.complain(option, "too-large", told, hint)
+    message = Message("[[rows]] rows are too many to be held in memory, as they have to be here", rows=rows)
+    wrong.complain(option, "too-large", message, hint)
 
 
 def _check_method(system: System, request: Run, typed: Mapping[str, Any], wrong: Reasons) -> None:
@@ -279,25 +279,25 @@ def _check_method(system: System, request: Run, typed: Mapping[str, Any], wrong:
         hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
         if has_step:
             hint = "leave it out, or take a method that chooses its steps, for example --method dop853"
-        told = Message("[[method]] takes steps of one length, no tolerance", method=name)
-        wrong.complain("--tolerance", "conflicting-options", told, hint)
+        message = Message("[[method]] takes steps of one length, no tolerance", method=name)
+        wrong.complain("--tolerance", "conflicting-options", message, hint)
     elif traits.fixed and not has_step:
         many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
         hint = Message(
             "for example [[step]], a [[steps]]th of the time; then halve it until the results no longer change",
             step=many, steps=TRIAL_STEPS,
         )  # fmt: skip
-        told = Message("[[method]] takes steps of one length, and there is no --step", method=name)
-        wrong.complain("--method", "missing-option", told, hint)
+        message = Message("[[method]] takes steps of one length, and there is no --step", method=name)
+        wrong.complain("--method", "missing-option", message, hint)
     if traits.fixed and "max_step" in typed:
         example = f"{request.longest or 0.01:g}"
         hint = Message("give a shorter --step in its place, for example --step [[step]]", step=example)
-        told = Message("[[method]] takes steps of one length", method=name)
-        wrong.complain("--max-step", "conflicting-options", told, hint)
+        message = Message("[[method]] takes steps of one length", method=name)
+        wrong.complain("--max-step", "conflicting-options", message, hint)
     if not traits.fixed and has_step and not has_tolerance:
         hint = Message("leave --step out, give a --tolerance, or take a method of fixed step: [[names]]", names=fixed)
-        told = Message("[[method]] chooses its steps by a --tolerance", method=name)
-        wrong.complain("--step", "conflicting-options", told, hint)
+        message = Message("[[method]] chooses its steps by a --tolerance", method=name)
+        wrong.complain("--step", "conflicting-options", message, hint)
     loads = without_potential(system) if traits.conservative else ()
     if loads:
         words = "[[method]] is for conservative systems; these loads have no potential: [[loads]]"
@@ -309,15 +309,15 @@ def _check_members(request: Run, formats: Sequence[str], wrong: Reasons) -> None
     from mbsym.numerics.ensembles.side_by_side import TABLEAUX
 
     if request.method != "auto" and request.method not in TABLEAUX:
-        told = Message("members do not run side by side with [[method]]", method=request.method)
+        message = Message("members do not run side by side with [[method]]", method=request.method)
         wrong.complain(
-            "--method", "unsuitable-method", told, Message("choose from [[names]]", names=", ".join(TABLEAUX))
+            "--method", "unsuitable-method", message, Message("choose from [[names]]", names=", ".join(TABLEAUX))
         )
     for kind in formats:
         if kind not in ("csv", "svg", "png", "pdf"):
-            told = Message("there is no [[format]] of an ensemble", format=kind)
+            message = Message("there is no [[format]] of an ensemble", format=kind)
             wrong.complain(
-                "--format", "conflicting-options", told, Message("choose from [[names]]", names="csv, svg, png, pdf")
+                "--format", "conflicting-options", message, Message("choose from [[names]]", names="csv, svg, png, pdf")
             )
 
 
@@ -327,13 +327,15 @@ def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
         return
     from mbsym.numerics.methods.table import METHODS
 
-    told = listed_constraints(system.constraints)
+    constraints = listed_constraints(system.constraints)
     if request.model.linear:
-        message = Message("--linear does not take constraints into account yet ([[which]])", which=told)
+        message = Message("--linear does not take constraints into account yet ([[which]])", which=constraints)
         wrong.complain("--linear", "constraints", message, "without them this would be another system")
     if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
         hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, radau, bdf")
-        message = Message("[[method]] does not keep to constraints ([[which]])", method=request.method, which=told)
+        message = Message(
+            "[[method]] does not keep to constraints ([[which]])", method=request.method, which=constraints
+        )
         wrong.complain("--method", "unsuitable-method", message, hint)
 
 
@@ -387,11 +389,11 @@ def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
             hint = Message("there are [[names]]", names=", ".join(known))
             if close:
                 hint = Message("did you mean '[[other]]'?", other=close)
-            told = Message("there is nothing called '[[name]]' here", name=name)
-            wrong.complain("--sensitivity", "unknown-name", told, hint)
+            message = Message("there is nothing called '[[name]]' here", name=name)
+            wrong.complain("--sensitivity", "unknown-name", message, hint)
         elif name in following:
-            told = Message("[[name]] follows from other parameters", name=name)
-            wrong.complain("--sensitivity", "bad-variation", told, "name those of which its relation is made")
+            message = Message("[[name]] follows from other parameters", name=name)
+            wrong.complain("--sensitivity", "bad-variation", message, "name those of which its relation is made")
     if _jumps(given):
         jumps = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
         way = "compare runs: --vary with two or three values close together"
@@ -421,8 +423,8 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     if 0 < request.time <= earlier.time:
         there = f"{earlier.time:.9g}"
         hint = Message("--time is counted from the start: take one beyond [[time]]", time=there)
-        told = Message("that run is at t = [[time]] already", time=there)
-        wrong.complain("--time", "conflicting-options", told, hint)
+        message = Message("that run is at t = [[time]] already", time=there)
+        wrong.complain("--time", "conflicting-options", message, hint)
     return replace(request, earlier=earlier)
 
 
