@@ -186,6 +186,11 @@ class CaseStatement:
     explanation: str
     otherwise: bool = False
 
+    @property
+    def conditional(self) -> bool:
+        """Whether it is told: one that always applies is the verdict."""
+        return bool(self.all_of or self.any_of or self.otherwise)
+
 
 def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = False) -> list[CaseStatement]:
     """The cases that can occur, what an earlier one says left out of each.  ``told``: what labels mean beside them.

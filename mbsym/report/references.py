@@ -16,6 +16,7 @@ from mbsym.problems.stability.theorems import (
     MALKIN,
     ROUTH,
 )
+from mbsym.report.conditions import cases, label_meanings
 
 
 @dataclass(frozen=True)
@@ -79,9 +80,10 @@ def keys_of(theorem: str) -> tuple[str, ...]:
 def theorems_named(found: Stability) -> Iterator[str]:
     """Every theorem that problem 6 names, in the order of the report, with repetitions."""
     for part in found.subsystems:
-        for case in part.theory.cases:
-            yield from () if case.never else case.verdict.theorems
-        yield from part.theory.verdict.theorems
+        theory = part.theory
+        for case in cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered):
+            yield from case.theorems if case.conditional else ()
+        yield from theory.verdict.theorems
     yield from found.verdict.theorems
     if found.numerical is not None:
         yield from found.numerical.theorems

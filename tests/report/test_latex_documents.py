@@ -311,3 +311,13 @@ def test_no_formula_stands_as_text_among_words(path: Path) -> None:
     assert "condition" in words or "move together" in words
     words = words.partition("For example at")[0]  # numbers by name
     assert not re.findall(r"[\w)]\*+[\w(]|\\_dot", re.sub(r"\\(new)?line\*?|\\section\*", "", words))
+
+
+@pytest.mark.parametrize("name", ["racket-no-result-in-this-rotation-order", "bead_on_hoop", "never_hurwitz"])
+def test_a_theorem_that_is_cited_is_one_that_decides(name: str) -> None:
+    """Of a case that is not told, as its condition never holds, the literature was cited all the same."""
+    text = str(TARGETS["latex"].render(mbsym.load(TESTS / "cases" / "statements" / f"{name}.yaml"), (4, 5, 6)))
+    words, _, cited = " ".join(text.split()).partition("On the theorems: ")
+    theorems = re.findall(r"([^;~]+)~", cited.partition(".")[0])
+    assert theorems
+    assert [x for x in map(str.strip, theorems) if f"{x})" not in words and f"{x}," not in words] == []

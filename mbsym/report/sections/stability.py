@@ -241,7 +241,7 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         yield from _conditions(wanted, seen)
     first = True
     for case in cases(part.ring, theory.cases, told, theory.uncovered):
-        if case.all_of or case.any_of or case.otherwise:
+        if case.conditional:
             yield from _case_told(case, first, seen)
             first = False
     for remark in theory.remarks:
@@ -297,7 +297,7 @@ def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Stat
     seen, told = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
     known = list(statements(part.ring, part.theory.requirements, True, told))
     for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered):
-        if case.all_of or case.any_of or case.otherwise:
+        if case.conditional:
             known += [*case.all_of, *case.any_of]
     for item in known:
         key = seen.key(item)

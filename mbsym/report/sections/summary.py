@@ -242,7 +242,7 @@ def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
     theory = part.theory
     known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
-    known = [one for one in known if one.all_of or one.any_of or one.otherwise]
+    known = [one for one in known if one.conditional]
     word = theory.verdict.word
     if all(one.word is word is Word.UNDECIDED for one in known):
         known = []
