@@ -29,7 +29,7 @@ COMMANDS = {
     "batch": Listed("batch.command", "Derive folders of descriptions: in parallel, only what changed."),
     "watch": Listed("watch", "Derive a description again whenever it is saved."),
     "diff": Listed("diff", "Say exactly what changed between results, or descriptions."),
-    "show": Listed("show_formulas", "Print one formula, or the equations of motion."),
+    "show": Listed("mbsym.studies.show", "Print one formula, or the equations of motion."),
     "simulate": Listed("mbsym.studies.simulate", "Integrate the equations of motion and draw figures."),
     "view": Listed("mbsym.studies.view", "Show a system in three dimensions, as one page."),
     "inverse": Listed("mbsym.studies.inverse", "Find the inputs that a given motion needs."),

@@ -10,6 +10,7 @@ import click
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints
 from mbsym.studies.request import (
     Assignments,
     Errors,
@@ -21,12 +22,14 @@ from mbsym.studies.request import (
     Named,
     Names,
     Number,
+    Parsed,
     Place,
     Quantity,
     Range,
     Ranges,
     Settings,
     Share,
+    Substitutions,
     Whole,
     Word,
     Words,
@@ -39,9 +42,11 @@ if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
 
 
-def option_of(field: Field) -> click.Option:
+def option_of(field: Field) -> click.Parameter:
     """The option of one field; its value is text, which is read with all the others."""
     kind = field.kind
+    if isinstance(kind, Names) and kind.positional:
+        return click.Argument([field.name], nargs=-1, metavar=kind.metavar)
     names = [name for name in (field.option, kind.short) if name]
     needed = field.required and isinstance(kind, Number)
     beside = f"  [{f'default: {kind.usual}' if kind.usual else 'required'}]" if kind.usual or needed else ""
@@ -54,7 +59,7 @@ def option_of(field: Field) -> click.Option:
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
-    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges))
+    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges, Substitutions))
     repeated = repeated and not getattr(kind, "separated", False)
     usual = None if repeated or field.default in (None, (), "") else _text(field.default)
     if isinstance(kind, Number) and kind.alone:
@@ -76,11 +81,19 @@ def _text(default: Any) -> str:
 
 def read_fields(
     file: Path, system: System | None, request: type, texts: Mapping[str, Any], options: Options
-) -> tuple[dict[str, Any], Scenario | None]:
-    """The values of all fields, None for what cannot be read, which joins the complaints; the motion, if it is one."""
+) -> tuple[dict[str, Any], Scenario | None, System | None]:
+    """(the values of all fields, the motion if it is one, the system with what is substituted in it).
+
+    What cannot be read is None, and joins the complaints.
+    """
     values: dict[str, Any] = {}
     given: Scenario | None = None
     fields = fields_of(request)
+    for field in (field for field in fields if isinstance(field.kind, Substitutions)):
+        if system is not None and texts[field.name]:
+            from mbsym_cli.assignments import with_settings
+
+            system = with_settings(file, system, texts[field.name], options)
     laws = {field.kind.laws for field in fields if isinstance(field.kind, Settings)}
     # Values are read when the laws of inputs are known, the others when the motion is.
     first = [field for field in fields if field.name in laws] + [x for x in fields if isinstance(x.kind, Settings)]
@@ -90,7 +103,7 @@ def read_fields(
             given, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, known, options)
         else:
             values[field.name] = _read(field, texts[field.name], system, texts, options, given)
-    return values, given
+    return values, given, system
 
 
 def _motion(
@@ -131,6 +144,10 @@ def _read(
             return None if word is None else options.word(field.option, word, kind.known, kind.what)
         case Words() as kind:
             return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
+        case Substitutions():
+            return dict.fromkeys(text.partition("=")[0].strip() for text in given)
+        case Parsed() as kind:
+            return None if given is None or system is None else _parsed(field.option, kind, given, system, options)
         case Range():
             from mbsym_cli.variations import read_axis
 
@@ -187,6 +204,14 @@ def _names(option: str, kind: Names, given: Any, system: System | None, options:
     if kind.known is not None and system is not None:
         names = tuple(name for name in names if options.word(option, name, kind.known(system), kind.what) is not None)
     return names
+
+
+def _parsed(option: str, kind: Parsed, text: str, system: System, options: Options) -> Any:
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    value = kind.read(text, system, complaints)
+    for complaint in complaints.sorted():
+        options.add(option, complaint, text)
+    return value
 
 
 def _errors(option: str, kind: Errors, text: str, known: Sequence[str], options: Options) -> dict[str, float] | None:

@@ -144,7 +144,7 @@ class _Run:
         study, file = self.study, self.file
         system = self._described()
         self.say = self.options.say = Language("" if system is None else system.language).say
-        values, given = read_fields(file, system, study.request, self.texts, self.options)
+        values, given, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
         request, folder = study.request(**values), self.folder
@@ -153,7 +153,8 @@ class _Run:
             asked = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
-                asked = Asked(system, given, printable(file), folder, write_whole, self.typed, store, _memory())
+                known = (self.typed, store, _memory(), self.letters)
+                asked = Asked(system, given, printable(file), folder, write_whole, *known)
             self._complain(request, asked)
             kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
             code = prevented(file, folder if kept else None, system is not None, self.options)
@@ -252,6 +253,9 @@ class _Run:
         return self._written(place, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
+        if answer.text is not None:
+            click.echo(answer.text, nl=False)
+            return
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""

@@ -58,11 +58,21 @@ LONG = 20_000
 #: Places at which a run is held against an extrapolation, its tolerance, and what that may cost.
 PLACES, PRECISELY, PRECISE_COST = 150, 1e-22, 2.0
 
-#: Who witnesses for a method that is judged by itself.
-WITNESSES = {"dop853": "rk45", "rodas5p": "radau", "radau": "rodas5p", "bdf": "radau", "lsoda": "radau"}
+#: Who witnesses for a method that is judged by itself: the first that can be had.
+WITNESSES = {
+    "dop853": ("rk45",),
+    "rodas5p": ("dop853", "radau"),
+    "radau": ("rodas5p", "bdf"),
+    "bdf": ("rodas5p", "radau"),
+    "lsoda": ("rodas5p", "radau"),
+}
 
-#: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case.
-CLEARLY, BESIDE, LITTLE = 3.0, 2.0, 0.05
+#: The better method of stiff motions.
+STIFF = "rodas5p"
+
+#: A difference so many times the estimate contradicts it; what a witness may cost beside the two runs, or in any case;
+#: and where an estimate was asked for.
+CLEARLY, BESIDE, LITTLE, ASKED = 3.0, 2.0, 0.05, 2.0
 
 #: A witness is looked at after so many parts of the way, to see whether it costs too much.
 LOOKS = 30
@@ -247,14 +257,33 @@ def _witnessed(
     A witness that is itself coarse comes closer to the run when it is made finer; one that stays as far away is
     believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
     """
-    (method, scalar), better, (limit, spent) = own, estimate.against, costs
-    name = WITNESSES.get(better.method)
-    if name is None or method.traits.name != better.method or estimate.parted is not None:
+    name = own[0].traits.name
+    took_part = {name, *(change.method for change in found.work.changes)}
+    alone = name in METHODS and estimate.against.method not in took_part  # of parts each has its own method
+    if alone or estimate.parted is not None:
         return estimate
-    witness, end = completed(METHODS[name]), float(found.times[-1])
+    for name in WITNESSES.get(estimate.against.method, ()):
+        heard = _testimony(dynamics, found, own, estimate, completed(METHODS[name]), costs)
+        if heard is not None:
+            return heard
+    return estimate
+
+
+def _testimony(
+    dynamics: Dynamics,
+    found: Trajectory,
+    own: tuple[Method, str],
+    estimate: ErrorEstimate,
+    witness: Method,
+    costs: tuple[float, float],
+) -> ErrorEstimate | None:
+    """The estimate where a witness agrees, that of the witness where it does not; None where it says nothing."""
+    (method, scalar), better, (limit, spent), end = own, estimate.against, costs, float(found.times[-1])
     places = np.concatenate([[0.0], uneven(0.0, end, PLACES), [end]])
     scales = np.array([q.scale for q in estimate.quantities])
-    budget = _Budget(dynamics, min(limit - spent, max(LITTLE, BESIDE * spent)), end, even=False)
+    budget = _Budget(
+        dynamics, min(limit - spent, max(LITTLE if limit < inf else ASKED, BESIDE * spent)), end, even=False
+    )
     setting, before = better.setting, inf
     try:
         run = method.start(dynamics, found.setting, scalar)
@@ -268,10 +297,11 @@ def _witnessed(
                 break
             setting, before = _finer(setting), apart
     except (Breakdown, Unusable, _TooDear):
-        return estimate
+        return None
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
-    return ErrorEstimate(Against(name, better.scalar, setting), scene, _rounding(scalar))
+    against = Against(witness.traits.name, better.scalar, setting)
+    return ErrorEstimate(against, scene, _rounding(scalar))
 
 
 def _finer(setting: Setting) -> Setting:
@@ -328,6 +358,11 @@ def _candidates(
         longest = min(longest, SHORTER * setting.longest)
     explicit = completed(METHODS["dop853"])
     wanted = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
+    own = _taken(name, scalar, setting.tolerance or 0.0)
+    turned = any(METHODS[change.method].traits.implicit for change in found.work.changes)
+    stiff = (method.traits.implicit or turned) and not method.traits.fixed and scalar == FLOAT64
+    if stiff and _taken(STIFF, scalar, wanted) <= LEAST_RATIO * own:  # explicit steps would be too many
+        yield completed(METHODS[STIFF]), scalar, Setting(wanted, None, setting.step_limit, longest)
     more = [kind for kind in (EXTENDED, FLOAT64) if available(kind) and _rounding(kind) < _rounding(scalar)]
     if more and operations <= LONG:
         # Explicit steps in more digits; where stability asks for too many of them, the limit ends it.
@@ -339,7 +374,6 @@ def _candidates(
             replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * found.work.steps)),
         )
         return
-    own = _taken(name, scalar, setting.tolerance or 0.0)
     if _taken(name, scalar, wanted) <= LEAST_RATIO * own:
         yield method, scalar, Setting(wanted, None, setting.step_limit, longest)
     elif _taken("dop853", scalar, wanted) <= LEAST_RATIO * own:

@@ -18,6 +18,7 @@ from mbsym.expressions.message import Message
 from mbsym.report.language import LANGUAGES
 
 if TYPE_CHECKING:
+    from mbsym.expressions.place import Complaints
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.numerics.ensembles.variation import Variation
@@ -119,12 +120,14 @@ class Text(Kind):
 
 @dataclass(frozen=True)
 class Names(Kind):
-    """Names, or other texts, one each time the option is given or ``separated`` by commas; the study looks at them.
+    """Names, or other texts, one each time the option is given, ``separated`` by commas, or ``positional``; the study
+    looks at them.
 
     ``known`` are those that a system has of ``what``, where the study does not say more of them.
     """
 
     separated: bool = False
+    positional: bool = False
     known: Callable[[System], Sequence[str]] | None = None
     what: str = ""
 
@@ -162,6 +165,18 @@ class Settings(Kind):
     declared: Callable[[Mapping[str, Any]], bool] = lambda texts: False
     laws: str = ""
     whole: Callable[[Mapping[str, Any]], bool] = lambda texts: True
+
+
+@dataclass(frozen=True)
+class Substitutions(Kind):
+    """``NAME=VALUE``, values of parameters that are put into the description before anything else is read."""
+
+
+@dataclass(frozen=True)
+class Parsed(Kind):
+    """A text that is read with complaints about places in it."""
+
+    read: Callable[[str, System, Complaints], Any] = lambda text, system, complaints: None
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,8 @@ class Asked:
     ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
     ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
-    knows what was measured before.
+    knows what was measured before; ``letters``: the author's, in which formulas are written, None where nothing was
+    said of them.
     """
 
     system: System
@@ -94,6 +95,7 @@ class Asked:
     typed: Mapping[str, Any] = field(default_factory=dict)
     store: Callable[[], BinaryIO | None] = lambda: None
     remember: Remember = unremembered
+    letters: tuple[str, ...] | None = None
 
     @property
     def motion(self) -> Scenario:
@@ -109,7 +111,8 @@ class Answer:
     behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
     the names of files.  ``owner``: the command whose set
     the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
-    off the making of some of them, which is raised when the others have been written.
+    off the making of some of them, which is raised when the others have been written; ``text``: what is
+    printed as it is, and nothing else, for other programs.
     """
 
     lines: Iterable[Line | Block] = ()
@@ -122,6 +125,7 @@ class Answer:
     owner: str = ""
     more: str = ""
     stopped: BaseException | None = None
+    text: str | None = None
 
 
 @dataclass(frozen=True)

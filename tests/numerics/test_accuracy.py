@@ -20,7 +20,7 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.runge_kutta import RungeKutta
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.methods.tableaux import DOP853
+from mbsym.numerics.methods.tableaux import DOP853, RODAS5P
 from mbsym.numerics.trade.comparison import Comparison, Difference
 from mbsym.report.runs.simulation_words import error_json, error_lines, warnings
 from mbsym.simulation import Simulation
@@ -331,14 +331,15 @@ def test_an_estimate_that_nobody_asked_for_is_cut_and_told_so(monkeypatch: pytes
 
 
 @needs_extended
-def test_a_method_that_is_wrong_itself_is_not_judged_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Planted: weights of dop853 that are too large, so that all its runs solve x' = (1 + 1e-5) f and agree."""
-    wrong = replace(DOP853, weights=tuple(weight * Fraction(100_001, 100_000) for weight in DOP853.weights))
-    monkeypatch.setitem(METHODS, "dop853", Landing(RungeKutta(wrong)))
-    run = mbsym.simulate(CASES / "osc.yaml", 6, method="dop853", estimate=True)
+@pytest.mark.parametrize("tableau", [DOP853, RODAS5P], ids=lambda tableau: tableau.name)
+def test_a_method_that_is_wrong_itself_is_not_judged_by_itself(tableau: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Planted: weights that are too large, so that all its runs solve x' = (1 + 1e-5) f, or nearly, and agree."""
+    wrong = replace(tableau, weights=tuple(weight * Fraction(100_001, 100_000) for weight in tableau.weights))
+    monkeypatch.setitem(METHODS, tableau.name, Landing(RungeKutta(wrong)))
+    run = mbsym.simulate(CASES / "osc.yaml", 6, method=tableau.name, estimate=True)
     final, worst = true_errors(run, oscillator)
     assert worst > 1e-6
     assert isinstance(run.error, ErrorEstimate)
-    assert run.error.against.method != "dop853"
+    assert run.error.against.method != tableau.name
     assert final / 2 <= run.error.final <= 2 * final
     assert worst / 2 <= run.error.largest <= 2 * worst

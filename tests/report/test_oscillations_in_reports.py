@@ -123,6 +123,15 @@ def test_series_are_functions_of_the_time(small):
     assert eval(one["function"], names) == pytest.approx(at, rel=1e-12)
 
 
+def test_a_solution_that_leaves_nothing_is_periodic_in_all_orders(duffing):
+    """x = 0, y'' = -6 y: of no higher order is it said that it is not looked at."""
+    formal = "Whether some remain in higher orders"
+    assert formal in said(duffing)
+    led = point("+ 3*y**2 + eps*x**2*y", small="{eps: {leading: y}}", names="x, y", place="x, y, 0")
+    assert "it leaves nothing (verified)." in said(led)
+    assert formal not in said(led)
+
+
 def test_an_amplitude_that_parameters_may_forbid(limit_cycle):
     """2 sqrt(k): told where it is real; not asked where k > 0 is known, refused where k < 0."""
     text = said(limit_cycle)

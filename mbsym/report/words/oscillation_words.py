@@ -178,9 +178,11 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
 def sentences(told: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
     found, values = told.found, _values(told)
+    least = [one for one in found.residuals if one is not None]
     if found.kind is Amplitude.FREE:
         yield say(_FREE, **values, amplitude=told.formula(found.amplitude), sine=_wave(told, False))
-        yield Said(_FORMAL)
+        if least or told.taylor:  # else it is a solution
+            yield Said(_FORMAL)
     else:
         yield say(_DETERMINED, **values, value=_wave(told, True))
         if not told.real_amplitude:
@@ -194,7 +196,6 @@ def sentences(told: Oscillating) -> Iterator[Said]:
     if found.constants:
         names = tuple(told.formula(x) for _, x in found.constants)
         yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))
-    least = [one for one in found.residuals if one is not None]
     left = values | {"left": str(min(least, default="")), "next": str(found.order + 1)}
     if told.taylor:
         yield say(_TAYLOR, degree=str(found.order + 1))

@@ -123,6 +123,7 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
     """What happened, when, and in which state; what was kept."""
     from mbsym.numerics.methods.interface import (
         BLOW_UP,
+        OUT_OF_REACH,
         SINGULAR,
         SINGULAR_CONSTRAINTS,
         STEP_LIMIT,
@@ -152,6 +153,10 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
         SINGULAR_CONSTRAINTS: Message(
             "a mechanism in a singular position (links in line, branches that meet): the accelerations do not follow "
             "from the constraints there; start beside it"
+        ),
+        OUT_OF_REACH: Message(
+            "what moves the constraints leads the mechanism to the end of its reach (links stretched out, or blocked): "
+            "stop earlier, or let it move less far"
         ),
         STEP_LIMIT: Message(
             "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau"
