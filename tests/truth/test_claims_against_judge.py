@@ -211,3 +211,30 @@ def test_a_lost_part_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     found = Case(mbsym.loads(text, (6,)), (("a", ">", "sufficient"),))
     assert any("unstable with it" in wrong for wrong in found.contradictions())
+
+
+def test_a_drift_at_a_border_is_told_where_a_claim_is_judged_by_it() -> None:
+    """m x'' = -k (x - y), M y'' = k (x - y): for k > 0 only x + y drifts, for k = 0 so does x - y.
+
+    Both are "stable but for a drift of cyclic coordinates": why k >= 0 does not suffice, and k > 0 is needed, is told.
+    """
+    text = """
+mbsym: 1
+name: free dumbbell
+parameters: {m: positive, M: positive, k: real}
+bodies:
+  - {name: p, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: q, attached to: 0, mass: M, connection point: [y, 0, 0], coordinates: [y]}
+loads:
+  - potential: k*(x - y)**2/2
+motion: {}
+values: {m: 1, M: 2, k: 0}
+claims:
+  - {claim: condition, that: k > 0, as: necessary}
+  - {claim: condition, that: k >= 0, as: sufficient}
+"""
+    needed, enough = mbsym.loads(text).claims
+    assert "cyclic there only drift away" in str(needed.remark)
+    assert enough.outcome == FAILS
+    assert enough.counterexample is not None
+    assert "cyclic there only" in str(enough.counterexample.shows[-1][1])

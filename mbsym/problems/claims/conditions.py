@@ -69,6 +69,7 @@ class Need:
 
     ``but_borders``: beyond it is, but perhaps where other conditions are equalities.  ``because``: what it is among the
     conditions of problem 6, or follows from; ``exponential``: the coordinates whose roots are to the left only with it.
+    ``drifts``: with equality it is unstable only as coordinates count that are cyclic there.
     """
 
     everywhere: bool
@@ -77,6 +78,7 @@ class Need:
     because: Remark
     exponential: tuple[str, ...] | None
     note: str
+    drifts: bool = False
 
 
 def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
@@ -90,7 +92,8 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
     needs = [] if never else [_need(region, claim) for region in regions]
     for one in needs:
         if one.everywhere:
-            return _told(result, EXACT, one.because, said(Said.UNSTABLE_WITHOUT))
+            drifts = (said(Said.DRIFTS_WITH_EQUALITY),) if one.drifts else ()
+            return _told(result, EXACT, one.because, said(Said.UNSTABLE_WITHOUT), *drifts)
     tried = _refuting(derived, claim)
     example = tried.found
     exponential = next((one for one in needs if one.exponential is not None), None)
@@ -121,7 +124,7 @@ def _need(region: Region, claim: Claim) -> Need:
     rows = region.without_roots(_as_printed(region, claim))
     edges = [tuple(map(_closed, row)) for row in rows]
     what, _ = _found_among(region, wanted, ("sufficient",))
-    everywhere = beyond = but_borders = False
+    everywhere = beyond = but_borders = drifts = False
     exponential: tuple[str, ...] | None = None
     bodies_used = False
     for bodies in (False, True):
@@ -136,7 +139,8 @@ def _need(region: Region, claim: Claim) -> Need:
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
         if not everywhere and (beyond or wanted.relation == "!="):
-            everywhere = region.on_border(pieces[-1], list(map(_closed, pieces[:-1]))).counted is Word.UNSTABLE
+            border = region.on_border(pieces[-1], list(map(_closed, pieces[:-1])))
+            everywhere, drifts = border.counted is Word.UNSTABLE, Flaw.HERE in border.flawed
         exponential = region.exponential(wanted, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
@@ -144,7 +148,7 @@ def _need(region: Region, claim: Claim) -> Need:
     labels = region.labels(exponential or ()) if not (everywhere or beyond) else region.labels()
     note = _BODIES if bodies_used else ""
     because = what or said(Said.FOLLOWS, labels, note)
-    return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note)
+    return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note, drifts)
 
 
 def _closed(wanted: Inequality) -> Inequality:

@@ -29,6 +29,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, SingularPoint
 from mbsym.algebra.point import Balls, Rationals
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number, names
 from mbsym.formulas.formula import Matrix
 from mbsym.mechanics.oracle import State
@@ -39,7 +40,7 @@ from mbsym.model.assumptions import has_sign, holds
 from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
 from mbsym.problems.stability.sentences import with_theorem
-from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.verdict import Flaw, Verdict
 from mbsym.problems.stability.word import Word
 
 #: Parameters, and states, that are tried.
@@ -283,6 +284,11 @@ class Trials:
     def _shown(self, trial: Trial, gaps: Sequence[tuple[str, Any, str]], border: bool) -> Counterexample:
         verdict = self.looked_into(trial)
         word = with_theorem(verdict.word, verdict.theorems)
+        if Flaw.HERE in verdict.flawed:
+            word = Message(
+                "[[verdict]]; some of these coordinates are cyclic there only, and with them counted it is unstable",
+                verdict=word,
+            )
         at = tuple((name, str(trial.values[name])) for name in self.system.parameter_names)
         shows = tuple((text, str(gap)) for text, gap, _ in gaps)
         return Counterexample(at, (*shows, (THE_MOTION, word)), verdict.word, bool(gaps[0][1] == 0), border)

@@ -18,6 +18,7 @@ class Said(Enum):
     FOLLOWS = auto()  # (conditions, or LABELS of each part; note)
     LABELS = auto()  # (labels of conditions, coordinates)
     UNSTABLE_WITHOUT = auto()
+    DRIFTS_WITH_EQUALITY = auto()  # along coordinates that are cyclic there only
     UNSTABLE_BEYOND = auto()  # but for the case of equality
     UNSTABLE_INSIDE = auto()  # but where another condition is an equality
     FOR_EXPONENTIAL = auto()  # (of which coordinates, "" of all; note)
@@ -66,6 +67,8 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
     Said.FOLLOWS: "it follows from [[1]][[2]]",
     Said.LABELS: "[[1]] of [[2]]",
     Said.UNSTABLE_WITHOUT: "without it the motion is unstable",
+    Said.DRIFTS_WITH_EQUALITY: "with equality coordinates that are cyclic there only drift away, which counts as "
+    "unstable",
     Said.UNSTABLE_BEYOND: "without it, but for the case of equality, the motion is unstable",
     Said.UNSTABLE_INSIDE: "without it, but where a condition of problem 6 is an equality, the motion is unstable",
     Said.FOR_EXPONENTIAL: lambda whose, note: (

@@ -148,8 +148,8 @@ def warnings(conservation: Conservation, error: ErrorEstimate | NoEstimate) -> I
         yield Message(text, quantity=Message(conservation.quantity))
     if isinstance(error, ErrorEstimate) and error.parted is not None:
         text = (
-            "from t = [[time]] on this run and a better one have little in common: the motion is chaotic or starts at "
-            "an unstable rest, the run has stepped over something short, or it is too coarse"
+            "from t = [[time]] on this run and a better one have little in common: the motion is chaotic or comes "
+            "close to an unstable one, as rest may be, the run has stepped over something short, or it is too coarse"
         )
         yield Message(text, time=f"{error.parted:.4g}")
 
