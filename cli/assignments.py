@@ -18,8 +18,6 @@ from mbsym.studies.study import missing as unfit
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
-    from mbsym.model.reducing import Reducing
-    from mbsym.model.scaling import Scaling
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Lack, Scenario
 
@@ -146,32 +144,15 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
     return with_values(system, values)
 
 
-def scaling_of(text: str, system: System, options: Options) -> Scaling | None:
-    """What ``--scale`` says; every complaint joins those of ``options``."""
-    from mbsym.source.scaling import read_scaling
-
-    text, complaints = " ".join(text.splitlines()), Complaints()
-    found = read_scaling(text, system, complaints)
-    options.complaints += [render_option(one, text, "--scale", options.say) for one in complaints.sorted()]
-    return found
-
-
-def reduction_of(text: str, options: Options) -> Reducing | None:
-    """What ``--reduce`` says; every complaint joins those of ``options``."""
-    from mbsym.source.reduction import read_reduction
-
-    text, complaints = " ".join(text.splitlines()), Complaints()
-    found = read_reduction(text, complaints)
-    options.complaints += [render_option(one, text, "--reduce", options.say) for one in complaints.sorted()]
-    return found
-
-
 def in_scale(system: System, text: str, options: Options) -> System | None:
     """The description in the variables of ``--scale``; why there is none joins the complaints of ``options``."""
     from mbsym.algebra.failures import Failure
+    from mbsym.source.scaling import read_scaling
     from mbsym.studies.groups import in_scale as described
 
-    scaling = scaling_of(text, system, options)
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    scaling = read_scaling(text, system, complaints)
+    options.complaints += [render_option(one, text, "--scale", options.say) for one in complaints.sorted()]
     try:
         return None if scaling is None else described(system, scaling)
     except Failure as error:

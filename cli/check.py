@@ -1,4 +1,7 @@
-"""``mbsym check``: validates descriptions without deriving anything."""
+"""``mbsym check``: validates descriptions without deriving anything.
+
+No study: complaints are what it finds, of many files, where a study has nothing to say once there is one.
+"""
 
 from __future__ import annotations
 

@@ -28,7 +28,6 @@ from mbsym.studies.study import Watch, unwatched
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.status import Status
-    from rich.text import Text
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
@@ -217,15 +216,6 @@ def show(lines: Iterable[Line], indent: int = 2) -> None:
         tell(" " * indent, *parts, whole=whole, margin=None if margin is None else margin + indent)
 
 
-def indented(text: Text, indent: int) -> None:
-    """Wrapped with a hanging indent on a terminal; one line elsewhere, so that nothing is cut from a log."""
-    from rich.padding import Padding
-    from rich.text import Text
-
-    out = console()
-    out.print(Padding(text, (0, 0, 0, indent)) if out.is_terminal else Text(" " * indent) + text)
-
-
 @contextmanager
 def status(quiet: bool, text: str = "") -> Iterator[Callable[[str], None]]:
     """A spinner on standard error that says what is being done; nothing where it is no terminal."""
@@ -388,37 +378,6 @@ class OutPath(click.Path):
 
 
 # What is being done, on standard error: words with a bar, or a bar over simulated time or whatever is counted.
-
-
-@contextmanager
-def progress(quiet: bool, name: str, end: float, what: str = "t") -> Iterator[Callable[[float], None]]:
-    """On standard error; nothing where that is no terminal.  ``what`` is counted: the time, unless it is said."""
-    if quiet or not sys.stderr.isatty():
-        yield lambda t: None
-        return
-    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TextColumn(what + " = {task.completed:.4g}"),
-        TimeRemainingColumn(),
-        console=console(stderr=True),
-        transient=True,
-    )
-    with bar:
-        task = bar.add_task(name, total=end)
-        shown = 0.0
-
-        def watch(t: float) -> None:
-            nonlocal shown
-            now = time.monotonic()
-            if now - shown > 0.05:
-                shown = now
-                bar.update(task, completed=t)
-
-        yield watch
 
 
 @contextmanager

@@ -1,4 +1,7 @@
-"""``mbsym convert``: YAML to the editor's plain text and back."""
+"""``mbsym convert``: YAML to the editor's plain text and back; robots to YAML.
+
+No study: what it reads may be a robot, and what it writes is a description, no result of one.
+"""
 
 from __future__ import annotations
 

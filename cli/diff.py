@@ -1,4 +1,7 @@
-"""``mbsym diff``: what changed between two results, or between a description and the results that are kept of it."""
+"""``mbsym diff``: what changed between two results, or between a description and the results that are kept of it.
+
+No study: it is about two files, or two folders of them, most of which are no descriptions.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterator
 from difflib import get_close_matches
@@ -159,7 +160,7 @@ def _narrowed(text: str) -> str:
     """The text in the width that is asked for: paragraphs filled anew, formulas and lists line by line.
 
     A line goes on the one before if that is as wide as a paragraph's lines are, and both begin at the same place, or
-    behind the mark of an item.
+    where the words of an item begin, behind its mark or its name.
     """
     width = asked_width()
     if width is None or max(map(len, text.split("\n"))) <= width:
@@ -168,7 +169,12 @@ def _narrowed(text: str) -> str:
     wide = False
     for line in text.split("\n"):
         begins = len(line) - len(line.lstrip(" "))
-        if wide and line.strip() and begins == _margin(lines[-1]) and not line.lstrip().startswith(("* ", ">>> ")):
+        if (
+            wide
+            and line.strip()
+            and begins == _margin(lines[-1])
+            and not line.lstrip().startswith(("* ", "- ", ">>> "))
+        ):
             lines[-1] += " " + line.lstrip(" ")
         else:
             lines.append(line)
@@ -181,9 +187,10 @@ FULL = 95
 
 
 def _margin(line: str) -> int:
-    """Where the text of a line begins, behind the mark of an item."""
-    bare = line.lstrip(" ")
-    return len(line) - len(bare) + (2 if bare.startswith("* ") else 0)
+    """Where the words of a line begin: behind the mark of an item, or behind the name and the gap of a table's row."""
+    item = re.match(r" *[*-] | {4}\w\S*(?: \S+){,3}  +(?=\S)| *", line)
+    assert item is not None
+    return item.end()
 
 
 def _topic(name: str) -> str:

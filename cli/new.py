@@ -1,4 +1,7 @@
-"""``mbsym new``: a commented description that runs."""
+"""``mbsym new``: a commented description that runs.
+
+No study: there is no description yet.
+"""
 
 from __future__ import annotations
 

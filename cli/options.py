@@ -118,13 +118,6 @@ class Options:
                 option, "exists", Message("[[file]] is there already", file=printable(path)), "another name, or --force"
             )
 
-    def time(self, text: str | None) -> float | None:
-        """``--time``, without which nothing can be simulated."""
-        if text is None:
-            hint = Message("for example [[example]]", example="--time 60")
-            self.complain("--time", "missing-option", "how long to simulate is not said", hint)
-        return self.number("--time", text)
-
     def problems(self, text: str) -> tuple[int, ...]:
         """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""
         found: set[int] = set()

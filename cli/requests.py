@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe
+from mbsym.expressions.place import Complaints
 from mbsym.studies.request import (
     Assignments,
+    Errors,
     ExactSettings,
     Field,
     Flag,
@@ -20,12 +22,14 @@ from mbsym.studies.request import (
     Named,
     Names,
     Number,
+    Parsed,
     Place,
     Quantity,
     Range,
     Ranges,
     Settings,
     Share,
+    Substitutions,
     Whole,
     Word,
     Words,
@@ -38,9 +42,11 @@ if TYPE_CHECKING:
     from mbsym.numerics.scenario import Scenario
 
 
-def option_of(field: Field) -> click.Option:
+def option_of(field: Field) -> click.Parameter:
     """The option of one field; its value is text, which is read with all the others."""
     kind = field.kind
+    if isinstance(kind, Names) and kind.positional:
+        return click.Argument([field.name], nargs=-1, metavar=kind.metavar)
     names = [name for name in (field.option, kind.short) if name]
     needed = field.required and isinstance(kind, Number)
     beside = f"  [{f'default: {kind.usual}' if kind.usual else 'required'}]" if kind.usual or needed else ""
@@ -53,18 +59,16 @@ def option_of(field: Field) -> click.Option:
         return click.Option([*names, field.name], is_flag=True, help=told)
     if isinstance(kind, Place):
         return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
-    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges))
-    usual = None if repeated or field.default in (None, ()) else _text(field.default)
+    repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges, Substitutions))
+    repeated = repeated and not getattr(kind, "separated", False)
+    usual = None if repeated or field.default in (None, (), "") else _text(field.default)
+    if isinstance(kind, Number) and kind.alone:
+        alone = {"is_flag": False, "flag_value": kind.alone}
+        return click.Option([*names, field.name], metavar=kind.metavar, help=told, **alone)  # type: ignore[arg-type]
     return click.Option(
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
         show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=told,
     )  # fmt: skip
-
-
-def read_some(request: type, names: Sequence[str], texts: Mapping[str, Any], options: Options) -> dict[str, Any]:
-    """The values of some fields that do not ask for a system."""
-    by_name = {field.name: field for field in fields_of(request)}
-    return {name: _read(by_name[name], texts[name], None, options) for name in names}
 
 
 def _text(default: Any) -> str:
@@ -77,16 +81,29 @@ def _text(default: Any) -> str:
 
 def read_fields(
     file: Path, system: System | None, request: type, texts: Mapping[str, Any], options: Options
-) -> tuple[dict[str, Any], Scenario | None]:
-    """The values of all fields, None for what cannot be read, which joins the complaints; the motion, if it is one."""
+) -> tuple[dict[str, Any], Scenario | None, System | None]:
+    """(the values of all fields, the motion if it is one, the system with what is substituted in it).
+
+    What cannot be read is None, and joins the complaints.
+    """
     values: dict[str, Any] = {}
     given: Scenario | None = None
-    for field in sorted(fields_of(request), key=lambda one: not isinstance(one.kind, Settings)):
+    fields = fields_of(request)
+    for field in (field for field in fields if isinstance(field.kind, Substitutions)):
+        if system is not None and texts[field.name]:
+            from mbsym_cli.assignments import with_settings
+
+            system = with_settings(file, system, texts[field.name], options)
+    laws = {field.kind.laws for field in fields if isinstance(field.kind, Settings)}
+    # Values are read when the laws of inputs are known, the others when the motion is.
+    first = [field for field in fields if field.name in laws] + [x for x in fields if isinstance(x.kind, Settings)]
+    for field in (*first, *(field for field in fields if field not in first)):
         if isinstance(field.kind, Settings):
-            given, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, options)
+            known = {name: law for name, law in values.get(field.kind.laws, {}).items() if law is not None}
+            given, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, known, options)
         else:
-            values[field.name] = _read(field, texts[field.name], system, options, given)
-    return values, given
+            values[field.name] = _read(field, texts[field.name], system, texts, options, given)
+    return values, given, system
 
 
 def _motion(
@@ -95,6 +112,7 @@ def _motion(
     settings: tuple[str, ...],
     kind: Settings,
     texts: Mapping[str, Any],
+    laws: Mapping[str, Any],
     options: Options,
 ) -> tuple[Scenario | None, Mapping[str, Any]]:
     if system is None:
@@ -103,10 +121,17 @@ def _motion(
 
     if not kind.whole(texts):
         return None, sound_numbers(file, system, settings, options)
-    return given_numbers(file, system, settings, options, declared=kind.declared, state=kind.state)
+    return given_numbers(file, system, settings, options, laws, kind.declared(texts), kind.state)
 
 
-def _read(field: Field, given: Any, system: System | None, options: Options, motion: Scenario | None = None) -> Any:
+def _read(
+    field: Field,
+    given: Any,
+    system: System | None,
+    texts: Mapping[str, Any],
+    options: Options,
+    motion: Scenario | None,
+) -> Any:
     match field.kind:
         case Number() as kind:
             if given is None and field.required:
@@ -115,9 +140,14 @@ def _read(field: Field, given: Any, system: System | None, options: Options, mot
         case Whole() as kind:
             return options.whole(field.option, given, kind.least, kind.most, kind.why)
         case Word() as kind:
-            return None if given is None else options.word(field.option, given, kind.choices, kind.what)
+            word = given if given is None or given in kind.known else given.lower()
+            return None if word is None else options.word(field.option, word, kind.known, kind.what)
         case Words() as kind:
             return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
+        case Substitutions():
+            return dict.fromkeys(text.partition("=")[0].strip() for text in given)
+        case Parsed() as kind:
+            return None if given is None or system is None else _parsed(field.option, kind, given, system, options)
         case Range():
             from mbsym_cli.variations import read_axis
 
@@ -138,9 +168,16 @@ def _read(field: Field, given: Any, system: System | None, options: Options, mot
             return dict.fromkeys(assigned.texts) | dict(assigned.values)
         case Assignments():
             return {}
+        case Names() as kind:
+            return _names(field.option, kind, given, system, options)
+        case Errors() as kind:
+            known = () if system is None else kind.names(system, texts)
+            return None if given is None else _errors(field.option, kind, given, known, options)
         case Ranges() as kind:
             from mbsym_cli.variations import read_variations
 
+            if not given and not field.required:
+                return ()
             return read_variations(field.option, given, kind, system, motion, options)
         case Formula() as kind:
             from mbsym_cli.formulas import read_quantity
@@ -149,14 +186,48 @@ def _read(field: Field, given: Any, system: System | None, options: Options, mot
         case Share() if given is not None:
             return _share(field.option, given, options)
         case Formulas():
-            from mbsym_cli.formulas import MOTIONS, read_formula
+            from mbsym_cli.formulas import LAWS, MOTIONS, read_formula
 
             found: dict[str, Any] = {}
             for text in given if system is not None else ():
-                read_formula(text, system, MOTIONS, found, options)
+                read_formula(text, system, LAWS if field.kind.laws else MOTIONS, found, options)
             return dict.fromkeys(text.partition("=")[0].strip() for text in given) | found
         case _:
             return given
+
+
+def _names(option: str, kind: Names, given: Any, system: System | None, options: Options) -> tuple[str, ...]:
+    """As they are written; separated by commas, each once."""
+    names: tuple[str, ...] = given or ()
+    if kind.separated:
+        names = tuple(dict.fromkeys(part.strip() for part in (given or "").split(",") if part.strip()))
+    if kind.known is not None and system is not None:
+        names = tuple(name for name in names if options.word(option, name, kind.known(system), kind.what) is not None)
+    return names
+
+
+def _parsed(option: str, kind: Parsed, text: str, system: System, options: Options) -> Any:
+    text, complaints = " ".join(text.splitlines()), Complaints()
+    value = kind.read(text, system, complaints)
+    for complaint in complaints.sorted():
+        options.add(option, complaint, text)
+    return value
+
+
+def _errors(option: str, kind: Errors, text: str, known: Sequence[str], options: Options) -> dict[str, float] | None:
+    """Errors by name, "" for everything; where no names are ``known`` any goes."""
+    errors: dict[str, float] = {}
+    before = len(options.complaints)
+    for part in text.split(","):
+        left, equals, right = (piece.strip() for piece in part.partition("="))
+        error = options.number(option, right if equals else left, kind.least, kind.most)
+        name = left if equals else ""
+        if name in errors:
+            twice = Message("two errors are given for [[name]]", name=name or worded("everything"))
+            options.complain(option, "conflicting-options", twice)
+        elif not equals or not known or options.word(option, name, known, "quantity") is not None:
+            errors[name] = error or kind.least
+    return None if len(options.complaints) > before else errors
 
 
 def _share(option: str, text: str, options: Options) -> tuple[int, int] | None:

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import click
 
+from mbsym.studies.simulate import LEAST_ERROR, MOST_ERROR
 from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.letters import with_letters
 from mbsym_cli.options import Options
 from mbsym_cli.reports import Request, report_on
-from mbsym_cli.simulate.request import COARSEST, FINEST
 
 if TYPE_CHECKING:
     from mbsym.formulas.tree import Angles
@@ -214,7 +214,7 @@ def _ledger(ledger: bool, accuracy: str | None, until: str | None, asked: Option
             asked.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
     if not ledger:
         asked.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
-    error, time = asked.number("--accuracy", accuracy, FINEST, COARSEST), asked.number("--until", until)
+    error, time = asked.number("--accuracy", accuracy, LEAST_ERROR, MOST_ERROR), asked.number("--until", until)
     if error is None or time is None:
         return ledger
     from mbsym.numerics.ledger.work import AccuracyGoal

@@ -1,7 +1,4 @@
-"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C.
-
-``attempted`` and ``leave`` are the same for commands that are written out.
-"""
+"""A study as a command: options, complaints, what is shown meanwhile, files, lines, exit codes, Ctrl-C."""
 
 from __future__ import annotations
 
@@ -18,10 +15,10 @@ from typing import Any, NoReturn, TypeVar
 import click
 from click.core import ParameterSource
 
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaint
 from mbsym.model.system import System
-from mbsym.report.content import Block, facts
+from mbsym.report.content import Block
 from mbsym.report.language import Language
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.plain_writer import Writer
@@ -49,6 +46,7 @@ from mbsym_cli.console import (
     OutPath,
     asked_width,
     complain,
+    diagnose,
     printable,
     read_description,
     read_held,
@@ -146,7 +144,7 @@ class _Run:
         study, file = self.study, self.file
         system = self._described()
         self.say = self.options.say = Language("" if system is None else system.language).say
-        values, given = read_fields(file, system, study.request, self.texts, self.options)
+        values, given, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
         request, folder = study.request(**values), self.folder
@@ -155,7 +153,8 @@ class _Run:
             asked = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
-                asked = Asked(system, given, printable(file), folder, write_whole, self.typed, store, _memory())
+                known = (self.typed, store, _memory(), self.letters)
+                asked = Asked(system, given, printable(file), folder, write_whole, *known)
             self._complain(request, asked)
             kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
             code = prevented(file, folder if kept else None, system is not None, self.options)
@@ -237,8 +236,7 @@ class _Run:
             refusal = study.refusal(error, asked, request)
             if refusal is None:
                 raise
-            for text in (refusal.text, *refusal.more):
-                complain(file, text, self.say)
+            self._complaints((refusal.text, *refusal.more))
             return refusal.code
         if self.among:
             self.told = asked, request, found
@@ -247,8 +245,7 @@ class _Run:
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
-        for text in answer.complaints:
-            complain(file, text, self.say)
+        self._complaints(answer.complaints)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
@@ -256,6 +253,9 @@ class _Run:
         return self._written(place, study.document(asked, request, found))
 
     def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
+        if answer.text is not None:
+            click.echo(answer.text, nl=False)
+            return
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
@@ -269,11 +269,20 @@ class _Run:
             show(with_meanings((), asked.system, self.used | used), asked.system.language)
         if answer.files and loud:
             show_files(asked.folder, answer.files, asked.system.language, answer.more)
+        for one in answer.last if loud else ():
+            tell(*one.parts, whole=one.whole)
+
+    def _complaints(self, texts: Iterable[str]) -> None:
+        """On standard error; what goes on, indented, without the name of the file."""
+        for text in texts:
+            if text.startswith("  "):
+                diagnose(self.say(text))
+            else:
+                complain(self.file, text, self.say)
 
     def _written(self, out: Path, document: Document) -> int:
         """The exit code of a single file."""
-        for text in document.complaints:
-            complain(self.file, text, self.say)
+        self._complaints(document.complaints)
         if document.text is None:
             return FAILED
         try:
@@ -314,31 +323,6 @@ def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = 
         sys.exit(INTERRUPTED)
 
 
-def attempted(
-    file: Path,
-    work: Callable[[], Found],
-    expected: Mapping[type[Exception], str] | None = None,
-) -> Found | None:
-    """What ``work`` finds and writes; None where it fails, and a word about why.
-
-    ``expected`` are failures of its own, with what to say before their message.
-    """
-    from mbsym.algebra.failures import Failure, message_of
-
-    own = dict(expected or {})
-    try:
-        return work()
-    except tuple(own) as error:
-        before = next(text for kind, text in own.items() if isinstance(error, kind))
-        complain(file, f"{before}: {error}")
-    except Failure as error:
-        told = Message("error[no-program]: there is no program for these equations")
-        complain(file, joined((told, message_of(error)), ": "))
-    except OSError as error:
-        complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
-    return None
-
-
 # What a command has found, in the language of the description, and where the files are.
 
 
@@ -357,13 +341,3 @@ def show_files(folder: Path, names: Iterable[str], language: str, more: str = ""
     say = Language(language).say
     listed = f": {', '.join(names)}" + (f" ({say(more)})" if more else "")
     tell(f"  {say(Message('files in'))} ", (printable(folder), "bold"), listed)
-
-
-def show_result(
-    file: Path, system: System, lines: Iterable[tuple[str, str]], folder: Path, names: Iterable[str], after: str = ""
-) -> None:
-    """Prints lines with titles beneath the name of the system, ``after`` which stands what they are about."""
-    about = f": {Language(system.language).say(after)}" if after else ""
-    tell((f"{system.name}{about}", "bold"), (f"  {printable(file)}", "dim"))
-    show([facts(lines)], system.language)
-    show_files(folder, names, system.language)

@@ -14,11 +14,10 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.model.system import rational
 from mbsym.source import render_option
 from mbsym.studies.request import Ranges, Varied
-from mbsym.studies.section import unfit_section
 from mbsym_cli.options import MAX_LENGTH, Options
 
 if TYPE_CHECKING:
-    from mbsym.maps.section import Axis, Complaint
+    from mbsym.maps.section import Axis
     from mbsym.model.system import System
     from mbsym.numerics.scenario import Scenario
 
@@ -218,9 +217,3 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
                 complaints.error("bad-number", "a rational number is wanted", Span(1, 1, max(1, len(text))), hint)
     options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
     return value
-
-
-def complain_unfit(wrong: Sequence[Complaint], axis_option: str, options: Options) -> None:
-    """Why a section cannot be made: everything at once, each with what to do."""
-    for one in unfit_section(wrong, axis_option):
-        options.complain(one.option, one.code, one.message, one.hint)

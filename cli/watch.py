@@ -1,4 +1,7 @@
-"""``mbsym watch``: derives a description again whenever it is saved."""
+"""``mbsym watch``: derives a description again whenever it is saved.
+
+No study: it calls ``mbsym run`` again and again, each time in a process of its own.
+"""
 
 from __future__ import annotations
 

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from mbsym.studies.lyapunov import lyapunov as lyapunov
     from mbsym.studies.orbit import orbit as orbit
     from mbsym.studies.regressor import regressor as regressor
-    from mbsym.studies.simulate import ensemble as ensemble
-    from mbsym.studies.simulate import gradient as gradient
-    from mbsym.studies.simulate import plan as plan
-    from mbsym.studies.simulate import sensitivities as sensitivities
     from mbsym.studies.simulate import simulate as simulate
+    from mbsym.studies.simulate.functions import ensemble as ensemble
+    from mbsym.studies.simulate.functions import gradient as gradient
+    from mbsym.studies.simulate.functions import plan as plan
+    from mbsym.studies.simulate.functions import sensitivities as sensitivities
     from mbsym.studies.tables import equilibria as equilibria
     from mbsym.studies.tables import extremes as extremes
     from mbsym.studies.tables import tradeoff as tradeoff
@@ -47,7 +47,8 @@ _PLACES = {
     "lyapunov": ("lyapunov",),
     "orbit": ("orbit",),
     "regressor": ("regressor",),
-    "simulate": ("ensemble", "gradient", "plan", "sensitivities", "simulate"),
+    "simulate": ("simulate",),
+    "simulate.functions": ("ensemble", "gradient", "plan", "sensitivities"),
     "tables": ("equilibria", "extremes", "tradeoff"),
     "trim": ("trim",),
 }

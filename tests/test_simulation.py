@@ -201,8 +201,3 @@ def test_importing_stays_light() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
-
-
-def test_the_command_is_short() -> None:
-    """What commands decide is in the library: their files read arguments and print; those of studies are no files."""
-    assert len((ROOT / "cli" / "simulate" / "command.py").read_text(encoding="utf-8").splitlines()) < 120

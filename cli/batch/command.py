@@ -1,4 +1,7 @@
-"""``mbsym batch``: every description in some folders, each in a process of its own; what is up to date is left."""
+"""``mbsym batch``: every description in some folders, each in a process of its own; what is up to date is left.
+
+No study: it is about many descriptions, none of which is read in this process.
+"""
 
 from __future__ import annotations
 

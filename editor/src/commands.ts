@@ -103,6 +103,8 @@ const KEYS: [string, [string, string][]][] = [
   ["Structure", [
     ["arrows", "up: what it hangs on; down: what hangs on it; left, right: beside it"],
     ["A or Insert", "add a body on this one"],
+    ["L", "add a load, on this body"],
+    ["C", "add a constraint, of this body"],
     ["F2", "rename"],
     ["D", "duplicate with what hangs on it"],
     ["X, then V", "take the body up, hang it on another one (or drag it there)"],

@@ -43,6 +43,12 @@ export function ask<Value>(
       if (before instanceof HTMLElement || before instanceof SVGElement) before.focus();
       resolve(answer);
     });
+    // In a list it would open the list (the space bar and Alt with an arrow do): there it means the same.
+    form.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" || !(event.target instanceof HTMLSelectElement) || event.target.matches(":open")) return;
+      event.preventDefault();
+      buttons.querySelector<HTMLButtonElement>("button[type=submit]")?.click();
+    });
     document.body.append(dialog);
     dialog.showModal();
     const first = dialog.querySelector<HTMLElement>("[autofocus], input, select, button.main");

@@ -4,7 +4,8 @@ import { ask } from "./dialogs.js";
 import { make } from "./elements.js";
 import type { Field, Kind, Style } from "./formkinds.js";
 import type { Model } from "./model.js";
-import type { Operation } from "./seam.js";
+import { declareNew, unknownNames } from "./remedies.js";
+import type { Body, Operation } from "./seam.js";
 import { FIXED_WORDS } from "./structure.js";
 import { AXES } from "./turns.js";
 
@@ -103,13 +104,25 @@ function filled(model: Model, one: Field, label: string): Filled {
   return row([input], () => (plain(input) ? quoted(plain(input)) : ""));
 }
 
+/** What is filled in beforehand where it is about a body: that body, the second of two, its first coordinate. */
+function about(field: Field, inputs: Input[], body: string, coordinate: string): void {
+  const bodies = inputs.filter((input) => input instanceof HTMLSelectElement);
+  if (field.sort === "body" && !field.optional) bodies[0]!.value = body;
+  else if (field.sort === "ends") bodies[1]!.value = body;
+  else if (field.key === "coordinate") inputs[0]!.value = coordinate;
+}
+
+/** The coordinates of a body, as its form shows them. */
+export function coordinatesOf(body: Body | undefined): string[] {
+  const one = body?.fields["coordinates"] ?? body?.fields["generalized coordinates"];
+  const names = (one?.source ?? one?.derived?.source ?? "").replace(/[[\](){}]/g, "").split(",");
+  return names.map((name) => name.trim()).filter(Boolean);
+}
+
 /** Coordinates by name, for what is typed. */
 function coordinateNames(model: Model): HTMLDataListElement {
-  const names = (model.understood?.bodies ?? []).flatMap(({ fields }) => {
-    const one = fields["coordinates"];
-    return (one?.source ?? one?.derived?.source ?? "").replace(/[[\](){}]/g, "").split(",");
-  });
-  const options = [...new Set(names.map((name) => name.trim()).filter(Boolean))].map((value) => make("option", { value }));
+  const names = (model.understood?.bodies ?? []).flatMap(coordinatesOf);
+  const options = [...new Set(names)].map((value) => make("option", { value }));
   return make("datalist", { id: "names-of-coordinates" }, ...options);
 }
 
@@ -124,7 +137,9 @@ async function entered(model: Model, title: string, content: HTMLElement[], oper
     ], "cancel");
     if (chosen === "cancel") return;
     const wanted = operations();
+    const before = unknownNames(model);
     const outcome = typeof wanted === "string" ? null : await model.change(wanted, words);
+    if (outcome?.done) await declareNew(model, before);
     trouble.textContent = outcome?.done ? "" : (typeof wanted === "string" ? wanted : (outcome?.complaints[0]?.message ?? "this cannot be done"));
     if (!outcome?.done) continue;
     if (chosen === "add") return;
@@ -136,7 +151,8 @@ async function entered(model: Model, title: string, content: HTMLElement[], oper
 const KEPT = new Set(["of", "place", "variable"]);
 
 /** An item of one of several kinds. */
-export async function addItem(model: Model, title: string, adding: string, style: Style, kinds: Kind[], insert: (source: string) => Operation[]): Promise<void> {
+export async function addItem(model: Model, title: string, adding: string, style: Style, kinds: Kind[], insert: (source: string) => Operation[], body?: string): Promise<void> {
+  const coordinate = coordinatesOf(model.understood?.bodies.find((one) => one.name === body))[0] ?? "";
   const kind = make("select", { autofocus: true, "aria-label": "Kind" }, ...kinds.map((one, index) => make("option", { value: index }, one.words)));
   const host = make("div", { class: "form entry" });
   let fields: [Field, Filled][] = [];
@@ -147,6 +163,7 @@ export async function addItem(model: Model, title: string, adding: string, style
     for (const [one, own] of fields) {
       const values = one.key ? before.get(one.key) : undefined;
       if (values?.length === own.inputs.length) own.inputs.forEach((input, index) => (input.value = values[index] ?? input.value));
+      else if (body !== undefined) about(one, own.inputs, body, coordinate);
     }
     host.replaceChildren(...fields.map(([, own]) => own.element));
   };

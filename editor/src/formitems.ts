@@ -142,17 +142,23 @@ async function addPair(model: Model, words: string, path: Path): Promise<void> {
   await addFields(model, words, fields, (values) => [{ op: "insert", path: [...path, values.get("coordinate")!], source: values.get("formula")! }]);
 }
 
+/** Asks for an item at the end of a list; `body` is the one that it is rather about. */
+export function addTo(model: Model, section: string, where: Path, title: string, adding: string, body?: string): Promise<void> {
+  const { style, kinds } = sortOf(model, section);
+  const insert = (source: string): Operation[] => [{ op: "insert", path: [...where, nodeAt(model, where)?.children?.length ?? 0], source }];
+  return addItem(model, title, adding, style, kinds, insert, body);
+}
+
 /** A section of items: `section` says of which sort, `where` the list stands. */
 export function items(model: Model, section: string, where: Path, title: string, adding: string, more: Partial<Section> = {}): Section {
   const list = nodeAt(model, where);
   const found = list?.kind === "sequence" ? (list.children ?? []) : [];
   const sort = sortOf(model, section);
-  const insert = (source: string): Operation[] => [{ op: "insert", path: [...where, nodeAt(model, where)?.children?.length ?? 0], source }];
   return {
     title: found.length > 0 ? `${title} (${found.length})` : title,
     key: title,
     groups: () => found.flatMap((item, index) => itemGroups(model, section, where, sort, item, index)),
-    actions: [{ words: `Add ${adding}`, label: `Add ${adding}`, act: () => addItem(model, title, adding, sort.style, sort.kinds, insert) }],
+    actions: [{ words: `Add ${adding}`, label: `Add ${adding}`, act: () => addTo(model, section, where, title, adding) }],
     closed: found.length === 0 || section === "claims",
     ...more,
   };

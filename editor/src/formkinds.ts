@@ -90,10 +90,11 @@ function wrapped(model: Model, definition: string): Kind[] {
       .filter(([inner]) => inner !== "center")
       .map(([inner, one]) => field(inner, one, !needed.includes(inner)));
     const ways = Object.values(schema.dependentSchemas ?? {});
-    if (ways.length === 0) kinds.push({ words: key, key, fields });
+    const push = (words: string, own: Field[]): unknown => kinds.push({ words, key, fields: [...own.filter((one) => !one.optional), ...own.filter((one) => one.optional)] });
+    if (ways.length === 0) push(key, fields);
     for (const way of ways) {
       const own = fields.filter((one) => !(one.key in (way.properties ?? {})));
-      kinds.push({ words: `${key}: ${way.title}`, key, fields: own.map((one) => ({ ...one, optional: !way.required?.includes(one.key) })) });
+      push(`${key}: ${way.title}`, own.map((one) => ({ ...one, optional: !way.required?.includes(one.key) })));
     }
   }
   return kinds;

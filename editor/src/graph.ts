@@ -3,6 +3,7 @@
 
 import "./graph.css";
 import { make, makeSvg } from "./elements.js";
+import { coordinatesOf } from "./formentry.js";
 import { FIXED, laidOut, NODE, type Layout, type Placed } from "./layout.js";
 import type { Model } from "./model.js";
 import type { Body, Tie } from "./seam.js";
@@ -48,6 +49,8 @@ class Graph {
       "div",
       { class: "tools", role: "toolbar", "aria-label": "Structure" },
       tool("Add body", "A", "Add a body on the selected one", () => this.structure.add(this.current)),
+      tool("Add load", "L", "Add a load, on the selected body", () => this.structure.addLoad(this.current)),
+      tool("Add constraint", "C", "Add a constraint, of the selected body", () => this.structure.addConstraint(this.current)),
       tool("Rename", "F2", "Rename the selected body", () => this.structure.rename(this.current)),
       tool("Duplicate", "D", "Duplicate the selected body and what hangs on it", () => this.structure.duplicate(this.current)),
       tool("Attach to", "X, V", "Hang the selected body on another one", () => this.structure.askReattach(this.current)),
@@ -122,7 +125,7 @@ class Graph {
       this.elements.set(name, element);
     }
     const body = this.bodies.find((one) => one.name === name);
-    const coordinates = body ? coordinatesOf(body) : "";
+    const coordinates = coordinatesOf(body).join(", ");
     const loads = this.ties(this.model.understood?.loads, name);
     const constraints = this.ties(this.model.understood?.constraints, name);
     const number = name === FIXED ? 0 : this.bodies.findIndex((one) => one.name === name) + 1;
@@ -262,6 +265,8 @@ class Graph {
       Enter: () => document.querySelector<HTMLElement>("#form-body input")?.focus(),
       Insert: () => this.structure.add(here.name),
       a: () => this.structure.add(here.name),
+      l: () => this.structure.addLoad(here.name),
+      c: () => this.structure.addConstraint(here.name),
       F2: () => this.structure.rename(here.name),
       Delete: () => this.structure.remove(here.name),
       d: () => this.structure.duplicate(here.name),
@@ -364,13 +369,6 @@ class Graph {
 function tool(words: string, key: string, title: string, act: () => unknown): HTMLElement {
   const named = key ? `${title} (${key})` : title;
   return make("button", { type: "button", title: named, "aria-label": words.length === 1 ? title : null, click: () => void act() }, words);
-}
-
-/** The coordinates that the body's form shows, without brackets. */
-function coordinatesOf(body: Body): string {
-  const field = body.fields["coordinates"] ?? body.fields["generalized coordinates"];
-  const source = field?.source ?? field?.derived?.source ?? "";
-  return source.replace(/^[[{(]|[\]})]$/g, "").trim();
 }
 
 export function panel(host: HTMLElement, model: Model): void {

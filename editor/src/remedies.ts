@@ -2,7 +2,7 @@
 
 import { nodeAt } from "./fields.js";
 import type { Model } from "./model.js";
-import type { Complaint, Operation, Path } from "./seam.js";
+import type { Complaint, Operation, Path, TreeNode } from "./seam.js";
 import { list } from "./turns.js";
 
 export interface Remedy {
@@ -28,6 +28,31 @@ export function remedies(model: Model, complaint: Complaint, path: Path): Remedy
   }
   found.push({ words: `${name} is a parameter`, act: change(() => parameter(model, name, path, alone), "a parameter") });
   return found;
+}
+
+/** Names that nobody knows and that are no slip of the pen. */
+export function unknownNames(model: Model): Map<string, Complaint> {
+  const text = model.understoodText ?? "";
+  const found = (model.understood?.complaints ?? []).filter((one) => one.code === "unknown-name" && !one.hint?.startsWith("did you mean"));
+  return new Map(found.map((one) => [text.slice(one.from, one.to), one] as const).filter(([name]) => /^[A-Za-z]\w*$/.test(name) && !/_dot$|_ddot$/.test(name)));
+}
+
+/** Names that something new has brought along become parameters: whoever writes k in a spring means one. */
+export async function declareNew(model: Model, before: Map<string, Complaint>): Promise<void> {
+  const names = [...unknownNames(model)].filter(([name]) => !before.has(name));
+  const operations = names.flatMap(([name, complaint]) => {
+    const path = pathAt(model.understood?.tree ?? null, complaint.from);
+    return parameter(model, name, path, nodeAt(model, path)?.source?.trim() === name);
+  });
+  if (operations.length === 0) return;
+  const list = names.map(([name]) => name).join(", ");
+  await model.change(operations, `${list} ${names.length === 1 ? "is a parameter" : "are parameters"} now, of the value 1 to begin with`);
+}
+
+/** Where in the description a place of the text is. */
+function pathAt(node: TreeNode | null, at: number): Path {
+  const inner = node?.children?.find((one) => one.from <= at && at < one.to);
+  return inner ? pathAt(inner, at) : (node?.path ?? []);
 }
 
 /** Those that the body introduces by its angles have to be listed, too, where there is a list. */

@@ -3,6 +3,7 @@
 import { asked, ask, confirmed } from "./dialogs.js";
 import { make } from "./elements.js";
 import { nodeAt, valueOf } from "./fields.js";
+import { addTo } from "./formitems.js";
 import { branch, FIXED } from "./layout.js";
 import type { Model } from "./model.js";
 import type { Changed, Joint, Operation, Path } from "./seam.js";
@@ -35,6 +36,14 @@ export class Structure {
     const { name } = body;
     const outcome = await this.model.change([{ op: "add body", ...body, to: to === FIXED ? null : to }], `${name} added on ${on}`);
     if (outcome.done) this.show(name);
+  }
+
+  addLoad(body: string): Promise<void> {
+    return addTo(this.model, "loads", ["loads"], "Loads", "a load", body === FIXED ? undefined : body);
+  }
+
+  addConstraint(body: string): Promise<void> {
+    return addTo(this.model, "constraints", ["constraints"], "Constraints", "a constraint", body === FIXED ? undefined : body);
   }
 
   async rename(body: string): Promise<void> {
@@ -163,7 +172,10 @@ async function askedBody(title: string, free: string, joints: Joint[]): Promise<
   const name = make("input", { type: "text", value: free, autocomplete: "off", spellcheck: "false", autofocus: true });
   const joint = make("select", {}, ...joints.map((one) => make("option", { value: one.name }, `${one.name}: ${one.title.split(",")[0]}`)), make("option", { value: "" }, "none yet: all by hand"));
   const axis = make("select", {}, ...["3", "1", "2"].map((one) => make("option", { value: one }, one)));
-  const asksAxis = () => (axis.disabled = !joints.find((one) => one.name === joint.value)?.axis);
+  const asksAxis = () => {
+    axis.disabled = !joints.find((one) => one.name === joint.value)?.axis;
+    axis.value = joint.value === "slider" ? "1" : "3"; // in the plane of the paper at first, or out of it
+  };
   joint.addEventListener("change", asksAxis);
   asksAxis();
   const rows = [make("label", {}, "Name ", name), make("label", {}, "Joint ", joint), make("label", {}, "Axis ", axis)];

@@ -95,18 +95,23 @@ def rational_ratio(x: Any, y: Any) -> Any:
     return ratio if x == y * ratio else None
 
 
-def square_root_of(x: Polynomial) -> Polynomial | None:
-    """The polynomial whose square x is, of either sign; None where there is none."""
+def square_apart(x: Polynomial) -> tuple[Polynomial, Polynomial]:
+    """(g, h) with x = g^2 h, h without square factors but numbers; g of either sign."""
+    unit = x.context().constant(1)
     content, factors = x.factor_squarefree()
     top, bottom = abs(content.p).isqrt(), content.q.isqrt()
-    if content < 0 or top * top != content.p or bottom * bottom != content.q:
-        return None
-    found = x.context().constant(fmpq(top, bottom))
+    whole = content >= 0 and top * top == content.p and bottom * bottom == content.q
+    outside, inside = (unit * fmpq(top, bottom), unit) if whole else (unit, unit * content)
     for factor, exponent in factors:
-        if exponent % 2:
-            return None
-        found = found * factor ** (int(exponent) // 2)
-    return found
+        outside = outside * factor ** (int(exponent) // 2)
+        inside = inside * factor ** (int(exponent) % 2)
+    return outside, inside
+
+
+def square_root_of(x: Polynomial) -> Polynomial | None:
+    """The polynomial whose square x is, of either sign; None where there is none."""
+    outside, inside = square_apart(x)
+    return outside if inside == 1 else None
 
 
 # Which generators stand in polynomials.

@@ -20,7 +20,7 @@ from flint import Ordering, acb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra
-from mbsym.algebra.factors import square_root_of
+from mbsym.algebra.factors import square_apart
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.rationals import value_at
 from mbsym.expressions.angles import LinearForm
@@ -90,9 +90,8 @@ class Tower(Algebra[Element]):
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
         gens = self.context.gens()
         self._roots, self._free = gens[:MOST_ROOTS][::-1], gens[MOST_ROOTS:]
-        #: s_i^2, polynomials in what stands before them, and what each s_i is divided by to give the root asked for.
+        #: s_i^2, polynomials in what stands before them.
         self.squares: list[fmpq_mpoly] = []
-        self._asked: list[tuple[Element, Element]] = []
         #: Roots that are sines of parameters, and those: name and denominator.
         self._sines: dict[int, tuple[str, int]] = {}
         self._unit, self.work = self.context.constant(1), 0
@@ -168,26 +167,22 @@ class Tower(Algebra[Element]):
         return Element(self, self._conjugate(x.top, k), x.bottom)
 
     def square_root(self, x: Element) -> Element:
-        """A root of x: in the parameters where x is a square of their field, of either sign; else adjoined, once.
+        """A root of x, of either sign: squares that are factors of x taken out, and of what is left one adjoined, once.
 
         That matters: with s^2 = 4 adjoined s - 2 would be neither zero nor have a reciprocal.
         """
-        known = self._square_root(x.top * x.bottom)
-        if known is not None:
-            return self.made(known, x.bottom)
-        for square, root in self._asked:
-            if square == x:
-                return root
-        if len(self.squares) == MOST_ROOTS:
-            raise NoClosedForm(Message("more than [[most]] square roots", most=MOST_ROOTS), limit=Limit.FUNCTIONS)
-        self.squares.append(self.reduced(x.top * x.bottom))
-        root = self.made(self._roots[len(self.squares) - 1], x.bottom)
-        self._asked.append((x, root))
-        return root
+        outside, inside = self._apart(self.reduced(x.top * x.bottom))
+        if inside == self._unit:
+            return self.made(outside, x.bottom)
+        if inside not in self.squares:
+            if len(self.squares) == MOST_ROOTS:
+                raise NoClosedForm(Message("more than [[most]] square roots", most=MOST_ROOTS), limit=Limit.FUNCTIONS)
+            self.squares.append(inside)
+        return self.made(outside * self._roots[self.squares.index(inside)], x.bottom)
 
-    def _square_root(self, x: fmpq_mpoly) -> fmpq_mpoly | None:
-        """The polynomial whose square x is, where x holds no root; None where there is none."""
-        return None if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]) else square_root_of(x)
+    def _apart(self, x: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+        """(g, h) with x = g^2 h, h without square factors but numbers; h = x where x holds a root."""
+        return (self._unit, x) if any(degree > 0 for degree in x.degrees()[:MOST_ROOTS]) else square_apart(x)
 
     def rational(self, x: Element) -> fmpq | None:
         """The number that x is, if it is written as one."""

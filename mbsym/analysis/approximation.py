@@ -25,8 +25,8 @@ from mbsym.mechanics.motion import is_steady, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
 from mbsym.model.system import MotionEntry, System
-from mbsym.problems import linearisation
-from mbsym.problems.equilibrium import equilibrium
+from mbsym.problems import equilibrium, linearisation
+from mbsym.problems.equilibrium import Displacement
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:
@@ -93,6 +93,16 @@ def residuals(analysis: Analysis) -> Column:
     return column(ring, [-x.value for x in newton_euler.residuals(analysis.expanded).values()])
 
 
+def beside(analysis: Analysis, singular: Sequence[Displacement]) -> list[Polynomial]:
+    """What the motion demands besides f = 0 where coordinates are singular on it."""
+    if not singular:
+        return []
+    ring, names = analysis.ring, analysis.system.coordinates
+    jets = newton_euler.residuals(analysis.expanded)
+    slopes = {name: [-jets[name].first.get(j, ring.zero) for j in range(len(names))] for name in names}
+    return equilibrium.beside(slopes, singular, ring.zero)
+
+
 def _demand_motion(analysis: Analysis) -> None:
     if not analysis.system.motion:
         names = analysis.system.coordinates
@@ -127,7 +137,7 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
     try:
         scene = linearisation.quadratised(resting.parameters_scene, resting.system, order=0)  # nothing deviates here
         values = [-x.value for x in newton_euler.residuals(scene).values()]
-        return equilibrium(resting.parameters_scene, values, resting.signs).satisfied
+        return equilibrium.equilibrium(resting.parameters_scene, values, resting.signs).satisfied
     except Failure:
         return None
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
-from mbsym.analysis import constrained, given
+from mbsym.analysis import approximation, constrained, given
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -169,7 +169,9 @@ def equilibrium_of(analysis: Analysis) -> Equilibrium:
         return given.at_zero()
     residuals = [x.polynomial for x in analysis.residuals]
     on_motion = bool(analysis.system.constraints)
-    return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion)
+    singular = () if on_motion else equilibrium.singular_displacements(analysis.expanded)
+    residuals += approximation.beside(analysis, singular)
+    return equilibrium.equilibrium(analysis.parameters_scene, residuals, analysis.signs, on_motion, singular)
 
 
 def balance_of(analysis: Analysis) -> Balance:

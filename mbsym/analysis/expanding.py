@@ -68,7 +68,11 @@ class Expansion(Shown):
         ring, root = self.transfer.ring, self.manifold.root
         if root is None:
             top, bottom = self.moved(c.top), self.moved(c.bottom)
-            return Formula(ring, top if c.bottom.is_constant() else ring.times(top, ring.reciprocal(bottom)))
+            if c.bottom.is_constant():
+                return Formula(ring, top)
+            # one term below: what cancels in single terms is cancelled; partial fractions would be longer
+            quotient = ring.times(top, ring.reciprocal(bottom))
+            return Formula(ring, ring.reduce(quotient) if len(bottom) == 1 else quotient)
         whole, part, below = _rationalised(c, root)
         total = self.moved(whole) + ring.times(self.moved(part), ring.square_root(self.moved(root.square)))
         return Formula(ring, ring.times(total, ring.reciprocal(self.moved(below))))
@@ -255,7 +259,8 @@ def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: 
 def _attracts(analysis: Analysis, plain: Expansion, start: Root) -> bool:
     """Whether the only fast variable returns to the root: L/D < 0 for all parameters, D the denominator there."""
     manifold = plain.manifold
-    if len(manifold.fast) != 1:
+    scale = manifold.field.scales[manifold.field.field.variables.index(manifold.fast[0])]
+    if len(manifold.fast) != 1 or scale <= 0:
         return False
     there, root = manifold.field, manifold.root
     place = len(there.field.parameters) + there.field.variables.index(manifold.fast[0])

@@ -80,7 +80,7 @@ KNOW_CONSTRAINTS = frozenset(
         *("tied_in_coordinates", "first_order", "small_parameters"),
         *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
         *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions", "stabilisation"),
-        "equilibria",
+        *("equilibria", "polynomial_integrals", "invariant_sets", "check: polynomial integrals"),
         *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
         f"check: {constrained.REACTIONS}",
         *("check: equilibrium", "check: perturbed motion", "check: stabilisation"),

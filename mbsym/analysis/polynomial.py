@@ -61,7 +61,8 @@ class Setting:
     """The field of a system: ``whole`` over all parameters, ``field`` with numbers in place of some.
 
     ``kinds``: variables that have one weight, speeds first; ``known``: integrals of problem 7 over ``field``;
-    ``aside``: positions on which no equation depends, which are no variables.
+    ``aside``: positions on which no equation depends, which are no variables; ``rational``: integrals of problem 7
+    whose denominators hold variables.
     """
 
     whole: PolynomialField
@@ -71,6 +72,7 @@ class Setting:
     vectors: tuple[tuple[str, ...], ...]
     known: tuple[tuple[str, Any], ...]
     aside: tuple[str, ...] = ()
+    rational: tuple[str, ...] = ()
     #: Whether a formula is a function of the integrals of problem 7, those that are none of ``known`` among them.
     follows: Callable[[Formula], bool] = lambda formula: False
 
@@ -123,7 +125,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
         vectors, speeds, aside = [*equations.vectors, *vectors], equations.speeds, _aside(form, equations.aside)
     numbers = {name: rationals.exact(x) for name, x in (values or {}).items() if name in whole.parameters}
     field = whole.at(numbers) if numbers else whole
-    known = _known(whole, field, numbers, transfer, listed)
+    known, rational = _known(whole, field, numbers, transfer, listed)
     grouped_by = [tuple(x for x in components if x in whole.variables) for _, components in vectors]
     grouped = {name for vector in grouped_by for name in vector}
     speeds = tuple(name for name in speeds if name in whole.variables)
@@ -131,20 +133,25 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     found = [one for one in grouped_by if one]
     apart = (exponentials,) if form is None else (*dict.fromkeys(found), *alone)
     kinds = tuple(x for x in (speeds, *apart) if x)
-    follows = cache(partial(_following, analysis, dict(values or {}))) if len(known) < len(listed) else None
-    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside)
+    follows = None
+    if len(known) < len(listed):
+        follows = cache(partial(_following, analysis, dict(values or {}), transfer.images))
+    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside, rational)
     return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
 
 
-def _following(analysis: Analysis, values: Mapping[str, Fraction]) -> Callable[[Formula], bool]:
+def _following(
+    analysis: Analysis, values: Mapping[str, Fraction], dependent: Mapping[int, Any]
+) -> Callable[[Formula], bool]:
     """Whether a formula is a function of the integrals of problem 7: by gradients at a state of the whole system.
 
     As the length of the angular momentum is of its components in space, which a field without orientations lacks.
+    ``dependent`` velocities are put in first: states are told by the others.
     """
     blocks = blocks_of(analysis, values)
     gradients = Gradients(analysis.system, blocks)
     for one in analysis.integrals:
-        gradients.add(put_in(blocks.ring, one.formula.polynomial, blocks.images))
+        gradients.add(put_in(blocks.ring, put_in(blocks.ring, one.formula.polynomial, dependent), blocks.images))
     return lambda formula: gradients.grows(put_in(blocks.ring, formula.polynomial, blocks.images)) is False
 
 
@@ -185,7 +192,7 @@ def _without_aside(form: SpeedForm, aside: Sequence[str], one: Integral) -> Inte
 def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:
     """The same with further integrals that are known, which hold no parameters but those of ``there.field``."""
     gone = {name: fmpq(0) for name in there.whole.parameters if name not in there.field.parameters}
-    further = _known(there.whole, there.field, gone, there.transfer, listed)
+    further, _ = _known(there.whole, there.field, gone, there.transfer, listed)
     return replace(there, known=(*there.known, *further))
 
 
@@ -199,9 +206,12 @@ def _known(
     numbers: Mapping[str, Any],
     transfer: Transfer,
     listed: Sequence[Integral],
-) -> list[tuple[str, Any]]:
-    """Names and numerators of integrals, of those that are functions on the field; with denominators: ``MULTIPLE``."""
-    known = []
+) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
+    """Names and numerators of integrals, of those that are polynomials on the field; with denominators: ``MULTIPLE``.
+
+    Then the names of those that are quotients with variables below.
+    """
+    known, rational = [], []
     for one in listed:
         try:
             top, bottom = transfer.fraction(one.formula.polynomial)
@@ -210,7 +220,9 @@ def _known(
         if not any(bottom.degrees()[k] for k in whole.places):
             name = one.name if bottom.is_constant() else Message(MULTIPLE, name=one.name)
             known.append((name, _at(whole, field, numbers, top)))
-    return known
+        else:
+            rational.append(one.name)
+    return known, tuple(rational)
 
 
 def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, Any], p: Any) -> Any:
@@ -264,7 +276,7 @@ def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None 
         replace(one, name=FUNCTION) if not one.name and there.follows(there.formula(one.polynomial)) else one
         for one in found.generators
     )
-    return replace(found, aside=there.aside, generators=tuple(named))
+    return replace(found, aside=there.aside, rational=there.rational, generators=tuple(named))
 
 
 #: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.
@@ -317,6 +329,10 @@ def check(analysis: Analysis) -> Check | None:
         ]
     if not new:
         return None
+    if analysis.system.constraints:
+        from mbsym.analysis.constrained import integrals_check
+
+        return replace(integrals_check(analysis, tuple(new)), name="polynomial integrals")
     return replace(perturbation.check_integrals(truth, analysis.programs, new), name="polynomial integrals")
 
 

@@ -131,9 +131,12 @@ def _equilibrium(analysis: Analysis) -> Check | None:
 
         about = analysis.reduced.about
         return check_reduced_motion(analysis.system, analysis.ring, found.residuals, about, dependent(analysis))
+    if found.singular:  # what is demanded besides is differentiated a second time
+        closed = analysis.optional("equations")
     if closed is not None:
         return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
-    return perturbation.check_motion(analysis.system, analysis.ring, found.residuals, dependent(analysis))
+    of_each = found.residuals[: len(analysis.system.coordinates)]
+    return perturbation.check_motion(analysis.system, analysis.ring, of_each, dependent(analysis))
 
 
 def _linearisation(analysis: Analysis) -> Check | None:
@@ -225,7 +228,11 @@ def dependent(analysis: Analysis, determined: Mapping[int, Polynomial] | None = 
 
 def residuals_of(analysis: Analysis, closed: Equations) -> Column:
     """The motion substituted into the closed equations: the second route of problem 4."""
-    forcing = [x.polynomial for x in closed.forcing]
+    forcing, ring, names = [x.polynomial for x in closed.forcing], analysis.ring, analysis.system.coordinates
+    singular = analysis.equilibrium.singular
+    if singular:
+        slopes = {x: [ring.derivative(f, name) for name in names] for x, f in zip(names, forcing, strict=True)}
+        forcing += equilibrium.beside(slopes, singular, ring.zero)
     return equilibrium.equilibrium(analysis.scene, forcing, analysis.signs).residuals
 
 

@@ -75,8 +75,8 @@ def filled(text: str, value: Callable[[str], str]) -> str:
     return GAP.sub(lambda match: value(match[1]), plain)
 
 
-def joined(parts: Iterable[str], between: str = " ") -> Message:
-    """Messages or names one after another, in the same order and with the same signs between them in every language."""
+def joined(parts: Iterable[object], between: str = " ") -> Message:
+    """Messages, names, formulas one after another: in one order and with the same signs between in every language."""
     found = {str(k): part for k, part in enumerate(parts)}
     return Message(between.join(f"[[{k}]]" for k in found), **found)
 

@@ -102,6 +102,9 @@ _LOOKALIKES = {
     "}": "only round parentheses group",
 }
 
+#: What joins conditions elsewhere; no names here, so that no product holds them.
+_CONNECTIVES = {"and", "or", "not"}
+
 _ARCSINE = "atan(x/sqrt(1 - x**2)) for asin(x)"
 _ARCCOSINE = "pi/2 - atan(x/sqrt(1 - x**2)) for acos(x)"
 _FOREIGN_FUNCTIONS = {
@@ -554,6 +557,8 @@ class _Parser:
             hint = Message("write [[what]]*[[what2]] for a product", what=previous.text, what2=token.text)
         if previous.kind == "number" and token.kind == "name":
             hint = _unit_hint(previous.text, token.text, self.named) or hint
+        if _CONNECTIVES & {previous.text, token.text}:
+            hint = Message("one condition in one place: write two that have to hold as two, or 0 < x < 1")
         if token.text == ",":
             hint = decimal_comma(self.text)
         if previous.kind == "number" and re.fullmatch(r"[0-9_]+", token.text):

@@ -28,6 +28,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.tower import MOST_ROOTS, Tower
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.tree import Call, Expression, names, substitute
 from mbsym.formulas.shape import length, present
@@ -239,23 +240,41 @@ class Rewriter:
 
     def _steps_of(self, name: str) -> Iterator[_Step]:
         """What the definition of a letter allows to write differently, with earlier letters in it and without."""
-        ring, letter = self.ring, self.named[name]
         given = dict(self.letters.given)[name]
         seen: list[Polynomial] = []
         for value in (given, self.values[name]):
             try:
-                with ring.budget(WORK):
-                    lower = Lowering(ring, self.named)
-                    relations = [letter - lower(value)]
-                    if isinstance(value, Call) and value.function == "sqrt":
-                        relations.append(ring.times(letter, letter) - lower(value.argument))
-                    relations = [ring.fraction(x)[0] for x in relations]
+                relations = self._relations(name, value)
             except (Failure, ZeroDivisionError):
                 continue
             for relation in relations:
                 if relation not in seen:
                     seen.append(relation)
                     yield from self._solved(name, relation, value is given)
+
+    def _relations(self, name: str, value: Expression) -> list[Polynomial]:
+        """letter * Q - P for a quotient P/Q, letter^2 * Q - P for its square root."""
+        ring, letter = self.ring, self.named[name]
+        held = sorted({*names(value), name})
+        if all(ring.has("parameter", x) for x in held):
+            # in a field of their own: products in the ring take as many exponents as it has generators
+            field = Tower(held)
+            try:
+                found = Lowering(field, {x: field.parameter(x) for x in held})(value)
+            except Failure as failure:
+                if failure.limit is not None:
+                    raise
+            else:
+                if not field.squares:
+                    relation = field.parameter(name).top * found.bottom - found.top
+                    images = [ring.zero] * MOST_ROOTS + [self.named[x] for x in held]
+                    return [relation.compose(*images, ctx=ring.context)]
+        with ring.budget(WORK):
+            lower = Lowering(ring, self.named)
+            relations = [letter - lower(value)]
+            if isinstance(value, Call) and value.function == "sqrt":
+                relations.append(ring.times(letter, letter) - lower(value.argument))
+            return [ring.fraction(x)[0] for x in relations]
 
     def _solved(self, name: str, relation: Polynomial, given: bool) -> Iterator[_Step]:
         own, held = self.places[name], occurring([relation])

@@ -136,8 +136,10 @@ class ErrorEstimate:
 
     @property
     def parted(self) -> float | None:
-        """By when the two runs have parted; from there on nothing is known of either, and the estimate is a bound from
-        below."""
+        """By when the two runs have parted; from there on nothing is known of either: the estimate is no bound then.
+
+        One of the two is wrong by half of their difference at least, but nobody knows which.
+        """
         return self.compared.parted
 
 

@@ -19,6 +19,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.methods.interface import (
     BLOW_UP,
     LARGEST,
+    OUT_OF_REACH,
     SINGULAR,
     SINGULAR_CONSTRAINTS,
     STEP_LIMIT,
@@ -276,7 +277,7 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
         found = diagnosed(dynamics, trouble, past)
-        if found.kind in (STEP_LIMIT, STUCK, STOPPED, SINGULAR_CONSTRAINTS) and found.time > past[0, -1]:
+        if found.kind in (STEP_LIMIT, STUCK, STOPPED, SINGULAR_CONSTRAINTS, OUT_OF_REACH) and found.time > past[0, -1]:
             # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
             rows.keep(np.array([found.time]), np.asarray(found.state)[:, None])
     except Breakdown as undefined:
@@ -377,6 +378,10 @@ SINGULAR_AT_ONCE = 1e-24
 AHEAD = (1e-12, 1e-9, 1e-6, 1e-3, 3e-2)
 
 
+#: How much later, as parts of the time so far, positions that keep moving constraints are looked for.
+LATER = (1e-4, 1e-3, 1e-2)
+
+
 def bound_of(initial: Any) -> float:
     """Where a run is ended: sizes of 1e12, and as many times those of the initial state (orbits in metres)."""
     return LARGEST * max(1.0, float(np.max(np.abs(initial), initial=0.0)))
@@ -430,13 +435,18 @@ def _neighbours(state: Any, time: float) -> Any:
 
 
 def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
-    """A vanishing step at a blow-up, and either of them where the mass matrix is singular, are called what they are.
+    """A vanishing step at a blow-up, either of them where M is singular, what moves out of reach: called what they are.
 
     ``past`` holds earlier (t, q, q') in columns: a pivot is small compared with what it was, whatever its units.
     """
+    state = np.asarray(found.state, dtype=float)
+    if found.kind in (SINGULAR_CONSTRAINTS, BLOW_UP):
+        at, last = (float(past[0, -1]), past[1:, -1]) if found.kind == BLOW_UP else (found.time, state)
+        if not _goes_on(dynamics, at, last, float(past[0, 0])):
+            message = "no position was found that keeps the constraints behind this one: velocities grow without bound"
+            return Breakdown(OUT_OF_REACH, message, at, last)
     if found.kind not in (BLOW_UP, STUCK):
         return found
-    state = np.asarray(found.state, dtype=float)
     message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
     if message:
         return Breakdown(SINGULAR, message, found.time, found.state)
@@ -448,6 +458,14 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
         message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
         return Breakdown(BLOW_UP, message, found.time, found.state)
     return found
+
+
+def _goes_on(dynamics: Dynamics, t: float, state: Any, begin: float) -> bool:
+    """Whether positions near a state keep the constraints a little later; those that stand still always have some."""
+    constraints = dynamics.constraints
+    if constraints is None or constraints.steady:
+        return True
+    return any(constraints.led(t + part * (t - begin), state) is not None for part in LATER)
 
 
 def _undefined(dynamics: Dynamics, t: float, state: Any) -> bool:

@@ -26,7 +26,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NotRational, SingularPoint, message_of
 from mbsym.algebra.ring import Ring
 from mbsym.algebra.splitting import vanishes_with
-from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.newton_euler import residuals
@@ -166,7 +166,7 @@ def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, s
             return outcome, detail, done
         done += outcome == EXACT
         if done == wanted:
-            return EXACT, Message("1 state") if done == 1 else Message("[[count]] states", count=done), done
+            return EXACT, Counted(done, "state"), done
     return (
         UNDECIDED,
         Message("only [[done]] of [[wanted]] states without a singularity were found", done=done, wanted=wanted),

@@ -34,7 +34,7 @@ from itertools import combinations
 from mbsym.algebra.matrices import ScalarMatrix, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.formulas.formula import Formula
 
 #: Formulas with more terms together are not looked at.
@@ -338,8 +338,9 @@ def _left(ring: Ring, found: Displacements, places: Sequence[int], i: int) -> st
 
 def _displacement(ring: Ring, direction: Direction, coordinates: Sequence[str], mark: str = "") -> str:
     """``a``, or ``(a, b) = (r, -1)``: how coordinates move together; ``(da, db) = (-b, a)`` with a mark."""
-    moved = [(mark + name, c) for name, c in zip(coordinates, direction, strict=True) if not c.is_zero()]
+    moved = [(name, Formula(ring, c)) for name, c in zip(coordinates, direction, strict=True) if not c.is_zero()]
     if len(moved) == 1 and not mark:
         return moved[0][0]
-    rates = ", ".join(str(Formula(ring, c)) for _, c in moved)
-    return f"({', '.join(name for name, _ in moved)}) = ({rates})"
+    formulas = [Formula(ring, ring.generator("coordinate", name)) for name, _ in moved]
+    names = joined((joined((mark, x), "") for x in formulas), ", ")
+    return joined(("(", names, ") = (", joined((rate for _, rate in moved), ", "), ")"), "")

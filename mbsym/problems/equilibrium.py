@@ -5,6 +5,13 @@ or the conditions under which the motion exists are returned: polynomials in the
 that cannot vanish dropped.  A condition that a parameter enters linearly is solved for it, and problems 5 and 6 go on
 with the solution.
 
+Where angles are singular on the motion, f = 0 says less than the motion demands.  With the Jacobian B of what moves,
+f = B^T F; a displacement v with B v = 0 there leaves v^T f = 0 whatever F is, but F is felt beside it: since
+
+    v^T df/dq_j = (dB/dq_j v)^T F        where B v = 0
+
+these vanish, too, in all directions j, if the motion exists.  They are demanded besides f = 0.
+
 Source: Banshchikov & Vetrov, Problem 4.
 
 Example:
@@ -17,10 +24,18 @@ Example:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from flint import fmpq, fmpq_mat
 
 from mbsym.algebra.factors import occurring
+from mbsym.algebra.jet import Jet
+from mbsym.algebra.matrices import null_vectors, reduced_rows
+from mbsym.algebra.point import Rationals
+from mbsym.algebra.rationals import exact, fraction
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
 from mbsym.formulas.formula import Column, Formula, Shown, column
@@ -28,14 +43,17 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined, motion_values, relations, steadied, unperturbed_with, unsteady
 from mbsym.model.system import System
 
+#: A displacement by (coordinate, part), without parts that are zero.
+Displacement = tuple[tuple[str, Fraction], ...]
+
 
 @dataclass(frozen=True, repr=False)
 class Equilibrium(Shown):
     """``satisfied``: identically, for all parameter values (relations used).
 
-    ``residuals`` are f_i on the motion; ``conditions`` must vanish for the motion to exist; ``solved`` are the
-    (parameter, value) pairs that are carried forward; ``impossible`` lists conditions that can never hold;
-    ``unsteady`` the quantities through which a residual still varies with time.
+    ``residuals`` are f_i on the motion, then v^T df/dq_j of each ``singular`` displacement v; ``conditions`` must
+    vanish for the motion to exist; ``solved`` are the (parameter, value) pairs that are carried forward; ``impossible``
+    lists conditions that can never hold; ``unsteady`` the quantities through which a residual still varies with time.
     """
 
     satisfied: bool
@@ -44,6 +62,7 @@ class Equilibrium(Shown):
     solved: tuple[tuple[str, Formula], ...] = ()
     impossible: tuple[Formula, ...] = ()
     unsteady: tuple[str, ...] = ()
+    singular: tuple[Displacement, ...] = ()
 
     @property
     def terms(self) -> int:
@@ -55,7 +74,13 @@ class Equilibrium(Shown):
         return determined(scene, ((name, value.polynomial) for name, value in self.solved))
 
 
-def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_motion: bool = False) -> Equilibrium:
+def equilibrium(
+    scene: Scene,
+    residuals: Sequence[Polynomial],
+    signs: Signs,
+    on_motion: bool = False,
+    singular: tuple[Displacement, ...] = (),
+) -> Equilibrium:
     """Conditions for the motion, from the residuals f_i at q'' = 0 (scene over the ring).
 
     ``residuals`` may be the forcing of the nonlinear equations or values already on the motion; with ``on_motion`` they
@@ -95,7 +120,62 @@ def equilibrium(scene: Scene, residuals: Sequence[Polynomial], signs: Signs, on_
         solved=tuple((ring.generators[k].name, Formula(ring, value)) for k, value in solved.items()),
         impossible=column(ring, impossible),
         unsteady=varying,
+        singular=singular,
     )
+
+
+def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
+    """Displacements that move nothing with mass or load on the motion, but do beside it (the scene over jets there).
+
+    Those with rational parts; none of coordinates on which loads act directly: such a load is no load on bodies there.
+    """
+    system, n = expanded.system, len(expanded.system.coordinates)
+    loaded = {name for load in system.loads for name in load.bodies or ()}
+    held = {name for load in system.loads for name in load.coordinates}
+    felt: list[Jet] = []
+    for name, motion in expanded.motions.items():
+        if name in loaded or motion.gyrostatic_moment is not None:
+            felt += [*motion.velocity_origin, *motion.angular_velocity]
+        elif not motion.mass.value.is_zero() or motion.mass.parts:
+            felt += motion.velocity_mass_centre
+        if motion.inertia is not None:
+            felt += motion.inertia @ motion.angular_velocity
+    names = [name for name in system.coordinates if name not in held]
+    places = [n + system.coordinates.index(name) for name in names]
+    zero = expanded.ring.zero
+    rows: dict[Any, list[Any]] = {}
+    for at, x in enumerate(felt):
+        slopes = x.first
+        for column_, k in enumerate(places):
+            for monomial, c in slopes[k].terms() if k in slopes else ():
+                rows.setdefault((at, monomial), [fmpq(0)] * len(names))[column_] = c
+    reduced = reduced_rows(fmpq_mat(len(rows), len(names), [c for row in rows.values() for c in row]))
+
+    def moves(parts: Sequence[Any]) -> bool:
+        """Whether it moves something beside the motion."""
+        changes = (
+            sum((x.second.get((j, k), zero) * part for part, k in zip(parts, places, strict=True)), zero)
+            for x in felt
+            for j in range(n)
+        )
+        return any(not x.is_zero() for x in changes)
+
+    return tuple(
+        tuple((name, fraction(part)) for name, part in zip(names, parts, strict=True) if part)
+        for parts in null_vectors(Rationals({}, {}), reduced, len(names))
+        if moves(parts)
+    )
+
+
+def beside(
+    slopes: Mapping[str, Sequence[Polynomial]], singular: Sequence[Displacement], zero: Polynomial
+) -> list[Polynomial]:
+    """v^T df/dq_j for each displacement v and coordinate j; ``slopes``: df_i/dq_j, all j of the i of each name."""
+    return [
+        sum((x * exact(part) for (_, part), x in zip(one, column_, strict=True)), zero)
+        for one in singular
+        for column_ in zip(*(slopes[name] for name, _ in one), strict=True)
+    ]
 
 
 def unsolved(scene: Scene, found: Equilibrium) -> list[Polynomial]:

@@ -122,7 +122,9 @@ def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 
             )
         )
     if found.lost:
-        raise SingularPoint("the constraints are not independent on this motion although they are near it")
+        raise SingularPoint(
+            "the constraints have a smaller rank on this motion than at positions near it, allowed ones or not"
+        )
     names, ring = scene.system.coordinates, scene.ring
     given = {entry.coordinate for entry in scene.system.motion}
     independent, speeds = set(found.coordinates), set(found.speeds)

@@ -2,10 +2,11 @@
 
     det(M) u' = adj(M) f,      s' = g(s, u),      g' = dg/dx . x'    for every g that stands in X
 
-Variables are the velocities or speeds u and what X holds of positions, by itself or in functions: coordinates, unit
-vectors and quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the
-exponent, and the relation between those whose exponents are dependent; phases that are driven at a rate.  Each variable
-brings in what its own derivative holds.  Positions on which nothing depends are left out.
+Variables are the velocities or speeds u (under constraints in velocities those that are independent, in the equations
+without multipliers), and what X holds of positions, by itself or in functions: coordinates, unit vectors and
+quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
+relation between those whose exponents are dependent; phases that are driven at a rate.  Each variable brings in what
+its own derivative holds.  Positions on which nothing depends are left out.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import gcd, lcm
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_mat
 
@@ -30,6 +31,9 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations
+
+if TYPE_CHECKING:
+    from mbsym.problems.constraints.motion import Embedded
 
 #: No relations between parameters.
 NOTHING: Mapping[int, Polynomial] = {}
@@ -53,6 +57,7 @@ def vector_field(
     where the time, inputs, roots or functions other than exponentials occur.
     """
     state = _State(system, ring, form, equations, images, driven)
+    images = state.images
     variables = state.variables()
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
@@ -94,8 +99,9 @@ class _State:
         driven: bool,
     ) -> None:
         self.system, self.ring, self.form, self.equations = system, ring, form, equations
-        self.images, self.driven = images, driven
-        mass, forcing = equations.mass_matrix.polynomials, [x.polynomial for x in equations.forcing]
+        told, tied = _free(system, ring, form, equations)
+        self.images, self.driven = {**images, **tied}, driven
+        mass, forcing = told.mass_matrix.polynomials, [x.polynomial for x in told.forcing]
         whole = determinant(ring, mass)
         if ring.vanishes(whole):
             raise NoClosedForm(SINGULAR)
@@ -106,6 +112,8 @@ class _State:
         else:
             self.unknowns = {u.index: u.name for u in form.speeds}
             self.rates = dict(form.rates)
+        self.unknowns = {k: name for k, name in self.unknowns.items() if k not in tied}
+        self.rates = {name: put_in(ring, rate, tied) for name, rate in self.rates.items()}
         self.accelerations = dict(zip(self.unknowns, scaled, strict=True))
         lower = Lowering(ring, ring_environment(system, ring))
         self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
@@ -252,6 +260,27 @@ class _State:
             sides[int(n < 0)] = sides[int(n < 0)] * ring.context.gen(k) ** abs(n)
         difference = sides[0] - sides[1]
         return [difference / difference.leading_coefficient()]
+
+
+def _free(
+    system: System, ring: Ring, form: SpeedForm | None, equations: Equations
+) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
+    """The equations of the independent velocities, and the dependent ones by these (q' = Y u, the constraints).
+
+    Raises NoClosedForm where constraints tie positions, which are no variables of their own then.
+    """
+    found = equations.constraints
+    if found is None:
+        return equations, NOTHING
+    if found.position_rank or equations.embedded is None or found.solved is None:
+        raise NoClosedForm(
+            "constraints tie positions: no polynomial field in free variables"
+            if found.position_rank
+            else "the equations without multipliers outgrow the budget of terms"
+        )
+    from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
+
+    return equations.embedded, dependent_velocities(form or SpeedForm(system, ring), found.solved)
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:

@@ -60,6 +60,7 @@ def _basis(there: Setting, found: PolynomialIntegrals) -> dict[str, Any]:
         "complete": found.complete,
         "independent": found.independent,
         "not_contained": list(found.aside),
+        "rational": list(found.rational),
         "integrals": [
             doc.Integral.from_result(
                 one, new=one.is_new, formula=str(there.formula(one.polynomial)), independence=one.certainty.value

@@ -13,6 +13,7 @@ from mbsym.model.system import System
 from mbsym.problems.small_parameter.oscillation_result import Harmonics
 from mbsym.report.documents import oscillations as doc
 from mbsym.report.documents.base import written
+from mbsym.report.words.expansion_words import sum_of_powers
 from mbsym.report.words.oscillation_words import numerator
 
 if TYPE_CHECKING:
@@ -38,8 +39,19 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
         constants=[doc.Constant(variable=name, value=str(told.formula(x))) for name, x in found.constants],
         frequency=str(told.formula(found.frequency)),
         corrections=[str(told.formula(x)) for x in found.corrections],
+        phase_rate=sum_of_powers(
+            (
+                (n, str(told.formula(found.frequency * x)))
+                for n, x in enumerate((found.tower.one, *found.corrections))
+                if not x.is_zero()
+            ),
+            found.small,
+            "**",
+        ),
         solution=[
-            doc.Solution(variable=name, residual=left, coefficients=_series(told, one))
+            doc.Solution(
+                variable=name, residual=left, function=_function(told, name, one), coefficients=_series(told, one)
+            )
             for name, one, left in zip(found.names, found.series, found.residuals, strict=False)
         ],
         drifts=[
@@ -107,6 +119,13 @@ def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
             for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
         ],
     )
+
+
+def _function(told: Oscillating, name: str, series: Sequence[Harmonics]) -> str:
+    """The variable itself, which the series stand for without its power of the small parameter."""
+    shift = dict(told.found.powers).get(name, 0)
+    parts = [(n + shift, told.written(one)) for n, one in enumerate(series) if not one.is_zero]
+    return sum_of_powers(parts, told.found.small, "**") or "0"
 
 
 def _series(told: Oscillating, series: Sequence[Harmonics]) -> list[doc.WaveCoefficient]:

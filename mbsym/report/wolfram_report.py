@@ -81,7 +81,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         found=found,
         lines={n: [x.text for x in told[n]()][1:] for n in (8, 9, 10, 11, 12) if n in found},
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
-        small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system)) if 12 in found else [],
+        small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system, names)) if 12 in found else [],
         forms=forms,
         undetermined=_undetermined(analysis) if 3 in problems else "",
         reactions=(analysis.optional("reactions") or ()) if analysis.system.reactions and 3 in problems else (),
@@ -104,8 +104,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     )
 
 
-def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tuple[str, str]]:
-    """Definitions: coefficients as {variable, power, formula}, effective potentials by phase."""
+def _of_small_parameters(found: SmallParameters, system: System, names: WolframNames) -> Iterator[tuple[str, str]]:
+    """Definitions: coefficients as {variable, power, formula}, their sums, effective potentials by phase."""
+    from mbsym.report.sections.small_parameters import functions
     from mbsym.report.words import oscillation_words
     from mbsym.report.words.expansion_measured import averages
     from mbsym.report.words.expansion_words import coefficients
@@ -121,12 +122,29 @@ def _of_small_parameters(found: SmallParameters, system: System) -> Iterator[tup
             for x in oscillation_words.coefficients(found.oscillation)
         )
         yield "periodicSolution", listed(told)
+    for one in functions(found):
+        sums = {key: _sum(parts, one.small, names) for key, parts in one.series}
+        rate = sums.pop(one.phase, "")
+        put = (
+            f" /. {wolfram_names(found.oscillation.ring)[one.phase]}[t] -> ({rate})*t"
+            if found.oscillation and rate
+            else ""
+        )
+        head, *rest = one.name.split("_")
+        yield f"{head}{''.join(map(str.title, rest))}Of", listed(f"{string(k)} -> {x}" for k, x in sums.items()) + put
     potentials = [one.found for one in averages(found, system) if one.found is not None]
     if potentials:
         yield (
             "effectivePotentials",
             listed(f"{{{string(', '.join(x.phases))}, {x.potential.wolfram()}}}" for x in potentials),
         )
+
+
+def _sum(parts: Iterable[tuple[int, Formula]], small: str, names: WolframNames) -> str:
+    from mbsym.report.words.expansion_words import sum_of_powers
+
+    written = names[small] if small in names.table else small
+    return sum_of_powers(((k, x.wolfram()) for k, x in parts), written, "^")
 
 
 def _rate(velocity: str, names: WolframNames) -> str:

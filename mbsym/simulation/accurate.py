@@ -34,14 +34,19 @@ UNSHOWN = (Lacking.TOO_LONG, Lacking.CUT, Lacking.BREAKS_DOWN, Lacking.INTERRUPT
 
 
 def read_accuracy(system: System, given: float | Mapping[str, float]) -> Accuracy:
-    """An error for everything, or errors by quantity.  Raises ValueError with everything that is wrong."""
+    """An error for everything, or errors by quantity, for everything else by the name "".
+
+    Raises ValueError with everything that is wrong.
+    """
     errors = given if isinstance(given, Mapping) else {"accuracy": given}
-    known = (*system.coordinates, *system.velocities, ENERGY)
+    known = ("", *system.coordinates, *system.velocities, ENERGY)
     wrong = [f"there is no quantity {name}" for name in errors if isinstance(given, Mapping) and name not in known]
     wrong += [f"{name}: an error is between 0 and 0.5, not {x}" for name, x in errors.items() if not 0 < x <= 0.5]
     if wrong or not errors:
         raise ValueError("; ".join(wrong) or "no error is given")
-    return Accuracy(None, dict(given)) if isinstance(given, Mapping) else Accuracy(float(given))
+    if not isinstance(given, Mapping):
+        return Accuracy(float(given))
+    return Accuracy(given.get(""), {name: x for name, x in given.items() if name})
 
 
 def settled_by(request: Request) -> Pins:

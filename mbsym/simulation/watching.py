@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.condition import Condition, parse_axes, parse_condition
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.tree import Expression, Name, names
 from mbsym.model.states import InStates
 from mbsym.model.system import System, velocity_name
@@ -86,26 +86,41 @@ class NoEvent(ValueError):
 
 
 def read_watch(
-    system: System, events: Sequence[str] = (), stops: Sequence[str] = (), section: str | None = None, axes: str = ""
+    system: System,
+    events: Sequence[str] = (),
+    stops: Sequence[str] = (),
+    section: str | None = None,
+    axes: str = "",
+    unread: Callable[[str, str, Complaint], None] | None = None,
 ) -> Watch:
-    """Texts as conditions.  Raises ValueError with everything that is wrong."""
+    """Texts as conditions; ``unread`` takes the complaints, each with what it is of and the text.
+
+    Raises ValueError with everything that is wrong where nobody takes them.
+    """
     wrong: list[str] = []
     known = known_names(system)
+
+    def complain(option: str, text: str, complaints: Complaints) -> None:
+        for item in complaints.sorted():
+            if unread is not None:
+                unread(option, text, item)
+            else:
+                wrong.append(f"{option} {text!r}: {item.message}")
 
     def read(option: str, text: str) -> Condition | None:
         complaints = Complaints()
         found = parse_condition(text, known, complaints, _place)
-        wrong.extend(f"{option} {text!r}: {item.message}" for item in complaints.sorted())
+        complain(option, text, complaints)
         return found
 
     found_events = [read("event", text) for text in events]
     found_stops = [read("stop", text) for text in stops]
     condition = None if section is None else read("section", section)
-    if axes and section is None:
+    if axes and section is None and unread is None:
         wrong.append("axes are those of a section, and there is none")
     complaints = Complaints()
     written = parse_axes(axes, known, complaints, _place) if axes else ()
-    wrong.extend(f"axes {axes!r}: {item.message}" for item in complaints.sorted())
+    complain("axes", axes, complaints)
     if wrong:
         raise ValueError("; ".join(wrong))
     return Watch(

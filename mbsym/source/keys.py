@@ -310,31 +310,6 @@ def _of_force(load: Any) -> tuple[Any, ...]:
 
 
 LOADS: dict[str, Kind] = {
-    "newtonian gravity": Kind(
-        "Newtonian field of a centre: expanded about a point of the orbit, or exact",
-        Record(
-            {
-                "constant": Key(
-                    "gravitational parameter nu of the attracting centre",
-                    Formula(Allowed("a gravitational constant")),
-                    required=True,
-                ),
-                "centre": Key("the frame whose origin attracts, mostly 0", _BODY, required=True),
-                "about": Key(
-                    "the frame that carries the attracted bodies; the field is expanded about its origin, on the orbit",
-                    _BODY,
-                    required=True,
-                ),
-                "order": Key(
-                    "2, 3 or 4: order of the expansion (2 when left out); exact: the exact distance of every mass "
-                    "centre",
-                    Word(GRAVITY_ORDERS),
-                    default=GRAVITY_ORDERS[0],
-                ),
-            }
-        ),
-        ways=(Way(NewtonianGravity, ("constant", "centre", "about", "order")),),
-    ),
     "uniform gravity": Kind(
         "the same acceleration everywhere",
         Record(
@@ -390,32 +365,6 @@ LOADS: dict[str, Kind] = {
             Way(PointDamper, ("between", "coefficient"), "between points"),
         ),
     ),
-    "isotropic damper": Kind(
-        "viscous, against all relative motion of two points: R = coefficient |V_1 - V_2|^2 / 2; not "
-        "along the line, so that it makes a couple",
-        Record({"between": _BETWEEN, "coefficient": Key("force per relative velocity", _DAMPING, required=True)}),
-        ways=(Way(IsotropicDamper, ("between", "coefficient")),),
-    ),
-    "rayleigh": Kind(
-        "a dissipation function R(q, q'), or of speeds; its generalised forces are -dR/dq'",
-        Formula(DISSIPATION),
-        ways=(Way(Rayleigh),),
-    ),
-    "force function": Kind(
-        "a force function U = -potential, added to the Lagrangian",
-        Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),)),),
-    ),
-    "potential": Kind(
-        "a potential energy V, subtracted from the Lagrangian",
-        Formula(POTENTIAL),
-        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),)),),
-    ),
-    "generalized force": Kind(
-        "{coordinate: expression in coordinates, velocities or speeds, parameters and t}",
-        Named(Formula(FORCE), "coordinate"),
-        ways=(Way(GeneralizedForce),),
-    ),
     "force": Kind(
         "a force on a point of a body",
         Record(
@@ -445,6 +394,57 @@ LOADS: dict[str, Kind] = {
             }
         ),
         ways=(Way(Torque, ("body", "components", "axes", "reaction on")),),
+    ),
+    "generalized force": Kind(
+        "{coordinate: expression in coordinates, velocities or speeds, parameters and t}",
+        Named(Formula(FORCE), "coordinate"),
+        ways=(Way(GeneralizedForce),),
+    ),
+    "force function": Kind(
+        "a force function U = -potential, added to the Lagrangian",
+        Formula(POTENTIAL),
+        ways=(Way(ForceFunction, fixed=(("spelled", "force function"),)),),
+    ),
+    "potential": Kind(
+        "a potential energy V, subtracted from the Lagrangian",
+        Formula(POTENTIAL),
+        ways=(Way(ForceFunction, fixed=(("spelled", "potential"),)),),
+    ),
+    "isotropic damper": Kind(
+        "viscous, against all relative motion of two points: R = coefficient |V_1 - V_2|^2 / 2; not "
+        "along the line, so that it makes a couple",
+        Record({"between": _BETWEEN, "coefficient": Key("force per relative velocity", _DAMPING, required=True)}),
+        ways=(Way(IsotropicDamper, ("between", "coefficient")),),
+    ),
+    "rayleigh": Kind(
+        "a dissipation function R(q, q'), or of speeds; its generalised forces are -dR/dq'",
+        Formula(DISSIPATION),
+        ways=(Way(Rayleigh),),
+    ),
+    "newtonian gravity": Kind(
+        "Newtonian field of a centre: expanded about a point of the orbit, or exact",
+        Record(
+            {
+                "constant": Key(
+                    "gravitational parameter nu of the attracting centre",
+                    Formula(Allowed("a gravitational constant")),
+                    required=True,
+                ),
+                "centre": Key("the frame whose origin attracts, mostly 0", _BODY, required=True),
+                "about": Key(
+                    "the frame that carries the attracted bodies; the field is expanded about its origin, on the orbit",
+                    _BODY,
+                    required=True,
+                ),
+                "order": Key(
+                    "2, 3 or 4: order of the expansion (2 when left out); exact: the exact distance of every mass "
+                    "centre",
+                    Word(GRAVITY_ORDERS),
+                    default=GRAVITY_ORDERS[0],
+                ),
+            }
+        ),
+        ways=(Way(NewtonianGravity, ("constant", "centre", "about", "order")),),
     ),
 }
 

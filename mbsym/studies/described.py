@@ -147,7 +147,7 @@ def asked_of(source: Source, request: Any) -> Asked:
 
     kind = settings[0]
     return Asked(
-        system, scenario(system, read_values(system, request.values or {}), kind.state, declared=kind.declared)
+        system, scenario(system, read_values(system, request.values or {}), kind.state, declared=kind.declared({}))
     )
 
 

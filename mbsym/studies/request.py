@@ -18,6 +18,7 @@ from mbsym.expressions.message import Message
 from mbsym.report.language import LANGUAGES
 
 if TYPE_CHECKING:
+    from mbsym.expressions.place import Complaints
     from mbsym.expressions.tree import Expression
     from mbsym.model.system import System
     from mbsym.numerics.ensembles.variation import Variation
@@ -44,11 +45,13 @@ class Kind:
 @dataclass(frozen=True)
 class Number(Kind):
     """A positive number between bounds; ``absent``: what is said, with a hint, where one that has no default is not
-    given."""
+    given; ``alone``: what the option means without a number.
+    """
 
     least: float = 0.0
     most: float | None = None
     absent: tuple[str, str] = ("", "")
+    alone: str = ""
 
     def wrong(self, name: str, value: float) -> str:
         if not (isfinite(value) and value > 0):
@@ -75,36 +78,39 @@ class Whole(Kind):
 
 
 @dataclass(frozen=True)
-class Word(Kind):
-    """One of a few words; ``what`` they are."""
-
-    choices: tuple[str, ...] = ()
-    what: str = "choice"
-
-    def wrong(self, name: str, value: str) -> str:
-        return (
-            "" if value in self.choices else f"there is no {self.what} {value}: choose from {', '.join(self.choices)}"
-        )
-
-
-@dataclass(frozen=True)
-class Words(Kind):
-    """Some of a few words, separated by commas; ``every`` stands for all of them.
+class Chosen(Kind):
+    """One word or several of a few; ``what`` they are.
 
     ``choices`` are a function where much would have to be imported to know them.
     """
 
     choices: tuple[str, ...] | Callable[[], tuple[str, ...]] = ()
     what: str = "choice"
-    every: str = ""
-
-    def wrong(self, name: str, value: Sequence[str]) -> str:
-        others = ", ".join(one for one in value if one not in (*self.known, self.every))
-        return f"there is no {self.what} {others}: choose from {', '.join(self.known)}" if others else ""
 
     @property
     def known(self) -> tuple[str, ...]:
         return self.choices() if callable(self.choices) else self.choices
+
+    def _unknown(self, words: Sequence[str]) -> str:
+        return f"there is no {self.what} {', '.join(words)}: choose from {', '.join(self.known)}" if words else ""
+
+
+@dataclass(frozen=True)
+class Word(Chosen):
+    """One of a few words, small or capital."""
+
+    def wrong(self, name: str, value: str) -> str:
+        return self._unknown([value] if value not in self.known else [])
+
+
+@dataclass(frozen=True)
+class Words(Chosen):
+    """Some of a few words, separated by commas; ``every`` stands for all of them."""
+
+    every: str = ""
+
+    def wrong(self, name: str, value: Sequence[str]) -> str:
+        return self._unknown([word for word in value if word not in (*self.known, self.every)])
 
 
 @dataclass(frozen=True)
@@ -114,7 +120,16 @@ class Text(Kind):
 
 @dataclass(frozen=True)
 class Names(Kind):
-    """Names, one each time the option is given; the study looks at them."""
+    """Names, or other texts, one each time the option is given, ``separated`` by commas, or ``positional``; the study
+    looks at them.
+
+    ``known`` are those that a system has of ``what``, where the study does not say more of them.
+    """
+
+    separated: bool = False
+    positional: bool = False
+    known: Callable[[System], Sequence[str]] | None = None
+    what: str = ""
 
 
 @dataclass(frozen=True)
@@ -142,22 +157,50 @@ class Settings(Kind):
     """Values by name that replace those of the description: of parameters, initial positions and velocities.
 
     ``state``: whether an initial state is needed, ``declared``: whether it may be one that declared variables alone
-    tell; ``whole``: whether values are needed, by the texts of the options.
+    tell, and ``whole``: whether values are needed, by the texts of the options; ``laws``: the field with those of the
+    inputs.
     """
 
     state: bool = True
-    declared: bool = False
+    declared: Callable[[Mapping[str, Any]], bool] = lambda texts: False
+    laws: str = ""
     whole: Callable[[Mapping[str, Any]], bool] = lambda texts: True
 
 
 @dataclass(frozen=True)
+class Substitutions(Kind):
+    """``NAME=VALUE``, values of parameters that are put into the description before anything else is read."""
+
+
+@dataclass(frozen=True)
+class Parsed(Kind):
+    """A text that is read with complaints about places in it."""
+
+    read: Callable[[str, System, Complaints], Any] = lambda text, system, complaints: None
+
+
+@dataclass(frozen=True)
 class Formulas(Kind):
-    """``NAME=FORMULA``, of coordinates, smooth in t, the parameters and prescribed motions; repeatable."""
+    """``NAME=FORMULA``, of coordinates, smooth in t, the parameters and prescribed motions; repeatable.
+
+    ``laws``: of inputs, in coordinates and velocities, too.
+    """
+
+    laws: bool = False
 
 
 @dataclass(frozen=True)
 class Assignments(Kind):
     """Expressions in parameters by name, each as it is written; one that cannot be read is None."""
+
+
+@dataclass(frozen=True)
+class Errors(Kind):
+    """``1e-6``, ``theta=1e-6,energy=1e-9``, or both: tolerable errors of all quantities, and of those in ``names``."""
+
+    names: Callable[[System, Mapping[str, Any]], Sequence[str]] = lambda system, texts: ()
+    least: float = 0.0
+    most: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -281,6 +324,19 @@ def options_typed(request: type, typed: Mapping[str, Any]) -> frozenset[str]:
         options.add(f"--no-{option.removeprefix('--')}" if text is False else option)
         options |= {f"{option} {text.lower()}"} if isinstance(text, str) else set()
     return frozenset(options)
+
+
+def words_typed(request: type, typed: Mapping[str, Any]) -> tuple[str, ...]:
+    """The words of a command line that give these texts again."""
+    names = {field.name: field.option for field in fields_of(request)}
+    words: list[str] = []
+    for name, text in typed.items():
+        option = names.get(name, f"--{name}")
+        if isinstance(text, bool):
+            words.append(option if text else f"--no-{option.removeprefix('--')}")
+        else:
+            words += [word for one in (text if isinstance(text, tuple) else (text,)) for word in (option, str(one))]
+    return tuple(words)
 
 
 def wrong(request: Any) -> Iterator[str]:

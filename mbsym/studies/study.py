@@ -83,7 +83,8 @@ class Asked:
     ``file``: its name, for commands to be pasted; ``folder``: where its files go, ``write`` writes one at once, whole.
     ``typed``: the texts of what was given on the command line, by the names of fields and of ``as_json``, ``out``, ...;
     ``store``: opens a file of nobody else's, on the disk of the folder, for what does not fit into memory; ``remember``
-    knows what was measured before.
+    knows what was measured before; ``letters``: the author's, in which formulas are written, None where nothing was
+    said of them.
     """
 
     system: System
@@ -94,6 +95,7 @@ class Asked:
     typed: Mapping[str, Any] = field(default_factory=dict)
     store: Callable[[], BinaryIO | None] = lambda: None
     remember: Remember = unremembered
+    letters: tuple[str, ...] | None = None
 
     @property
     def motion(self) -> Scenario:
@@ -106,9 +108,11 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves.  ``owner``: the command whose set
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
+    the names of files.  ``owner``: the command whose set
     the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
-    off the making of some of them, which is raised when the others have been written.
+    off the making of some of them, which is raised when the others have been written; ``text``: what is
+    printed as it is, and nothing else, for other programs.
     """
 
     lines: Iterable[Line | Block] = ()
@@ -117,9 +121,11 @@ class Answer:
     code: Exit = Exit.OK
     after: str = ""
     brief: Iterable[Block] = ()
+    last: Iterable[Line] = ()
     owner: str = ""
     more: str = ""
     stopped: BaseException | None = None
+    text: str | None = None
 
 
 @dataclass(frozen=True)

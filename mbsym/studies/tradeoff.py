@@ -38,7 +38,7 @@ def _methods() -> tuple[str, ...]:
     return tuple(METHODS)
 
 
-SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=True)
+SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=lambda texts: True)
 METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
 BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
 

@@ -282,3 +282,48 @@ def test_shipped_systems_are_opened_changed_in_each_view_and_saved(show: Show, a
         window.press("Control+End")
         window.page.keyboard.insert_text("# told\n")
         assert window.text == f"{text}# told\n", name
+
+
+def test_a_cart_with_a_pole_by_keys_alone(show: Show) -> None:
+    """From an empty page: two bodies, gravity, a spring, a motion; names that loads bring along are parameters."""
+    window = show("")
+    page = window.page
+    window.press("Tab", "Enter")  # to the structure
+    window.press("a")
+    window.in_dialog("cart")
+    window.press("Control+z")  # a hinge is not what a cart has
+    window.settled()
+    page.locator("#graph [role=treeitem]").first.focus()
+    for name, joint in (("cart", "sl"), ("pole", "hi")):
+        window.press("a")
+        page.locator("dialog[open]").wait_for()
+        window.typed(name)
+        window.press("Tab")
+        window.typed(joint)
+        window.press("Enter")  # in a list, too
+        page.locator("dialog").wait_for(state="detached")
+        window.settled()
+    window.press("l", "Tab")
+    window.typed("g")
+    window.press("Tab", "Tab")
+    window.typed("-1")
+    window.press("Enter")
+    window.told("g is a parameter now")
+    window.press("ArrowUp", "l")
+    page.locator("dialog[open]").wait_for()
+    window.typed("spr")
+    window.press("Tab", "Tab")  # the coordinate is that of the cart
+    window.typed("k")
+    window.press("Enter")
+    window.told("k is a parameter now")
+    assert window.complaints == []
+    found = yaml_of(window.text)
+    assert [one["name"] for one in found["bodies"]] == ["cart", "pole"]
+    (coordinate,) = found["bodies"][0]["coordinates"]
+    assert found["bodies"][0]["connection point"] == [coordinate, 0, 0]
+    gravity, spring = found["loads"]
+    assert gravity == {"uniform gravity": {"acceleration": "g", "direction": [0, -1, 0]}}
+    assert spring == {"spring": {"coordinate": coordinate, "stiffness": "k"}}
+    assert found["parameters"]["k"] == {"sign": "positive", "value": 1}
+    window.press("Alt+Shift+Digit4", "Tab", "Tab", "Enter")
+    page.get_by_text("Nothing moves: it rests here.").wait_for()

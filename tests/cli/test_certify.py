@@ -145,7 +145,7 @@ def test_what_is_not_certified_is_not_called_proved(tmp_path: Path) -> None:
 
 def test_a_width_that_is_not_reached_is_exit_code_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """x'' = x from (1, -1): what a ball is wide by grows by 2.4e17 until t = 40, and more bits cost too much here."""
-    monkeypatch.setattr("mbsym_cli.simulate.further.WORK", 0.08)
+    monkeypatch.setattr("mbsym.studies.simulate.fitting.WORK", 0.08)
     text = LINE + "loads:\n  - potential: -x**2/2\ninitial: {x: {position: 1, velocity: -1}}\n"
     done = simulated(tmp_path, text, "--time", "40", "--samples", "21", "--certify", "1e-10")
     assert done.exit_code == 3, done.output

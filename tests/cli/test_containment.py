@@ -248,7 +248,7 @@ def test_in_the_drawing(
     def stopped(*_: object) -> NoReturn:
         raise error
 
-    monkeypatch.setattr("mbsym_cli.simulate.files._pictures", stopped)
+    monkeypatch.setattr("mbsym.studies.simulate.files._pictures", stopped)
     done = simulate("-o", tmp_path)
     assert done.exit_code == code, done.output
     assert names(tmp_path) == {"trajectory.csv", "simulation.json", MANIFEST}

@@ -92,7 +92,6 @@ def test_a_speed_that_is_no_state_alone_is_refused(tmp_path: Path) -> None:
     [
         ("--linear", ("--linear",)),
         ("--bodies", ("--bodies",)),
-        ("--animate", ("--animate",)),
         ("--method", ("--method", "midpoint", "--step", "0.1")),
         ("--method", ("--method", "lsoda")),
     ],

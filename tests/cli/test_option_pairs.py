@@ -24,9 +24,13 @@ from mbsym.numerics.ensembles.side_by_side import TABLEAUX
 from mbsym.numerics.kernels.interface import EXTENDED
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.table import METHODS
+from mbsym.studies.simulate import PAIRS, STUDY
+from mbsym.studies.study import Apart, Needed
 from mbsym_cli.main import main
-from mbsym_cli.simulate.command import command
-from mbsym_cli.simulate.options import APART, NEEDED, Apart, Needed
+from mbsym_cli.study import command_of
+
+APART = [one for one in PAIRS if isinstance(one, Apart)]
+NEEDED = [one for one in PAIRS if isinstance(one, Needed)]
 
 #: A dumbbell on a circular orbit, in its plane (beta rests), with a wheel (a first integral) and a soft spring.
 DUMBBELL = """
@@ -486,7 +490,7 @@ def test_a_quiet_plan_says_nothing_but_by_its_exit_code(described: Path, tmp_pat
 def test_every_option_is_there() -> None:
     """A new option has to say what goes with it."""
     known = {option for item in ITEMS.values() for option in item.names} | {"--debug", "--force"}  # from outside
-    assert {max(one.opts, key=len) for one in command.params if one.param_type_name == "option"} - known == {
+    assert {max(one.opts, key=len) for one in command_of(STUDY).params if one.param_type_name == "option"} - known == {
         "--time",
         "--fixed",  # of descriptions with constraints: tests/constrained/test_constrained_runs.py
         "--variables",  # of descriptions with speeds: tests/cli/test_declared_variables.py

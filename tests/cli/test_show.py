@@ -43,6 +43,15 @@ def test_formulas_are_those_of_the_book(name: str, words: tuple[str, ...], expec
     assert (result.exit_code, result.stdout) == (0, expected)
 
 
+def test_mistakes_are_told_at_once() -> None:
+    """Two languages, of which the last one was taken; names beside steps that cannot be read; a value of nothing."""
+    done = show("simple-pendulum", "T", "--latex", "--wolfram", "--reduce", "(", "--set", "theta=1")
+    assert (done.exit_code, done.stdout) == (2, "")
+    for option in ("--latex: error[conflicting-options]", "--reduce: error[not-both]", "--set: error[misplaced-name]"):
+        assert option in done.stderr
+    assert "4 errors; nothing was written." in done.stderr
+
+
 def test_under_constraints_the_right_side_has_the_multipliers() -> None:
     """m x'' = lambda x, m y'' + m g = lambda y: the tension of a rod of length l along (x, y)."""
     lines = show("cartesian-pendulum").stdout.splitlines()

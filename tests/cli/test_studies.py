@@ -11,7 +11,6 @@ import pytest
 from click.testing import CliRunner, Result
 from conftest import SHIPPED
 
-from mbsym.algebra.failures import NoClosedForm
 from mbsym_cli import study
 from mbsym_cli.files import prevented
 from mbsym_cli.main import main
@@ -96,28 +95,6 @@ def test_all_that_is_wrong_is_said_and_nothing_written(
     for option in complaints:
         assert f"\n{option}" in f"\n{done.stderr}"
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
-    ("error", "told"),
-    [
-        (KeyError("x"), None),
-        (ValueError("y"), "a word of one's own: y"),
-        (NoClosedForm("z"), "error[no-program]: there is no program for these equations: z"),
-        (PermissionError("w"), "the results cannot be written: w"),
-    ],
-)
-def test_failures_are_told_alike(error: Exception, told: str | None, capsys: pytest.CaptureFixture[str]) -> None:
-    def work() -> int:
-        raise error
-
-    own = {ValueError: "a word of one's own"}
-    if told is None:
-        with pytest.raises(KeyError):
-            study.attempted(Path("f.yaml"), work, own)
-        return
-    assert study.attempted(Path("f.yaml"), work, own) is None
-    assert capsys.readouterr().err == f"f.yaml: {told}\n"
 
 
 def test_what_prevents_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

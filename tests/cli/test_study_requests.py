@@ -17,13 +17,17 @@ from click.testing import CliRunner, Result
 from conftest import SHIPPED
 
 import mbsym
+from mbsym.expressions.place import Span
 from mbsym.studies.lyapunov import Request as LyapunovRequest
 from mbsym.studies.request import Flag, Kind, Number, Values, Whole, Word, duration, fields_of, wrong
 from mbsym.studies.study import (
     Answer,
+    Apart,
     Asked,
     Document,
     Exit,
+    Folder,
+    Needed,
     NotFit,
     Refusal,
     Single,
@@ -122,6 +126,49 @@ def test_what_does_not_go_together_is_said_with_the_rest(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
+def test_pairs_of_options_are_told_with_the_rest_even_of_a_description_that_cannot_be_read(tmp_path: Path) -> None:
+    """One has its value, one is about another; of what was left out, and of what a default says, nothing is told."""
+    pairs = [Apart("--shape flat", "--loud", "flat is never loud"), Needed("--rows", "--size", "for example --size 1")]
+    study = planted(pairs=pairs)
+    done = run(study, "--time", 1, "--shape", "Flat", "--loud", "--rows", 4)
+    assert done.exit_code == 2
+    assert "--rows: error[missing-option]: --rows goes with --size\n  hint: for example --size 1\n" in done.stderr
+    assert (
+        "--shape: error[conflicting-options]: --shape flat does not go with --loud: flat is never loud" in done.stderr
+    )
+    assert run(study, "--time", 1, "--loud", "--out", tmp_path / "loud").exit_code == 0
+    assert run(study, "--time", 1, "--shape", "flat", "--rows", 4, "--size", 1, "--out", tmp_path).exit_code == 0
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text("mbsym: 1\n", encoding="utf-8")
+    done = CliRunner().invoke(command_of(study), [str(wrong), "--rows", "4"], standalone_mode=False)
+    assert "--rows goes with --size" in done.stderr
+
+
+def test_a_place_in_a_text_is_shown() -> None:
+    unread = Unfit("--shape", "late", "no such edge", None, "", "round or so", Span(1, 7, 2))
+    done = run(planted(NotFit([unread])), "--time", 1)
+    assert done.stderr.splitlines()[:3] == [
+        "--shape: error[late]: no such edge",
+        "  | round or so",
+        "  |       ^^",
+    ]
+
+
+def test_what_stops_the_last_files_leaves_the_others_written(tmp_path: Path) -> None:
+    """And is told as what it is: something has been written."""
+    stopped = Answer((line("  told"),), {"first.txt": "1\n"}, stopped=KeyboardInterrupt())
+    done = run(planted(stopped), "--time", 1, "--out", tmp_path)
+    assert (done.exit_code, done.stdout, (tmp_path / "first.txt").read_text()) == (130, "", "1\n")
+    assert done.stderr == f"{PENDULUM}: interrupted; what has been written is whole\n"
+
+
+def test_json_is_that_of_the_file_however_it_was_made(tmp_path: Path) -> None:
+    """Parts are made once, while they are written."""
+    made = Answer((), {"found.json": (part for part in ("{", "}\n"))})
+    done = run(planted(made, out=Folder(json=True)), "--time", 1, "--json", "--out", tmp_path)
+    assert (done.stdout, (tmp_path / "found.json").read_text()) == ("{}\n", "{}\n")
+
+
 def test_files_lines_and_quiet(tmp_path: Path) -> None:
     done = run(planted(), "--time", 2, "--set", "l=3", "--out", tmp_path)
     assert (done.exit_code, (tmp_path / "found.txt").read_text()) == (0, "6\n")
@@ -176,7 +223,7 @@ def test_every_field_of_every_study_is_an_option(name: str) -> None:
     assert study.name == name
     command = main.get_command(click.Context(main), name)
     assert command is not None
-    options = [one.name for one in command.params if isinstance(one, click.Option)]
+    options = [one.name for one in command.params if one.name != "file"]
     kinds = [one.name for one in fields_of(study.request)]
     assert options[: len(kinds)] == kinds == list(inspect.signature(study.request).parameters)
     assert all(isinstance(one.kind, Kind) for one in fields_of(study.request))

@@ -22,7 +22,10 @@ COMMANDS = [
     ("nonlinear", "spring-pendulum.yaml"),
     *(("explain", str(number)) for number in range(1, 13)),
     ("explain",),
-    ("explain", "claims"),
+    *(
+        ("explain", topic)
+        for topic in ("claims", "description", "loads", "constraints", "expressions", "abbreviations")
+    ),
 ]
 
 
@@ -45,6 +48,19 @@ def test_no_line_of_words_is_wider_than_asked_for(words: tuple[str, ...], tmp_pa
     assert [line for line in narrow.split("\n") if len(line) > WIDTH and not is_formula(line)] == []
     masked = [re.sub(r"\d+\.\d+\s+s\b|\S*/\S+", "", text) for text in (narrow, wide)]  # seconds, folders
     assert masked[0].split() == masked[1].split()  # nothing is lost
+
+
+@pytest.mark.parametrize("topic", ["description", "loads", "claims"])
+def test_a_table_in_an_explanation_keeps_its_columns(topic: str) -> None:
+    """Rows were broken twice, and began in the line of the row before; a key has its meaning beside it or below."""
+    narrow, wide = (called(("explain", topic), Path(), columns).split("\n") for columns in (str(WIDTH), "1000"))
+    row = re.compile(r"( {4}\w[\w ]*?  +)(?=\S)")
+    begun, rows = ([match[1] for match in map(row.match, lines) if match] for lines in (wide, narrow))
+    assert len(begun) > 10
+    assert rows == begun
+    under = [line for line, before in zip(narrow[1:], narrow, strict=False) if row.match(before) and line[:5].isspace()]
+    assert under
+    assert {len(line) - len(line.lstrip()) for line in under} <= {len(x) for x in begun}
 
 
 def test_a_pipe_gets_one_line_a_statement(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from mbsym.numerics.constrained import drift_of
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, Setting, compiled_kernel
+from mbsym.numerics.methods.interface import OUT_OF_REACH, SINGULAR_CONSTRAINTS, Setting, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, Simulation, simulate
@@ -262,6 +262,41 @@ def test_a_singular_start_is_named() -> None:
     )
     start = f"initial: {{q1: 0, q2: {pi}, q3: 0}}".replace(str(pi), "pi")
     found = simulate(scenario(described(text + start)), Request(time=1.0))
+    assert found.ended is not None
+    assert found.ended.kind == SINGULAR_CONSTRAINTS
+
+
+#: An arm of two links of length 1 whose end is drawn along a line.
+DRAWN = """
+mbsym: 1
+name: arm
+parameters: {{g: 9.81}}
+bodies:
+  - {{name: a, attached to: 0, rotation: {{axes: [3], angles: [q1]}}, mass centre: [1/2, 0, 0], mass: 1,
+     inertia about: mass centre, inertia: [0, 1/12, 1/12]}}
+  - {{name: b, attached to: a, connection point: [1, 0, 0], rotation: {{axes: [3], angles: [q2]}},
+     mass centre: [1/2, 0, 0], mass: 1, inertia about: mass centre, inertia: [0, 1/12, 1/12]}}
+loads: [{{uniform gravity: {{vector: [0, -g, 0]}}}}]
+constraints: [{{relation: "cos(q1) + cos(q1 + q2) = {reach}"}}]
+initial: {{q1: 0.5, q2: -1.5}}
+"""
+
+
+@pytest.mark.parametrize("method", ["rk45", "radau", "rk4"])
+def test_what_is_drawn_to_full_stretch_ends_there_and_is_called_so(method: str) -> None:
+    """The reach 1 + t/2 is the arm's length of 2 at t = 2; nothing is nearer to the end than the last sample."""
+    finely = {"step": 1e-3} if method == "rk4" else {"tolerance": 1e-9}
+    given = closed(scenario(described(DRAWN.format(reach="1 + t/2")))).scenario
+    found = simulate(given, Request(time=4.0, method=method, estimate=False, **finely))  # type: ignore[arg-type]
+    assert found.ended is not None
+    assert found.ended.kind == OUT_OF_REACH
+    assert found.ended.time == pytest.approx(2, abs=5e-3)
+
+
+def test_a_reach_that_only_touches_full_stretch_is_a_singular_position() -> None:
+    """1 + t/2 - t^2/16 has its maximum of 2 at t = 4: there are positions behind it."""
+    given = closed(scenario(described(DRAWN.format(reach="1 + t/2 - t**2/16")))).scenario
+    found = simulate(given, Request(time=8.0, method="rk45", tolerance=1e-9, estimate=False))
     assert found.ended is not None
     assert found.ended.kind == SINGULAR_CONSTRAINTS
 

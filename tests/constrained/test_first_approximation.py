@@ -213,6 +213,18 @@ def test_the_flat_parallelogram_is_singular() -> None:
     assert stage.failure.code == "singular"
 
 
+def test_a_squared_constraint_is_not_called_independent_near_the_motion() -> None:
+    """Of y^2 = 0 the row 2 y y' = 0 vanishes at every allowed position; only others, which break it, have rank 1."""
+    text = (
+        "mbsym: 1\nname: squared\nbodies: [{name: p, attached to: 0, mass: 1, connection point: [x, y, 0], "
+        "coordinates: [x, y]}]\nconstraints: [{relation: y**2 = 0}]\nmotion: {}\n"
+    )
+    failure = described(text).stage(5).failure
+    assert failure is not None
+    assert "independent" not in str(failure.reason)
+    assert "allowed ones or not" in str(failure.reason)
+
+
 OUTSIDE = """
 mbsym: 1
 name: Three masses, the velocity of the first one given by the place of the second

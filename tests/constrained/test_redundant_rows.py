@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import ctypes
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
@@ -367,12 +367,20 @@ def test_mechanisms_with_redundant_rows(name: str, rank: int) -> None:
 
 
 def as_d_alembert_has_them(dynamics: Dynamics, source: Any) -> None:
-    """Ranks and accelerations at some positions of the branch by the singular values of all rows."""
+    """Ranks and accelerations of the kernels at some positions of the branch."""
+    rates = arrays.kernel(dynamics.right_hand_side)
+    for state, wanted in by_all_rows(dynamics, source):
+        found = rates(np.concatenate([[0.0], state]))[len(wanted) :]
+        assert found == pytest.approx(wanted, abs=1e-7 * (1 + np.max(np.abs(wanted))))
+
+
+def by_all_rows(dynamics: Dynamics, source: Any) -> Iterator[tuple[Any, Any]]:
+    """(state, q'') at some positions of the branch by the singular values of all rows, which have the rank told."""
     constraints = dynamics.constraints
     assert constraints is not None
     n = constraints.size
     start = np.array([float(x) for x in dynamics.scenario.state])
-    kernels = [arrays.kernel(code) for code in (dynamics.right_hand_side, dynamics.mass_matrix, dynamics.forcing)]
+    kernels = [arrays.kernel(code) for code in (dynamics.mass_matrix, dynamics.forcing)]
     for place in constraints._places(start):
         state = place.copy()
         state[n:] = source.normal(size=n)
@@ -382,7 +390,7 @@ def as_d_alembert_has_them(dynamics: Dynamics, source: Any) -> None:
         def rows_after(step: float, state: Any = state) -> Any:
             return constraints.at(step, np.concatenate([state[:n] + step * state[n:], state[n:]])).velocities
 
-        rates, mass, force = (kernel(np.concatenate([[0.0], state])) for kernel in kernels)
+        mass, force = (kernel(np.concatenate([[0.0], state])) for kernel in kernels)
         mass = mass.reshape(n, n)
         sizes, basis = np.linalg.svd(here.partials)[1:]
         assert int(np.sum(sizes > 1e-7 * sizes[0])) == constraints.rank
@@ -390,8 +398,7 @@ def as_d_alembert_has_them(dynamics: Dynamics, source: Any) -> None:
         bent = (rows_after(STEP) - rows_after(-STEP)) / (2 * STEP)
         bent = (4 * (rows_after(STEP / 2) - rows_after(-STEP / 2)) / STEP - bent) / 3
         first = np.linalg.lstsq(here.partials, -bent, rcond=1e-9)[0]
-        wanted = first + free @ np.linalg.solve(free.T @ mass @ free, free.T @ (force - mass @ first))
-        assert rates[n:] == pytest.approx(wanted, abs=1e-7 * (1 + np.max(np.abs(wanted))))
+        yield state, first + free @ np.linalg.solve(free.T @ mass @ free, free.T @ (force - mass @ first))
 
 
 def mechanism(source: Random) -> str:

@@ -239,17 +239,46 @@ def test_every_system_is_drawn_where_the_library_says(still: Window) -> None:
         assert not still.complaints, (path.stem, still.complaints)
 
 
-def test_without_three_dimensions_a_motion_is_told_all_the_same(browser: Any, tmp_path: Path) -> None:
-    """A browser without WebGL: time goes on, energy and positions are told, and no button is for a picture."""
+#: A browser in which these kinds of canvases are missing.
+WITHOUT = (
+    "HTMLCanvasElement.prototype.getContext = (own => function (kind, ...more) {{"
+    " return {} ? null : own.call(this, kind, ...more); }})"
+    "(HTMLCanvasElement.prototype.getContext);"
+)
+
+
+def test_without_a_graphics_card_the_same_is_drawn_flat(browser: Any, tmp_path: Path) -> None:
+    """The bob of the pendulum is where WebGL draws it, in its colour, and moves."""
+    out = tmp_path / "page.html"
+    text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 0.5)
+    out.write_text(text, encoding="utf-8")
+    page = browser.new_page(reduced_motion="reduce")
+    page.add_init_script(WITHOUT.format("kind.startsWith('webgl')"))
+    page.goto(out.as_uri())
+    look = """(t) => new Promise((done) => {
+      mbsymViewer.go(t, false);
+      requestAnimationFrame(() => requestAnimationFrame(() => {
+        const { stage, picture, poses } = mbsymViewer, ratio = stage.canvas.width / stage.element.clientWidth;
+        const [x, y] = stage.projected(poses.values, picture.bodies[0].centre);
+        const place = [Math.round(ratio * x), Math.round(ratio * y)];
+        done([x, y, ...stage.canvas.getContext('2d').getImageData(...place, 1, 1).data]);
+      }));
+    })"""
+    there, later = (page.evaluate(look, t) for t in (0, 0.5))
+    assert np.hypot(there[0] - later[0], there[1] - later[1]) > 20
+    for seen in (there, later):  # blue
+        assert seen[4] > seen[2] + 40
+    assert page.get_by_role("button", name="Closer").count() == 1
+    page.close()
+
+
+def test_without_any_canvas_a_motion_is_told_all_the_same(browser: Any, tmp_path: Path) -> None:
+    """A browser that draws nothing: time goes on, energy and positions are told, and no button is for a picture."""
     out = tmp_path / "page.html"
     text, _ = viewed(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, {}, 0.2)
     out.write_text(text, encoding="utf-8")
     page = browser.new_page()
-    page.add_init_script(
-        "HTMLCanvasElement.prototype.getContext = (own => function (kind, ...more) {"
-        " return kind.startsWith('webgl') ? null : own.call(this, kind, ...more); })"
-        "(HTMLCanvasElement.prototype.getContext);"
-    )
+    page.add_init_script(WITHOUT.format("true"))
     page.goto(out.as_uri())
     page.get_by_text("positions are told below in words").wait_for()
     page.locator(".viewer-reading").filter(has_text="energy").wait_for()

@@ -211,7 +211,7 @@ def test_a_sign_of_a_truck_is_seen() -> None:
     """Both trucks with the lever of the rear one: that is one constraint twice where they stand straight."""
     wrong = ("y_dot*cos(theta - phi) + l*theta_dot*cos(phi)", "y_dot*cos(theta - phi) - l*theta_dot*cos(phi)")
     found = changed("snakeboard", wrong)
-    with pytest.raises(mbsym.analysis.Unavailable, match="not independent on this motion"):
+    with pytest.raises(mbsym.analysis.Unavailable, match="smaller rank on this motion"):
         _ = found.linearisation
 
 

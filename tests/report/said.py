@@ -66,6 +66,7 @@ class Module(ast.NodeVisitor):
 
     def visit_Call(self, node: ast.Call) -> None:
         self.generic_visit(node)
+        self._words([part for x in node.keywords if x.arg == "absent" for part in self._parts(x.value)], node)
         name = ast.unparse(node.func).split(".")[-1]
         if name == "Message":
             self._message(node)
@@ -111,6 +112,11 @@ class Module(ast.NodeVisitor):
             whole = [x for x in named if isinstance(x, ast.Tuple)]
             found += whole[0].elts if whole else [one]
         return found
+
+    def _parts(self, value: ast.expr) -> list[ast.expr]:
+        """A message and its hint: of a tuple, or of one that has a name."""
+        known = self.known.get(value.id, []) if isinstance(value, ast.Name) else [value]
+        return [part for one in known if isinstance(one, ast.Tuple) for part in one.elts]
 
     def _message(self, node: ast.Call) -> None:
         first = node.args[0]

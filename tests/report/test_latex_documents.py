@@ -24,7 +24,7 @@ from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
 from mbsym.source.yaml_writer import meaning
 from mbsym_cli.main import main
-from tests.conftest import SHIPPED, needs_pdflatex
+from tests.conftest import SHIPPED, TESTS, needs_pdflatex
 from tests.report.readers import unreadable
 
 SYSTEMS = ("satellite.yaml", "double-pendulum.yaml", "heavy-top.yaml")
@@ -289,3 +289,25 @@ def test_formulas_of_an_appendix_are_those_that_a_person_writes() -> None:
 def test_the_label_of_a_description_stands_in_every_label(label: str, written: str) -> None:
     system = replace(mbsym.load(SHIPPED / "simple-pendulum.yaml").system, name="Top", label=label)
     assert prefix_of(system) == f"mbsym:{written}:"
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        SHIPPED / "satellite-with-damper-slow.yaml",  # a refuted condition, on the first page
+        TESTS / "cases" / "hostile" / "ht.yaml",  # coordinates that move together
+        SHIPPED / "orbital-gyrostat.yaml",  # which condition of problem 6 a claimed one is
+    ],
+    ids=lambda path: path.stem,
+)
+def test_no_formula_stands_as_text_among_words(path: Path) -> None:
+    """``condition (Lambda + omega)*(Lambda - omega)**2 > 0`` stood on the first page as it is typed."""
+    text = TARGETS["latex"].render(mbsym.load(path), (4, 5, 6, 7))
+    assert isinstance(text, str)
+    words = re.sub(
+        r"(?s)\\begin\{(tikzpicture|gather|equation|align|multline)\*?\}.*?\\end\{\1\*?\}|\$[^$]*\$", "", text
+    )
+    words = words.partition("\\begin{document}")[2]
+    assert "condition" in words or "move together" in words
+    words = words.partition("For example at")[0]  # numbers by name
+    assert not re.findall(r"[\w)]\*+[\w(]|\\_dot", re.sub(r"\\(new)?line\*?|\\section\*", "", words))

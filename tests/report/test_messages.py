@@ -47,8 +47,9 @@ from mbsym.report.schemas import schema
 from mbsym.report.words.normal_form_words import REASONS
 from mbsym.report.words.passages import _FROM_ORIGIN, _LESS_GRAVITY, _WORDS
 from mbsym.source.starter import JOINTS
+from mbsym.studies.simulate import PAIRS
+from mbsym.studies.study import Apart
 from mbsym_cli.diff import called
-from mbsym_cli.simulate.options import APART, NEEDED
 from tests.report import said
 
 OTHERS = [name for name in LANGUAGES if name != "en"]
@@ -163,6 +164,18 @@ def unfit(name):
     assert [one.text for one in module.texts] == ["nobody says this"]
 
 
+def test_what_is_said_of_an_option_that_is_absent_is_found() -> None:
+    """Negative control: a tuple, one that has a name, and one that is put together."""
+    study = """
+ABSENT = ("nobody says this", "nor this")
+period: Annotated[float, Number("T", "The period.", absent=ABSENT)]
+time: Annotated[float, Number("T", "The time.", absent=("how long?", f"take {name}"))]
+"""
+    module = said.Module("studies/planted.py", ast.parse(study), frozenset())
+    assert {one.text for one in module.texts} == {"nobody says this", "nor this", "how long?"}
+    assert [place.partition(": ")[0] for place in module.open] == ["studies/planted.py:4"]
+
+
 def test_words_that_a_command_prints_in_english_are_found() -> None:
     """Negative control: a complaint, a line and a question of a command, and reasons against an earlier run."""
     command = """
@@ -185,7 +198,7 @@ print(f"{printable(file)}: {say(text)}")
 @pytest.mark.parametrize("name", OTHERS)
 def test_why_options_of_a_run_do_not_go_together_is_translated(name: str) -> None:
     known = {english for _, english in messages(name)}
-    asked = {text for one in APART for text in (one.why, one.hint)} | {one.hint for one in NEEDED}
+    asked = {one.why for one in PAIRS if isinstance(one, Apart)} | {one.hint for one in PAIRS}
     assert not {text for text in asked if text is not None} - known
 
 

@@ -69,7 +69,26 @@ def test_of_constrained_systems_it_is_about_the_open_tree() -> None:
     p = {name: 1.0 + k / 7 for k, name in enumerate(model.PARAMETERS)}
     wanted = model.mass_matrix(q, p) @ qdd - model.forcing(q, qd, p)
     assert model.inverse_dynamics(q, qd, qdd, p) == pytest.approx(wanted, rel=1e-12)
-    assert not hasattr(model, "forward_dynamics")
+
+
+def test_forward_dynamics_keeps_the_constraints() -> None:
+    """Against LAPACK's solution of (M, -J^T; J, 0) (q'', lambda) = (f + tau, -gamma); tau comes back but for J^T mu."""
+    model = module(mbsym.load(SHIPPED / "four-bar.yaml", problems=()))
+    n = len(model.COORDINATES)
+    q, qd, tau = np.random.default_rng(8).normal(size=(3, n))
+    p = {name: 1.0 + k / 7 for k, name in enumerate(model.PARAMETERS)}
+    mass, slopes = model.mass_matrix(q, p), model.constraint_jacobian(q, p)
+    rows = len(slopes)
+    whole = np.block([[mass, -slopes.T], [slopes, np.zeros((rows, rows))]])
+    right = np.concatenate([model.forcing(q, qd, p) + tau, -model.constraint_acceleration(q, qd, p)])
+    found = model.forward_dynamics(q, qd, tau, p)
+    assert found == pytest.approx(np.linalg.solve(whole, right)[:n], rel=1e-10)
+    needed = model.inverse_dynamics(q, qd, found, p) - tau
+    assert np.linalg.matrix_rank(np.vstack([slopes, needed]), tol=1e-9) == rows
+    several = model.forward_dynamics(*np.stack([np.array([q, qd, tau])] * 2, axis=-1), p)
+    assert several[:, 1] == pytest.approx(found, rel=1e-13)
+    for kind in ("c", "casadi"):
+        assert "forward_dynamics" in str(FORMATS[kind].render(mbsym.load(SHIPPED / "four-bar.yaml", problems=()), ()))
 
 
 def test_frames_that_would_take_too_much_are_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,10 +9,13 @@ from __future__ import annotations
 import json
 import re
 from fractions import Fraction
+from math import cos, log2, sin
 
 import jsonschema
+import numpy as np
 import pytest
 from conftest import SHIPPED
+from scipy.integrate import solve_ivp
 from terminal import told
 
 import mbsym
@@ -81,6 +84,52 @@ def test_duffing_as_python_latex_html_and_wolfram(duffing):
     assert "2^k" not in latex
     assert '"phase\'", 1, ' in wolfram
     assert "Periodic solution up to order" in page
+
+
+#: Duffing, with the parameter eps, and with a small deviation x = eps X: the same with a^2 eps in place of eps.
+SMALL = ["eps", "{size: {powers: {x: 1}}}"]
+
+
+@pytest.mark.parametrize("small", SMALL)
+def test_series_are_functions_of_the_time(small):
+    """Against x'' = -w^2 x - eps x^3 from x = a: beyond the second order errors are of the third, over times of 1."""
+    by_power = small != "eps"
+    analysis = point("+ x**4/4" if by_power else "+ eps*x**4/4", small=small)
+    space = {"__name__": "model"}
+    exec(compile(TARGETS["python"].render(analysis, (12,)), "model.py", "exec"), space)
+    times, errors = np.linspace(0, 9, 40), []
+    for eps in (0.1, 0.05):
+        values = {"w": 2.0, "amplitude": 0.8, "size" if by_power else "eps": eps}
+        told = space["periodic_solution"](times, values)
+        factor, start = (1, eps * 0.8) if by_power else (eps, 0.8)
+        told_start = space["periodic_solution"](0.0, values)
+        run = solve_ivp(
+            lambda t, z, factor=factor: (z[1], -4 * z[0] - factor * z[0] ** 3),
+            (0, 9),
+            (told_start["x"], 0.0),
+            t_eval=times,
+            rtol=1e-12,
+            atol=1e-14,
+        )
+        assert told_start["x"] == pytest.approx(start, rel=1e-12)
+        assert np.abs(told["x'"] - run.y[1]).max() < 0.1 * eps**3
+        errors.append(np.abs(told["x"] - run.y[0]).max())
+    assert log2(errors[0] / errors[1]) > 2.8
+    data = json.loads(TARGETS["json"].render(analysis, (12,)))["small_parameters"]["oscillation"]
+    names = {**values, "cos": cos, "sin": sin}
+    names["phase"] = 1.5 * eval(data["phase_rate"], dict(names))
+    (one,) = (x for x in data["solution"] if x["variable"] == "x")
+    at = float(space["periodic_solution"](1.5, values)["x"])
+    assert eval(one["function"], names) == pytest.approx(at, rel=1e-12)
+
+
+def test_a_solution_that_leaves_nothing_is_periodic_in_all_orders(duffing):
+    """x = 0, y'' = -6 y: of no higher order is it said that it is not looked at."""
+    formal = "Whether some remain in higher orders"
+    assert formal in said(duffing)
+    led = point("+ 3*y**2 + eps*x**2*y", small="{eps: {leading: y}}", names="x, y", place="x, y, 0")
+    assert "it leaves nothing (verified)." in said(led)
+    assert formal not in said(led)
 
 
 def test_an_amplitude_that_parameters_may_forbid(limit_cycle):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib.resources import files
 
 import pytest
@@ -12,8 +13,11 @@ import mbsym
 from mbsym.analysis import PROBLEMS, Problem
 from mbsym.formulas.latex import write_as
 from mbsym.formulas.tree import angles_as
+from mbsym.report.language import LANGUAGES
 from mbsym.report.latex.report import render
+from mbsym.report.rendering import rendered
 from mbsym.report.sections import section_of
+from mbsym.report.targets import TARGETS
 
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=lambda problem: problem.attribute)
@@ -68,3 +72,14 @@ def test_a_formula_is_printed_anew_when_its_names_are_written_otherwise() -> Non
     assert r"\mathcal{X}" not in entry.latex()
     write_as(analysis.ring, {name: r"\mathcal{X}"})
     assert r"\mathcal{X}" in analysis.equations.mass_matrix[0, 0].latex()
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_sentence_ends_twice(language: str) -> None:
+    """Numbers of states ended in "сост.", and a source may end with a point of its own."""
+    analysis = mbsym.load(SHIPPED / "bead-on-hoop.yaml", (1, 2))
+    assert analysis.system.source.endswith(".")
+    analysis.language = language
+    appendix = next(x for x in rendered(TARGETS["latex"], analysis, (1, 2)) if x.filename == "appendix.tex")
+    for text in (str(appendix.text), str(TARGETS["html"].render(analysis, (1, 2)))):
+        assert not re.search(r"\w\.\.(?!\.)", text)

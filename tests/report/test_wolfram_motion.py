@@ -82,3 +82,22 @@ def test_the_program_gives_the_same(name: str, mathics: Any) -> None:
     changed = re.sub(r"(s\d+) = (.*)\*(.*);", r"\1 = \2 + \3;", report, count=1)
     assert changed != report
     assert rate(changed)[n:] != pytest.approx(wanted, rel=1e-9)
+
+
+def test_series_as_functions_of_the_time(mathics):
+    """x'' = -x - eps x^3, to eps^2, by hand at the phase 0 and by its rate 1 + 3/8 eps a^2 - 21/256 eps^2 a^4."""
+    analysis = Analysis(
+        mbsym.loads(
+            "mbsym: 1\nname: Duffing\nparameters: {eps: positive}\nsmall parameter: eps\nbodies:\n"
+            "  - {name: mass, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}\n"
+            "loads:\n  - potential: x**2/2 + eps*x**4/4\n"
+        ).system,
+        (12,),
+    )
+    (line,) = re.findall(r"^periodicSolutionOf = .*$", TARGETS["wolfram"].render(analysis, (12,)), re.MULTILINE)
+    mathics.evaluate(line)
+    rate = 1 + 3 / 8 * 0.1 - 21 / 256 * 0.01
+    for phase, x in ((0, 1), (2 * np.pi, 1), (np.pi, -1)):
+        at = f"/. {{eps -> 0.1, amplitude -> 1, t -> {phase / rate:.15f}}}"
+        assert numbers(mathics, f'("x" /. periodicSolutionOf) {at}') == pytest.approx(x, abs=1e-12)
+        assert numbers(mathics, f'("x\'" /. periodicSolutionOf) {at}') == pytest.approx(0, abs=1e-12)

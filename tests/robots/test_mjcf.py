@@ -123,3 +123,21 @@ def test_shapes_limits_and_what_is_left_out_are_kept() -> None:
     assert {one.split(" (")[0] for one in made.left_out} == {"sensor", "contact"}
     assert system.input_names == ("tau_pan",)
     assert made.joints == ("pan", "lift", "slide", "yaw", "pitch")
+
+
+def test_what_an_actuator_cannot_do_is_told() -> None:
+    """A wrong gear and a joint that is not there are complaints, limits of torques are left out in words."""
+    text = (
+        '<mujoco><worldbody><body><joint name="j" axis="0 1 0"/><geom size="0.1" pos="0 0 -1"/></body></worldbody>'
+        "<actuator><motor {}/></actuator></mujoco>"
+    )
+    gear, joint = ('joint="j" gear="two"', "'two' in 'gear' is no number"), ('joint="k"', "there is no joint 'k'")
+    for wrong, told in (gear, joint):
+        complaints = Complaints()
+        assert convert(text.format(wrong), complaints) is None
+        assert [str(one.message) for one in complaints] == [told]
+    for limit in ('ctrlrange="-1 1"', 'forcerange="-2 2"'):
+        made = convert(text.format(f'joint="j" gear="1 0 0 0 0 0" {limit}'), Complaints())
+        assert made is not None
+        assert "limits of an actuator" in made.left_out
+        assert not any("gear" in one for one in made.left_out)

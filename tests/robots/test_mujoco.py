@@ -125,3 +125,72 @@ def test_ties_are_mujoco_s(tie: str) -> None:
         theirs, found = (np.sort(np.abs(x)) for x in (data.efc_pos[: data.ne], own.constraints(q, own.DEFAULTS)))
         assert len(theirs) >= 1
         assert np.linalg.norm(theirs) == pytest.approx(np.linalg.norm(found), rel=CLOSE)
+
+
+#: A chain of two hinges and a slide, and a body that it is welded to.
+WELDED = """<mujoco><compiler angle="radian"/><worldbody>
+<body name="a" pos="0.1 0 0"><joint name="x" axis="0 1 0"/>
+ <inertial mass="1" pos="0 0 -1" diaginertia="0.1 0.1 0.1"/>
+ <body name="b" pos="0 0.2 -1" euler="0.5 0 0"><joint name="z" type="slide" axis="1 0 0"/><joint name="u" axis="0 0 1"/>
+  <inertial mass="1" pos="0 0 0" diaginertia="0.1 0.2 0.1"/><site name="p" pos="0.1 0 0" euler="0 0 1"/></body></body>
+<body name="c" pos="0.5 0 0" euler="0 0.4 0"><joint name="e" type="slide" axis="1 0 0"/>
+ <joint name="f" type="slide" axis="0 1 0"/><joint name="h" type="slide" axis="0 0 1"/><joint name="v" axis="0 1 0"/>
+ <joint name="y" axis="1 0 0"/><joint name="n" axis="0 0 1"/>
+ <inertial mass="2" pos="0 0 -0.7" diaginertia="0.1 0.1 0.1"/>
+ <site name="s" pos="0 0.1 0" euler="1 0 0"/></body>
+</worldbody><equality>{}</equality></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    "weld",
+    [
+        '<weld body1="b" body2="c"/>',
+        '<weld body1="b" body2="c" anchor="0.1 -0.2 0.3"/>',
+        '<weld body1="c"/>',
+        '<weld body1="b" body2="c" anchor="0.1 -0.2 0.3" relpose="{pose}"/>',
+        '<weld site1="p" site2="s"/>',
+    ],
+)
+def test_welds_hold_what_mujoco_s_hold(weld: str) -> None:
+    """Where a weld holds ours does, and both leave the same velocities free: rows of their Jacobians span one space."""
+    free = mujoco.MjModel.from_xml_string(WELDED.format(""))
+    data, source = mujoco.MjData(free), np.random.default_rng(6)
+    given = "{pose}" in weld
+    if given:
+        data.qpos[:] = source.normal(size=free.nq)
+    mujoco.mj_kinematics(free, data)
+    b, c = data.body("b"), data.body("c")
+    anchor = c.xpos + c.xmat.reshape(3, 3) @ [0.1, -0.2, 0.3]
+    pose = [*(b.xmat.reshape(3, 3).T @ (anchor - b.xpos)), *quaternion(b.xmat.reshape(3, 3).T @ c.xmat.reshape(3, 3))]
+    text = WELDED.format(weld.format(pose=" ".join(map(repr, map(float, pose)))))
+    model = mujoco.MjModel.from_xml_string(text)
+    _, own, joints = ours(text)
+    theirs = mujoco.MjData(model)
+    theirs.qpos[:] = data.qpos
+    mujoco.mj_forward(model, theirs)
+    q = np.array([theirs.joint(name).qpos[0] for name in joints])
+    n, found = len(q), np.array(own.constraints(q, own.DEFAULTS))
+    if "site1" not in weld:  # those of the sites do not hold anywhere that is known
+        assert np.allclose(theirs.efc_pos[: theirs.ne], 0, atol=1e-9)
+        assert np.allclose(found, 0, atol=1e-9)
+        step = 1e-6
+        moved = [own.constraints(q + s * step * unit, own.DEFAULTS) for unit in np.eye(n) for s in (1, -1)]
+        slopes = np.array(
+            [(np.array(up) - down) / (2 * step) for up, down in zip(moved[::2], moved[1::2], strict=True)]
+        ).T
+        order = [model.joint(name).dofadr[0] for name in joints]
+        rows = theirs.efc_J[: theirs.ne * model.nv].reshape(theirs.ne, model.nv)[:, order]
+        for one, other in ((rows, slopes), (slopes, rows)):
+            assert np.linalg.matrix_rank(np.vstack([one, other]), tol=1e-6) == np.linalg.matrix_rank(other, tol=1e-6)
+    else:
+        assert np.linalg.norm(found[:3]) == pytest.approx(np.linalg.norm(theirs.efc_pos[:3]), rel=CLOSE)
+        first, second = (data.site(name).xmat.reshape(3, 3) for name in ("p", "s"))
+        assert len(found) == 6
+        parted = data.site("p").xpos + first[:, 0] - data.site("s").xpos - second[:, 1]
+        assert found[5] == pytest.approx((parted @ parted - 2) / 2, rel=CLOSE)
+
+
+def quaternion(matrix: np.ndarray) -> np.ndarray:
+    found = np.zeros(4)
+    mujoco.mju_mat2Quat(found, matrix.flatten())
+    return found

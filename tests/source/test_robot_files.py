@@ -656,7 +656,7 @@ def test_joints_and_points_that_are_tied_are_constraints() -> None:
     )
     after = (
         '<equality><joint joint1="y" joint2="x" polycoef="0.5 0 2"/><connect body1="a" body2="b" anchor="0 0 -1"/>'
-        '<connect body1="a" anchor="0 0 -1" active="false"/><weld body1="a"/></equality>'
+        '<connect body1="a" anchor="0 0 -1" active="false"/><tendon tendon1="t"/></equality>'
     )
     made = converted(mujoco("", bodies, after))
     system, complaints = read(made.yaml, "p.yaml")
@@ -666,7 +666,7 @@ def test_joints_and_points_that_are_tied_are_constraints() -> None:
     assert isinstance(coincide, Coincide)
     assert (written(relation.left), written(relation.right)) == ("q1 - pi/6", "0.5 + 2*(q2 - 0.25)**2")
     assert [written(x) for x in coincide.second.position] == ["0", "0", "1.5"]
-    assert {"inactive constraint (<connect>)", "constraint (<weld> in <equality>)"} <= set(made.left_out)
+    assert {"inactive constraint (<connect>)", "constraint (<tendon> in <equality>)"} <= set(made.left_out)
     assert any("softness" in one for one in made.left_out)
     assert complaints_of(mujoco("", bodies, '<equality><joint joint1="z"/></equality>'))[0][0] == "unknown-name"
 

@@ -10,6 +10,8 @@ import type { Body, Picture } from "./types.js";
 const LOOKS = 160;
 /** A motion in a ball so many times larger than the system is seen as a whole; in a larger one the eye goes along. */
 const WHOLE = 3;
+/** There is room for so many times its size. */
+const FAR = 5;
 
 export class Journey {
   /** The system runs away: the eye goes along. */
@@ -29,6 +31,7 @@ export class Journey {
     const own = new Box3(); // as its middle sees it
     const place = new Vector3();
     const middle = new Vector3();
+    const home = new Vector3(...picture.middle);
     for (let k = 0; k <= LOOKS; k += 1) {
       const state = track.state((track.end * k) / LOOKS);
       const values = poses.at(state);
@@ -43,7 +46,8 @@ export class Journey {
           place.set(values[point[0]]!, values[point[1]]!, values[point[2]]!);
           if (!Number.isFinite(place.lengthSq())) continue;
           box.expandByPoint(place);
-          this.room.push(...around(place, reach(body, picture.extent)));
+          // What grows without end is seen until it leaves.
+          if (place.distanceTo(home) < FAR * picture.extent) this.room.push(...around(place, reach(body, picture.extent)));
           own.expandByPoint(place.sub(middle));
         }
       }

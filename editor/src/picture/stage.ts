@@ -5,6 +5,7 @@ import { BasicShadowMap, Color, PCFShadowMap, SRGBColorSpace, Vector3, WebGLRend
 import { make, makeSvg } from "../elements.js";
 import { Eye } from "./camera.js";
 import { Drawing } from "./drawing.js";
+import { Flat } from "./flat.js";
 import { inks } from "./inks.js";
 import type { Picture } from "./types.js";
 
@@ -25,7 +26,7 @@ export class Stage {
   readonly broken: string;
   /** Milliseconds of the last frames, in script and in all: for measuring. */
   readonly spent: number[] = [];
-  private readonly renderer: WebGLRenderer | null;
+  private readonly renderer: WebGLRenderer | Flat | null;
   private readonly corner = makeSvg("svg", { class: "viewer-axes", viewBox: "-40 -40 80 80", "aria-hidden": "true" });
   private labels: HTMLElement[] = [];
   private asked = false;
@@ -38,17 +39,9 @@ export class Stage {
   private quick = 0;
 
   constructor(private readonly before: (seconds: number) => boolean) {
-    let renderer: WebGLRenderer | null = null;
     let broken = "";
-    try {
-      renderer = new WebGLRenderer({ canvas: this.canvas, antialias: !inSoftware(), powerPreference: "high-performance" });
-      renderer.outputColorSpace = SRGBColorSpace;
-      renderer.shadowMap.enabled = true;
-      renderer.shadowMap.type = inSoftware() ? BasicShadowMap : PCFShadowMap;
-    } catch {
-      broken = "This browser draws nothing in three dimensions (no WebGL): positions are told below in words.";
-    }
-    this.renderer = renderer;
+    this.renderer = drawnBy(this.canvas);
+    if (!this.renderer) broken = "This browser draws nothing (neither WebGL nor a flat canvas): positions are told below in words.";
     this.broken = broken;
     this.element = make("div", { class: "viewer-stage" }, broken ? make("p", {}, broken) : this.canvas);
     if (broken) return;
@@ -180,6 +173,20 @@ export class Stage {
         return [makeSvg("line", { x1: 0, y1: 0, x2: x, y2: y }), makeSvg("text", { x: u, y: v }, String(k + 1))];
       }),
     );
+  }
+}
+
+/** What draws on a canvas: a graphics card, or the processor where there is none. */
+function drawnBy(canvas: HTMLCanvasElement): WebGLRenderer | Flat | null {
+  try {
+    if (!document.createElement("canvas").getContext("webgl2")) return new Flat(canvas);
+    const found = new WebGLRenderer({ canvas, antialias: !inSoftware(), powerPreference: "high-performance" });
+    found.outputColorSpace = SRGBColorSpace;
+    found.shadowMap.enabled = true;
+    found.shadowMap.type = inSoftware() ? BasicShadowMap : PCFShadowMap;
+    return found;
+  } catch {
+    return null;
   }
 }
 

@@ -106,6 +106,8 @@ export class Viewer {
     this.traces.show(this.track);
     const { atZero = [] } = this.picture ?? {};
     const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
+    const stays = Object.values(motion.coordinates).every((column) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12));
+    if (stays) first.unshift("Nothing moves: it rests here. It would from elsewhere, or with a velocity.");
     const lines = (sentences: string[]) => sentences.map((text) => make("p", { class: "viewer-soft" }, text));
     const how = make("details", { class: "viewer-how" }, make("summary", {}, "How it was computed"), ...lines(motion.sentences));
     this.fill("motion", this.traces.element, ...lines([...first, ...motion.doubts]), how);

@@ -36,6 +36,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from random import Random
+from types import MappingProxyType
 
 from flint import fmpq, fmpq_mat
 
@@ -157,22 +158,28 @@ class Chosen:
 
 
 def constrained_dynamics(
-    system: System, ring: Ring, chosen: Chosen, apart: bool = False, massless: bool = False
+    system: System,
+    ring: Ring,
+    chosen: Chosen,
+    apart: bool = False,
+    massless: bool = False,
+    pushed: Mapping[str, str] = MappingProxyType({}),
 ) -> ConstrainedDynamics:
     """See the module.
 
+    ``pushed``: names of inputs of the program that are forces on these coordinates besides those of the loads.
     ``massless``: M is known to be singular everywhere; where that is seen from a pivot, it need not be said.  Raises
     SingularPoint where M is singular on what the constraints allow or the rows are dependent at sight, NoClosedForm as
     loads do.
     """
     if not massless:
         with suppress(SingularPoint):  # a pivot of M is zero
-            return _constrained_dynamics(system, ring, chosen, apart, False)
-    return _constrained_dynamics(system, ring, chosen, apart, True)
+            return _constrained_dynamics(system, ring, chosen, apart, False, pushed)
+    return _constrained_dynamics(system, ring, chosen, apart, True, pushed)
 
 
 def _constrained_dynamics(
-    system: System, ring: Ring, chosen: Chosen, apart: bool, massless: bool
+    system: System, ring: Ring, chosen: Chosen, apart: bool, massless: bool, pushed: Mapping[str, str]
 ) -> ConstrainedDynamics:
     program = Program()
     inputs = program_environment(system, program)
@@ -181,6 +188,11 @@ def _constrained_dynamics(
     rows = holonomic_first(constraint_rows(scene, chosen.rows))
     masses: Sequence[Sequence[Node]] = mass_matrix(frames)
     forces: Sequence[Node] = forcing(frames, bias_forces(frames))
+    if pushed:
+        besides = {name: program.input(force) for name, force in pushed.items()}
+        forces = [
+            f + besides[name] if name in besides else f for name, f in zip(system.coordinates, forces, strict=True)
+        ]
     if massless or _held_by_rows(scene, program, masses, [row.partials for row in rows]):
         masses, forces = _added(scene, rows, masses, forces)
     return _solved(program, inputs, rows, masses, forces, chosen)

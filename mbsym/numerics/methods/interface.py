@@ -44,6 +44,9 @@ BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step 
 #: The rows of constraints lose their rank: a mechanism in a singular position.
 SINGULAR_CONSTRAINTS = "singular constraints"
 
+#: Constraints that move leave no position behind a time: a mechanism that is stretched out, or blocked.
+OUT_OF_REACH = "out of reach"
+
 #: No mistake: an event asked for it.
 STOPPED = "stopped by an event"
 

@@ -44,6 +44,8 @@ from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends
 from mbsym.problems.stability.word import Word
 
+#: Of which coordinates a condition is, and what it is.
+_OF = "[[whose]] ([[formula]] [[relation]] 0)"
 #: A condition that is longer is called by its label alone.
 _LONGEST = 60
 #: More labels than these are not listed.
@@ -184,9 +186,8 @@ class Region:
                 (part.guaranteed, Message(": it holds, the kinetic energy is positive definite")),
             ):
                 for label, formula, relation in found:
-                    text = f"{formula} {relation} 0"
-                    seen = (label, formula, relation) in listed or len(text) > _LONGEST
-                    of = whose if seen else f"{whose} ({text})"
+                    seen = (label, formula, relation) in listed or len(f"{formula} {relation} 0") > _LONGEST
+                    of = whose if seen else Message(_OF, whose=whose, formula=formula, relation=relation)
                     yield said(Said.IS, label, of, note), Inequality(self.cleared(formula.polynomial), relation)
 
     def labels(self, of: Sequence[str] = ()) -> str | tuple[Remark, ...]:

@@ -73,6 +73,7 @@ class PolynomialIntegrals:
 
     ``independent``: so many of them are, as functions (a lower bound).  ``aside``: positions of the system on which no
     equation depends: they are no variables of the field, and integrals that hold them are not looked for.
+    ``rational``: integrals of problem 7 that are quotients of two polynomials in the variables, and no polynomials.
     """
 
     field: PolynomialField
@@ -82,6 +83,7 @@ class PolynomialIntegrals:
     counts: tuple[Count, ...]
     independent: int
     aside: tuple[str, ...] = ()
+    rational: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:

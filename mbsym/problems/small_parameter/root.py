@@ -12,7 +12,7 @@ from typing import Any
 
 from flint import fmpq_mpoly_ctx
 
-from mbsym.algebra.factors import irreducible_factors, occurring
+from mbsym.algebra.factors import irreducible_factors, occurring, square_apart
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.quotients import Quotient
 from mbsym.problems.small_parameter.result import Adjoined, ScaledField
@@ -116,21 +116,9 @@ def _by_factors(
         elif degree == 2:
             a = slope.derivative(place) / 2
             b = slope - 2 * a * z
-            yield _squarefree(b**2 - 4 * a * (factor - a * z**2 - b * z))
+            yield square_apart(b**2 - 4 * a * (factor - a * z**2 - b * z))[1]
         else:
             yield int(degree)
-
-
-def _squarefree(p: Polynomial) -> Polynomial:
-    """p without the squares of polynomials and of whole numbers in it."""
-    content, factors = irreducible_factors(p)
-    left = p.context().constant(-1 if content < 0 else 1)
-    number = abs(content.p * content.q)
-    for prime, exponent in number.factor():
-        left = left * prime if exponent % 2 else left
-    for factor, exponent in factors:
-        left = left * factor if exponent % 2 else left
-    return left
 
 
 def adjoined(

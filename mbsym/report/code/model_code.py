@@ -297,13 +297,14 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
     made.extend(places(analysis))
     if named:
         dynamics = named_dynamics(analysis)
-        made.extend(_named_parts(dynamics, n))
+        made.extend(_named_parts(dynamics, n, bool(analysis.system.constraints)))
         lacking += filter(None, [dynamics.told_without])
     return tuple(made), tuple(lacking)
 
 
-def _named_parts(found: NamedDynamics, n: int) -> Iterator[Part]:
+def _named_parts(found: NamedDynamics, n: int, tied: bool) -> Iterator[Part]:
     """What robotics calls by name."""
+    forward = "q'' with M q'' = f + tau + J^T lambda and J q'' = -gamma" if tied else "q'' = M^-1 (f + tau)"
     balance = "M q'' + c + g = generalised forces of other loads"
     for name, words, one, argument in (
         ("coriolis", f"c of {balance}: C(q, q') q' where nothing moves as prescribed", found.coriolis, ""),
@@ -314,7 +315,7 @@ def _named_parts(found: NamedDynamics, n: int) -> Iterator[Part]:
             found.inverse,
             "qdd",
         ),
-        ("forward_dynamics", "q'' = M^-1 (f + tau), inputs being zero", found.forward, "tau"),
+        ("forward_dynamics", f"{forward}, inputs being zero", found.forward, "tau"),
     ):
         if one is not None:
             column: dict[Place, Node] = {(i,): x for i, x in enumerate(one.nodes)}

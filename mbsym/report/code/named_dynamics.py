@@ -1,13 +1,14 @@
 """What robotics calls by name: inverse and forward dynamics, Coriolis and gravity terms, poses and Jacobians of frames.
 
     tau = M q'' + c(q, q') + g(q) - d      inverse_dynamics; d are the forces of the other loads, inputs being zero
-    q'' = M^-1 (tau - c - g + d)           forward_dynamics, by ``mbsym.mechanics.programs``
+    q'' = M^-1 (tau - c - g + d + J^T l)   forward_dynamics, by ``mbsym.mechanics.programs``; under constraints l is
+                                           such that J q'' + gamma = 0
     c                                      coriolis: what inertia needs at q'' = 0, C(q, q') q' where nothing moves as
                                            prescribed
     g = -dU/dq                             gravity: U of the fields of gravity alone
     (R r; 0 1), (v; w) = J q'              pose and Jacobian of a frame, all in inertial axes
 
-tau are generalised forces, one for each coordinate.  Of constrained systems all of it is about the open tree.
+tau are generalised forces, one for each coordinate.  Of constrained systems all else is about the open tree.
 """
 
 from __future__ import annotations
@@ -23,10 +24,11 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
+from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constrained_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
-from mbsym.mechanics.programs import forward_dynamics, scene_without_accelerations
+from mbsym.mechanics.programs import ForwardDynamics, forward_dynamics, scene_without_accelerations
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.inputs import force_names
 from mbsym.model.loads import NewtonianGravity, UniformGravity
@@ -125,9 +127,15 @@ def named_dynamics(analysis: Analysis) -> NamedDynamics:
 def _named_dynamics(analysis: Analysis) -> NamedDynamics:
     system, ring = analysis.system, analysis.ring
     found: dict[str, Computed | None] = {}
-    for name, make in (("inverse", _inverse), ("forward", _forward), ("coriolis", _coriolis), ("gravity", _gravity)):
+    makers: dict[str, Callable[[], Computed | None]] = {
+        "inverse": lambda: _inverse(system, ring),
+        "forward": lambda: _forward(analysis),
+        "coriolis": lambda: _coriolis(system, ring),
+        "gravity": lambda: _gravity(system, ring),
+    }
+    for name, make in makers.items():
         try:
-            found[name] = make(system, ring)
+            found[name] = make()
         except Failure:
             found[name] = None
     frames, without = _frames(system, ring)
@@ -147,11 +155,19 @@ def _unforced(system: System, program: Program) -> dict[str, Node]:
     return program_environment(system, program) | dict.fromkeys(system.input_names, program.zero)
 
 
-def _forward(system: System, ring: Ring) -> Computed | None:
-    if system.constraints:
-        return None
+def _forward(analysis: Analysis) -> Computed | None:
+    system, ring = analysis.system, analysis.ring
     pushed = dict(zip(system.coordinates, force_names(system), strict=True))
-    found = forward_dynamics(system, ring, pushed=pushed)
+    found: ForwardDynamics | ConstrainedDynamics
+    if system.constraints:
+        from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
+
+        tied = tied_of(analysis)
+        if isinstance(tied, str):
+            return None
+        found = constrained_dynamics(system, ring, tied.chosen, pushed=pushed)
+    else:
+        found = forward_dynamics(system, ring, pushed=pushed)
     program = Program()
     given = _unforced(system, program) | {force: program.input(force) for force in pushed.values()}
     return Computed(program, tuple(found.program.evaluate(list(found.accelerations), given, program)))

@@ -18,7 +18,6 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure, Limit, NoClosedForm
 from mbsym.algebra.program import Node, Program
-from mbsym.algebra.ring import Ring
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.formula import Formula
@@ -50,6 +49,7 @@ from mbsym.report.sections import section_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
+    from mbsym.report.words.expansion_words import Sums
 
 
 #: What the module itself calls something.
@@ -60,6 +60,7 @@ RESERVED = {
     "main", "simulate", "complete", "initial_state", "given", "npt", "Any", "Sequence", "TypeAlias", "Array", "NAME",
     "Parameters", "INTEGRALS", "UNITS", "with_unit", "LINEAR",
     "polynomial_integrals", "invariant_sets", "normal_forms", "small_parameters", "missing", "name",
+    "slow_manifold", "slow_flow", "periodic_solution",
     "SPEEDS", "POSITIONS", "speed_state", "speed_rhs", "speed_restored",
     "speed_simulate", "y", "right", "matrix", "FRAMES", "frame", "frame_pose", "frame_jacobian", "qdd", "tau",
     "coriolis", "gravity", "inverse_dynamics", "forward_dynamics",
@@ -299,7 +300,7 @@ FIRST = 9
 @dataclass(frozen=True)
 class FormulaFunction:
     """A function of a module: ``unpacked`` are declared names and what the code calls them, ``results`` by what they
-    are.  ``missing``: why there is none.
+    are.  ``missing``: why there is none.  ``of_time``: the time t is an argument of its own.
     """
 
     number: int
@@ -308,6 +309,8 @@ class FormulaFunction:
     assignments: tuple[tuple[str, str], ...] = ()
     results: tuple[tuple[str, str], ...] = ()
     missing: str = ""
+    told: str = "formulas"
+    of_time: bool = False
 
 
 def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Functions) -> list[FormulaFunction]:
@@ -323,25 +326,63 @@ def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Funct
         told = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
         if not told:
             continue
+        sums = getattr(section_of(PROBLEMS[number]), "functions", None)
         try:
             found.append(_function(number, name, told, writer))
+            found += [_of_sums(number, one, writer) for one in (sums(stage.value) if sums else ())]
         except Failure as reason:
             found.append(FormulaFunction(number, name, missing=str(reason)))
     return found
 
 
 def _function(number: int, name: str, told: Sequence[Told], writer: Functions) -> FormulaFunction:
+    return _written(number, name, [(key, ((0, formula),)) for key, formula in told], writer)
+
+
+def _of_sums(number: int, told: Sums, writer: Functions) -> FormulaFunction:
+    """Sums in powers of the small parameter; where they are of the time, with the phase before them, and told."""
+    series = dict(told.series)
+    if not told.phase:
+        return replace(_written(number, told.name, [*series.items()], writer, told.small), told="series, summed")
+    rate = _written(number, told.name, [(told.phase, series.pop(told.phase))], writer, told.small)
+    found = _written(number, told.name, [*series.items()], writer, told.small)
+    phase = dict(found.unpacked).pop(told.phase, told.phase)
+    unpacked = dict(rate.unpacked) | {x: called for x, called in found.unpacked if x != told.phase}
+    return replace(
+        found,
+        unpacked=tuple(unpacked.items()),
+        assignments=(*rate.assignments, (phase, f"({rate.results[0][1]})*t"), *found.assignments),
+        results=((told.phase, phase), *found.results),
+        told="series, summed, at the time t",
+        of_time=True,
+    )
+
+
+def _written(
+    number: int,
+    name: str,
+    told: Sequence[tuple[str, Sequence[tuple[int, Formula]]]],
+    writer: Functions,
+    small: str = "",
+) -> FormulaFunction:
+    """Sums by what they are, of formulas times powers of ``small``."""
     program = Program()
     carriers: dict[int, Carrier] = {}
     nodes: list[Node] = []
-    names: dict[str, None] = {}
-    for _, formula in told:
-        ring: Ring = formula.ring
-        if id(ring) not in carriers:
-            names |= dict.fromkeys(ring.names())
-            environment = {x: program.input(x) for x in (*ring.names(), "t", "pi")}
-            carriers[id(ring)] = Carrier(ring, program, environment)
-        nodes.append(carriers[id(ring)](formula.polynomial))
+    names: dict[str, None] = {small: None} if small else {}
+    for _, parts in told:
+        total = program.zero
+        for power, formula in parts:
+            ring = formula.ring
+            if id(ring) not in carriers:
+                names |= dict.fromkeys(ring.names())
+                environment = {x: program.input(x) for x in (*ring.names(), "t", "pi")}
+                carriers[id(ring)] = Carrier(ring, program, environment)
+            term: Node = carriers[id(ring)](formula.polynomial)
+            for _ in range(abs(power)):
+                term = (program.times if power > 0 else program.divide)(term, program.input(small))
+            total = total + term
+        nodes.append(total)
     own = [x for x in names if x not in writer.names]
     called = writer.names | injective(own, _plain, taken={*writer.names.values(), *writer.reserved})
     body = listing(program, nodes, called, writer.dialect, writer.reserved)

@@ -207,6 +207,9 @@ class PolynomialBasis(Part, frozen=True, kw_only=True):
         "those listed, for almost all parameters",
     ]
     independent: Annotated[int, "so many are independent as functions, at least"]
+    rational: Annotated[
+        list[str], "integrals of problem 7 that are quotients of polynomials in the variables, and no polynomials"
+    ] = field(default_factory=list)
     not_contained: Annotated[
         list[str],
         "positions that the equations do not contain: integrals that do are not looked for, and all that is said is "

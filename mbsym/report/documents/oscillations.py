@@ -36,6 +36,7 @@ class WaveCoefficient(Part, frozen=True):
 class Solution(Part, frozen=True):
     variable: Annotated[str, "name"]
     residual: Annotated[int | None, "order of the small parameter left in its equation; null: nothing is left"]
+    function: Annotated[str, "the whole series; the phase in it is the time times phase_rate"]
     coefficients: Annotated[
         list[WaveCoefficient],
         "coefficients of powers of the small parameter, those that are zero left out",
@@ -107,6 +108,7 @@ class Oscillation(Part, frozen=True, kw_only=True):
     ]
     frequency: Annotated[str, "the rate of the phase where the small parameter is zero"]
     corrections: Annotated[list[str], "nu_1, nu_2, ... of the rate, frequency (1 + nu_1 eps + ...)"]
+    phase_rate: Annotated[str, "the rate of the phase: frequency (1 + nu_1 eps + ...)"]
     solution: Annotated[
         list[Solution], "the variables as series of trigonometric polynomials", told_apart_by("variable")
     ]

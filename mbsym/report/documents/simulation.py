@@ -231,8 +231,11 @@ class Estimate(Part, frozen=True):
     largest: Annotated[float | str, "at worst"]
     how: Annotated[Literal["better run"], "how it is estimated"]
     against: Against
-    lower_bound: Annotated[bool, "whether the error may be larger: this run and the better one have parted"]
-    parted: Annotated[float | None, "by when they differ by a tenth of a quantity's scale; null where they never do"]
+    parted: Annotated[
+        float | None,
+        "by when they differ by a tenth of a quantity's scale: no number here is a bound of the error then; null where "
+        "they never do",
+    ]
     over: Over
     quantities: Annotated[dict[str, QuantityError], "by name"]
 

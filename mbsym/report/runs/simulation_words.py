@@ -95,8 +95,8 @@ def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[Message]:
     largest, final = f"{found.largest:.1e}", f"{found.final:.1e}"
     if found.parted is not None:
         text = (
-            "at least [[error]]: this run and a better one have parted by t = [[time]], and from there on nothing is "
-            "known of either ([[against]])"
+            "unknown: this run and a better one have parted by t = [[time]], differ by up to [[error]], and nothing is "
+            "known of either from there on ([[against]])"
         )
         yield Message(text, error=largest, time=f"{found.parted:.4g}", against=against)
     elif found.largest <= found.rounding:
@@ -187,7 +187,6 @@ def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstima
         against=doc.Against.from_result(
             against.setting, method=against.method, arithmetic=against.scalar, longest_step=against.setting.longest
         ),
-        lower_bound=found.parted is not None,
         over=doc.Over(
             from_=0.0,
             to=found.compared.end,

@@ -27,7 +27,7 @@ from mbsym.report.content import (
     Text,
     paragraph,
 )
-from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, grade, repair, titles, together
+from mbsym.report.words.claims import ClaimLine, claim_line, counterexample, grade, names_in, repair, titles, together
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -44,9 +44,7 @@ def content(results: Results) -> Iterator[Block]:
     if not claims:
         return
     yield Heading("claims", Said("Claims"))
-    names = [item.name for item in system.abbreviations]
-    names += [one.variable for one in system.claims if one.variable]
-    yield Beside(tuple(names), tuple(_told(results, claims)))
+    yield Beside(names_in(claims, system), tuple(_told(results, claims)))
 
 
 def _told(results: Results, claims: tuple[ClaimResult, ...]) -> Iterator[Block]:
@@ -62,7 +60,7 @@ def _told(results: Results, claims: tuple[ClaimResult, ...]) -> Iterator[Block]:
             TableColumn(Said("claim"), 6.2),
             TableColumn(Said("outcome"), 6.2),
         ),
-        rows=tuple(((lines[0].place,), (titles(lines, typeset=True),), _outcome(lines[0])) for lines in groups),
+        rows=tuple(((lines[0].place,), (titles(lines),), _outcome(lines[0])) for lines in groups),
     )
     number = 0
     for result in claims:
@@ -78,7 +76,7 @@ def _outcome(line: ClaimLine) -> tuple[Inline, ...]:
 def _difference(result: ClaimResult, number: int) -> Iterator[Block]:
     """By what a claim differs."""
     claim = result.claim
-    about = titles([claim_line(result)], typeset=True)
+    about = titles([claim_line(result)])
     title: tuple[Inline, ...] = (Strong(claim.place), ", ", about) if claim.place else (Strong(about),)
     if claim.right is None:
         yield paragraph(*title, ", ", Said("claimed"), ":")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
-from mbsym.report.content import Block, Display, Heading, Name, Relation, Said, paragraph
+from mbsym.report.content import Block, Display, Heading, Name, Relation, Said, named, paragraph, say
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write, column_text
 from mbsym.report.sections.system import unperturbed_motion
@@ -29,6 +29,11 @@ def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
 IN_COORDINATES = (
     "Problems 4 to 6 are told in generalised coordinates and velocities. Near the motion these and the state in speeds "
     "(and unit vectors) are smooth functions of each other, so that stability is the same in both."
+)
+
+SINGULAR = (
+    "The coordinates are singular there: [[names]] can change so that, to first order, nothing moves. The equations in "
+    "regular coordinates demand more, which follows from the first derivatives of these and is demanded here, too."
 )
 
 
@@ -62,5 +67,8 @@ def content(results: Results) -> Iterator[Block]:
             yield paragraph(Said("which problems 5 and 6 use in the form"))
         for k, (name, value) in enumerate(found.solved, start=1):
             yield Display(Relation(Name(name), "=", value), f"solved:{k}")
+    if found.singular:
+        names = named(dict.fromkeys(name for one in found.singular for name, _ in one))
+        yield paragraph(say(SINGULAR, names=names))
     if system.speeds:
         yield paragraph(Said(IN_COORDINATES))

@@ -41,6 +41,7 @@ def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialInt
         weights=dict(zip(found.field.variables, found.grading.weights, strict=True)),
         quasi_homogeneous=found.grading.homogeneous,
         not_contained=list(found.aside),
+        rational=list(found.rational),
         integrals=[
             integrals.Integral.from_result(one, new=one.is_new, formula=str(formula), independence=one.certainty.value)
             for one, formula in zip(found.generators, result.formulas, strict=True)

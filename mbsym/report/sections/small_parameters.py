@@ -14,7 +14,16 @@ from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain import Write
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
-from mbsym.report.words.expansion_words import coefficients, of_averaging, of_measured, of_none, opening, sentences
+from mbsym.report.words.expansion_words import (
+    Sums,
+    coefficients,
+    of_averaging,
+    of_measured,
+    of_none,
+    opening,
+    sentences,
+    summed,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
@@ -119,3 +128,13 @@ def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Form
             over = f"averaged over {', '.join(each.found.phases)} ({each.found.scaling})"
             yield f"effective potential, {over}", each.found.potential
             yield f"what the fast phase adds, {over}", each.found.vibrational
+
+
+def functions(found: SmallParameters) -> Iterator[Sums]:
+    """The series as functions: of the slow variables, of the time."""
+    if found.slow is not None:
+        field, listed = found.slow.manifold.field, list(coefficients(found.slow))
+        for name, flow in (("slow_manifold", False), ("slow_flow", True)):
+            yield summed(name, field.small, (x for x in listed if x.flow is flow))
+    if found.oscillation is not None:
+        yield oscillation_words.as_function(found.oscillation)

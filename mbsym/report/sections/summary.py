@@ -23,6 +23,7 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
+    Beside,
     Block,
     Drawing,
     Emphasis,
@@ -53,7 +54,7 @@ from mbsym.report.sections.equilibrium import exists_if
 from mbsym.report.sections.integrals import CONSTANT
 from mbsym.report.sections.stability import condition_keys, label_of
 from mbsym.report.sections.system import unperturbed_motion
-from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, titles, verdict, where
+from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, names_in, titles, verdict, where
 from mbsym.report.words.stabilisation_words import controllability
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("summary", Said("What was found"))
     yield from drawing(results.analysis)
-    yield finding(results)
+    yield Beside(names_in(results.analysis.claims, results.system), (finding(results),))
 
 
 def drawing(analysis: Analysis) -> tuple[Drawing, ...]:

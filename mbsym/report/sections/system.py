@@ -58,7 +58,7 @@ def content(results: Results) -> Iterator[Block]:
     system = results.system
     yield Heading("system", Said("The system"))
     if system.source:
-        yield paragraph(Said("Source"), ": ", Citation("source", system.source), ".")
+        yield paragraph(Said("Source"), ": ", Citation("source", system.source.removesuffix(".")), ".")
     yield from _variables(system)
     if system.linear:
         yield from _linear(system)

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import groupby
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
+from mbsym.model.claims import Claim
+from mbsym.model.system import System
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
-from mbsym.problems.claims.result import CONDITION, ENTRY
+from mbsym.problems.claims.result import ENTRY
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
@@ -29,7 +31,7 @@ HELD, REFUTED, OPEN = "held", "refuted", "undecided"
 class ClaimLine:
     """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs.
 
-    ``said`` is the outcome as reports say it, ``that`` the condition that is claimed, as mathematics.
+    ``said`` is the outcome as reports say it, ``about`` what the title says of formulas, as mathematics: by its gaps.
     """
 
     place: str
@@ -38,7 +40,7 @@ class ClaimLine:
     word: str
     lines: tuple[str, ...] = ()
     said: tuple[Inline, ...] = ()
-    that: Relation | None = None
+    about: Mapping[str, Inline] = field(default_factory=dict)
 
 
 def claim_line(result: ClaimResult) -> ClaimLine:
@@ -46,9 +48,17 @@ def claim_line(result: ClaimResult) -> ClaimLine:
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
     said = tuple(_outcome(result))
     outcome = "".join(map(Writer().inline, said))
-    claim = result.claim
-    that = None if claim.right is None else Relation(claim.equals, claim.relation, claim.right)
-    return ClaimLine(claim.place, result.title, outcome, word, tuple(_differences(result)), said, that)
+    about = dict(_about(result.claim))
+    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)), said, about)
+
+
+def _about(claim: Claim) -> Iterator[tuple[str, Inline]]:
+    if claim.right is not None:
+        yield "that", Relation(claim.equals, claim.relation, claim.right)
+    if claim.kind == "coefficient" and claim.at is not None:
+        yield "at", claim.at
+    if claim.of_expression is not None:
+        yield "of", claim.of_expression
 
 
 def _outcome(result: ClaimResult) -> Iterator[Inline]:
@@ -90,26 +100,31 @@ def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
             yield from ([line] for line in found)
 
 
-def titles(lines: Iterable[ClaimLine], typeset: bool = False) -> Inline:
-    """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``.
+def names_in(claims: Iterable[ClaimResult], system: System) -> tuple[str, ...]:
+    """What formulas of claims hold besides the names of the system."""
+    variables = [one.claim.variable for one in claims if one.claim.variable]
+    return (*(item.name for item in system.abbreviations), *variables)
 
-    ``typeset``: conditions as mathematics, in names that may be those of abbreviations.
-    """
+
+def titles(lines: Iterable[ClaimLine]) -> Inline:
+    """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
     stems: dict[str, list[str]] = {}
     shown: dict[str, Inline] = {}
     for line in lines:
-        title = line.title
-        if typeset and line.that is not None and isinstance(title, Message) and title.text == CONDITION:
-            shown[title] = say(CONDITION, title=worded(title.gaps["title"]), that=line.that)
-        if isinstance(title, Message) and title.text == ENTRY:
-            stems.setdefault(title.gaps["title"], []).append(f"[{title.gaps['entry']}]")
-        else:
-            stems.setdefault(title, [])
-    told = (
-        Phrase((shown.get(stem) or worded(stem), *((" ", ", ".join(indices)) if indices else ())))
-        for stem, indices in stems.items()
-    )
+        stem, entries = line.title, list[str]()
+        if isinstance(stem, Message) and stem.text == ENTRY:
+            stem, entries = stem.gaps["title"], [f"[{stem.gaps['entry']}]"]
+        shown[stem] = _typeset(stem, line.about)
+        stems.setdefault(stem, []).extend(entries)
+    told = (Phrase((shown[stem], *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
     return joined(told, "; ")
+
+
+def _typeset(title: str, about: Mapping[str, Inline]) -> Said:
+    """A title with its formulas as mathematics."""
+    said = worded(title)
+    gaps = {name: _typeset(x, about) if isinstance(x, Message) else about.get(name, x) for name, x in said.gaps.items()}
+    return say(said.text, **gaps)
 
 
 def _differences(result: ClaimResult) -> Iterator[str]:

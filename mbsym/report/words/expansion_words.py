@@ -70,6 +70,41 @@ class Coefficient:
         return Relation(Raised(Name(self.variable, self.rate), self.order), "=", self.formula)
 
 
+@dataclass(frozen=True)
+class Sums:
+    """Functions called ``name``: of every variable in ``series``, by its own name and with its rate in primes,
+
+        x = sum_k small^k parts[k],
+
+    where the ``phase``, if there is one, is the time by the sum that is called after it.
+    """
+
+    name: str
+    small: str
+    series: tuple[tuple[str, tuple[tuple[int, Formula], ...]], ...]
+    phase: str = ""
+
+
+def sum_of_powers(parts: Iterable[tuple[int, str]], small: str, power: str) -> str:
+    """Terms written as (coefficient)*small**k."""
+    factors = {0: "", 1: f"*{small}"}
+    return " + ".join(
+        f"({x}){factors.get(k, f'*{small}{power}{k}' if k > 0 else f'*{small}{power}({k})')}" for k, x in parts
+    )
+
+
+def summed(
+    name: str, small: str, listed: Iterable[Coefficient], powers: Iterable[tuple[str, int]] = (), phase: str = ""
+) -> Sums:
+    """The sums of which coefficients are told; a variable x with a power stands for x times that of ``small``."""
+    series: dict[str, list[tuple[int, Formula]]] = {}
+    shift = {without_velocity(variable): power for variable, power in powers}
+    for x in listed:
+        parts = series.setdefault(x.variable + "'" * (x.rate if x.variable != phase else 0), [])
+        parts.append((x.order + shift.get(x.variable, 0), x.formula))
+    return Sums(name, small, tuple((key, tuple(parts)) for key, parts in series.items()), phase)
+
+
 _FAST = {
     Outcome.HOLDS: "The manifold attracts near this motion for all sufficiently small $[[small]] > 0$ (proved: "
     "Hurwitz's minors of the fast roots, by their first coefficients).",

@@ -26,7 +26,7 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.words.expansion_measured import SLACK
-from mbsym.report.words.expansion_words import Coefficient, scaled
+from mbsym.report.words.expansion_words import Coefficient, Sums, scaled, summed
 
 if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
@@ -131,6 +131,11 @@ def coefficients(told: Oscillating) -> Iterator[Coefficient]:
             yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
 
 
+def as_function(told: Oscillating) -> Sums:
+    """The solution as a function of the time."""
+    return summed("periodic_solution", told.found.small, coefficients(told), told.found.powers, told.phase)
+
+
 def collected(told: Oscillating) -> Iterator[Relation]:
     """The same for people: factors that divide several coefficients have letters (``denominators``)."""
     found = told.found
@@ -173,9 +178,11 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
 def sentences(told: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
     found, values = told.found, _values(told)
+    least = [one for one in found.residuals if one is not None]
     if found.kind is Amplitude.FREE:
         yield say(_FREE, **values, amplitude=told.formula(found.amplitude), sine=_wave(told, False))
-        yield Said(_FORMAL)
+        if least or told.taylor:  # else it is a solution
+            yield Said(_FORMAL)
     else:
         yield say(_DETERMINED, **values, value=_wave(told, True))
         if not told.real_amplitude:
@@ -189,7 +196,6 @@ def sentences(told: Oscillating) -> Iterator[Said]:
     if found.constants:
         names = tuple(told.formula(x) for _, x in found.constants)
         yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))
-    least = [one for one in found.residuals if one is not None]
     left = values | {"left": str(min(least, default="")), "next": str(found.order + 1)}
     if told.taylor:
         yield say(_TAYLOR, degree=str(found.order + 1))

@@ -201,14 +201,17 @@ class _Writer:
 
     def _tie(self, tie: JointTie | PointTie) -> None:
         if isinstance(tie, PointTie):
-            ends = (
-                f"{{body: {place if place == GROUND else scalar_text(place)}, point: {_list(point)}}}"
-                for place, point in (
-                    (self.names.get(tie.first, GROUND), tie.first_point),
-                    (self.names.get(tie.second, GROUND), tie.second_point),
-                )
-            )
-            self.constraints.append(f"  - coincide: [{', '.join(ends)}]")
+            bodies = [self.names.get(link, GROUND) for link in (tie.first, tie.second)]
+            bodies = [name if name == GROUND else scalar_text(name) for name in bodies]
+
+            def ends(key: str, pair: tuple[Texts, Texts]) -> str:
+                return ", ".join(f"{{body: {x}, {key}: {_list(y)}}}" for x, y in zip(bodies, pair, strict=True))
+
+            self.constraints.append(f"  - coincide: [{ends('point', (tie.first_point, tie.second_point))}]")
+            if tie.axes is not None and tie.apart is not None:
+                self.constraints.append(f"  - parallel: [{ends('axis', tie.axes)}]")
+                between = f"between: [{ends('point', tie.apart)}]"
+                self.constraints.append(f"  - distance: {{{between}, length: sqrt(2)}}")
             return
         left, right = self._deviation(tie.first), self._deviation(tie.second)
         powers = ["", f"*({right})", *(f"*({right})**{k}" for k in range(2, len(tie.coefficients)))]

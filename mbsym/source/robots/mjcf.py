@@ -131,16 +131,22 @@ def _driven(root: Element, reader: Reader, defaults: Defaults) -> set[str]:
     The input is the torque or force in the joint: that of an actuator times its gear.
     """
     found = set()
+    joints = {x.get("name") for world in root.all("worldbody") for x in world.walk() if x.tag in ("joint", "freejoint")}
     for section in root.all("actuator"):
         for element in (defaults.of(child, "") for child in section.children):
             joint = element.get("joint") or element.get("jointinparent")
             if not joint:
                 reader.leave_out(f"actuator of no joint ({element.tag})")
                 continue
+            if joint not in joints:
+                reader.error("unknown-name", f"there is no joint {ascii_safe(joint)}", element)
             found.add(joint)
             if element.tag != "motor":
                 reader.leave_out(f"law of an actuator ({element.tag})")
-            if float((element.get("gear") or "1").split()[0]) != 1:
+            if any(element.get(key) for key in ("ctrlrange", "forcerange")):
+                reader.leave_out("limits of an actuator")
+            count = len(element.get("gear").split())
+            if count and float(reader.numbers(element, "gear", count)[0]) != 1:
                 reader.leave_out("gear of an actuator (the input is the torque or force in the joint)")
     return found
 
@@ -314,6 +320,8 @@ class _Bodies:
             axis = ("0", "0", "1")
         if float(reader.number(element, "frictionloss")):
             reader.leave_out("dry friction")
+        if element.get("actuatorfrcrange"):
+            reader.leave_out("limits of an actuator")
         armature = reader.number(element, "armature")
         if kind == "free" and float(armature):
             reader.leave_out("armature of a free joint")

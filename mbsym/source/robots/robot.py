@@ -6,8 +6,8 @@ Numbers are texts as they are printed.  Turns are passive and in the order of tu
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
@@ -94,12 +94,18 @@ class JointTie:
 
 @dataclass(frozen=True, slots=True)
 class PointTie:
-    """A point of one link is a point of another; both in the axes of their links."""
+    """A point of one link is a point of another; both in the axes of their links.
+
+    Where they are welded, unit vectors of both stay parallel (``axes``), and points that are a unit vector away, in two
+    directions at right angles, at the distance sqrt(2) (``apart``): six conditions, none of which follows from others.
+    """
 
     first: str
     first_point: Texts
     second: str
     second_point: Texts
+    axes: tuple[Texts, Texts] | None = None
+    apart: tuple[Texts, Texts] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +131,11 @@ class Robot:
 #: Coordinates of a point that is found by turning are rounded to so many decimals.
 _DECIMALS = 15
 
+_UNITS: tuple[Texts, Texts, Texts] = (("1", "0", "0"), ("0", "1", "0"), ("0", "0", "1"))
+
+#: Of the pose of a weld, as far as it is not given: that where all joints are at zero.
+_AT_ZERO = "0 1 0 0 0 0 0"
+
 #: Of a relation between joints, as far as it is not given: y = x.
 _COEFFICIENTS = ("0", "1", "0", "0", "0")
 
@@ -141,7 +152,7 @@ def ties(
         found: JointTie | PointTie | None = None
         if element.tag == "joint":
             found = _of_joints(element, joints, reader)
-        elif element.tag == "connect":
+        elif element.tag in ("connect", "weld"):
             found = _of_points(element, links, sites, reader)
         else:
             reader.leave_out(f"constraint (<{element.tag}> in <equality>)")
@@ -174,7 +185,8 @@ def _of_points(
         if unknown:
             reader.error("unknown-name", f"there is no site {ascii_safe(unknown[0])}", element)
             return None
-        return PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
+        tie = PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
+        return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if element.tag == "weld" else tie
     first, second = reader.name(element, "body1"), element.get("body2") or GROUND
     second = GROUND if second == "world" else second
     unknown = [name for name in (first, second) if name != GROUND and name not in links]
@@ -182,10 +194,34 @@ def _of_points(
         reader.error("unknown-name", f"there is no body {ascii_safe(unknown[0])}", element)
         return None
     anchor = reader.three(element, "anchor")
-    return PointTie(first, anchor, second, _seen_from(first, second, anchor, links))
+    if element.tag == "connect":
+        return PointTie(first, anchor, second, _texts(_seen_from(first, second, anchor, links)))
+    # The anchor of a weld is a point of the second body, which stands in the first as it is said, or as at zero.
+    place, quaternion = (pose := reader.numbers(element, "relpose", 7, _AT_ZERO))[:3], list(map(float, pose[3:]))
+    if not any(quaternion):
+        origin, there, tip, side = (
+            _seen_from(second, first, x, links) for x in (NOWHERE, anchor, _UNITS[2], _UNITS[0])
+        )
+        axis, across = ([a - b for a, b in zip(x, origin, strict=True)] for x in (tip, side))
+    else:
+        axis, across = (_by(quaternion, list(map(float, x))) for x in (_UNITS[2], _UNITS[0]))
+        there = list(map(float, place))  # as MuJoCo has it: where the anchor is, not the origin of the body
+    one = [a + b for a, b in zip(there, across, strict=True)]
+    other = [float(a) + float(b) for a, b in zip(anchor, _UNITS[1], strict=True)]
+    return PointTie(first, _texts(there), second, anchor, (_texts(axis), _UNITS[2]), (_texts(one), _texts(other)))
 
 
-def _seen_from(first: str, second: str, point: Texts, links: Mapping[str, Link]) -> Texts:
+def _by(quaternion: list[float], v: list[float]) -> list[float]:
+    """v turned by a quaternion of any length: (w^2 - u.u) v + 2 (u.v) u + 2 w u x v, over its square."""
+    w, x, y, z = quaternion
+    u = (x, y, z)
+    dot = sum(a * b for a, b in zip(u, v, strict=True))
+    cross = (y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0])
+    square = w * w + x * x + y * y + z * z
+    return [((2 * w * w - square) * v[k] + 2 * dot * u[k] + 2 * w * cross[k]) / square for k in range(3)]
+
+
+def _seen_from(first: str, second: str, point: Texts, links: Mapping[str, Link]) -> list[float]:
     """The point in the axes of another link where all joints are at zero."""
     seen = [float(x) for x in point]
     for link in _path(first, links):
@@ -196,7 +232,11 @@ def _seen_from(first: str, second: str, point: Texts, links: Mapping[str, Link])
         seen = [y - float(x) for x, y in zip(link.place, seen, strict=True)]
         for axis, turn in link.turned:
             seen = _turned(seen, axis, -_value(turn))
-    x, y, z = (number(repr(round(value, _DECIMALS))) for value in seen)
+    return seen
+
+
+def _texts(values: Iterable[float]) -> Texts:
+    x, y, z = (number(repr(round(value, _DECIMALS) + 0.0)) for value in values)
     return x, y, z
 
 

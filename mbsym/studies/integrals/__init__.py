@@ -199,4 +199,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return Refusal(f"no integrals: {error}")
 
 
-STUDY = Study("integrals", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)
+STUDY = Study(
+    "integrals", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None, letters=True
+)

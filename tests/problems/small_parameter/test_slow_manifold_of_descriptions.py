@@ -168,3 +168,35 @@ loads:
     said = lines(mbsym.loads(text), 12)
     assert any(line.endswith("y''(0) = -x - y") for line in said), said
     assert not any("y'(0)" in line for line in said)
+
+
+DISC = """
+mbsym: 1
+name: A turning disc with a light body in a slot
+parameters: {J: positive, m: positive, c: positive, k: positive, w: real}
+small parameter: m
+bodies:
+  - {name: disc, attached to: 0, rotation: {axes: [3], angles: [phi]}, mass: 0, inertia about: joint,
+     inertia: [1, 1, J], speeds: {r: omega3}}
+  - {name: light, attached to: disc, coordinates: [x], connection point: [x, 0, 0], mass: m, speeds: {u: x_dot}}
+loads:
+  - spring: {coordinate: x, stiffness: k}
+  - damper: {coordinate: x, coefficient: c}
+motion: {phi: {rate: w}, x: 0}
+"""
+
+
+def test_nothing_that_cancels_is_left():
+    """m (u' - r^2 x) = -c u - k x, r' = O(m): u_1 = (r^2 x - u_0')/c with u_0 = -k x/c, u_0' = k^2 x/c^2."""
+    found = expansion(mbsym.loads(DISC), 1)
+    assert told(found.manifold.functions[0], found)[1] in ("r**2*x/c - k**2*x/c**3", "-k**2*x/c**3 + r**2*x/c")
+
+
+@pytest.mark.parametrize(
+    ("sign", "outcome"),
+    [("c: positive", Outcome.HOLDS), ("c: negative", Outcome.FAILS), ("c: real", Outcome.CONDITIONAL)],
+)
+def test_a_disc_turns_at_any_rate_while_the_body_in_its_slot_is_damped(sign, outcome):
+    """It tends to x = 0, and the disc to a rate near by; where friction drives the body it does not."""
+    found = expansion(mbsym.loads(DISC.replace("c: positive", sign)), 1)
+    assert (found.manifold.steady.free, found.stabilizable[0]) == (("r",), outcome)

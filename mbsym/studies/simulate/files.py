@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from hashlib import sha256
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mbsym.expressions.message import Message
+from mbsym.model.quantities import time_unit, with_unit
 from mbsym.report.language import Language
-from mbsym_cli.console import status
-from mbsym_cli.files import Content, deliver
-from mbsym_cli.simulate.request import FIGURES, Asked
-from mbsym_cli.simulate.summary import note
+from mbsym.report.unit_text import pretty
 
 if TYPE_CHECKING:
     from mbsym.numerics.body_motion import BodyMotions
+    from mbsym.numerics.simulate import Trajectory
     from mbsym.simulation import Simulation
+    from mbsym.simulation.motions import Sensitivities
+    from mbsym.studies.simulate import Command
+    from mbsym.studies.simulate.fitting import Many
+
+#: Formats that are figures.
+FIGURES = ("svg", "png", "pdf")
 
 #: More samples than this are not drawn.
 MOST_DRAWN = 20_001
@@ -42,11 +46,20 @@ class Hashed:
         return self._found.hexdigest()
 
 
-def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
-    """The paths of what was written; names tell whether the trajectory is whole.
+@dataclass(frozen=True)
+class Files:
+    """Contents by name, what is to be said of them, what broke off the drawing of some."""
+
+    contents: Mapping[str, str | bytes | Iterable[str]]
+    notes: tuple[str, ...] = ()
+    stopped: BaseException | None = None
+
+
+def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Sequence[str]) -> Files:
+    """Of one motion; names tell whether the trajectory is whole.
 
     Files of an earlier simulation go with it: they would contradict simulation.json.  What stops the drawing, as Ctrl-C
-    does, stops it only when the rest is delivered.
+    does, stops nothing else.
     """
     from mbsym.model.quantities import unit_of
     from mbsym.numerics.body_motion import input_columns
@@ -57,9 +70,9 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     from mbsym.report.runs.trajectory_csv import bodies_parts, trajectory_parts
 
     mark = "" if run.whole else "-partial"
-    files: dict[str, Content] = {}
+    files: dict[str, str | bytes | Iterable[str]] = {}
     table: Hashed | None = None
-    if "csv" in asked.formats:
+    if "csv" in formats:
         shown = {} if run.dynamics.in_states else run.speeds  # they are columns already
         further = shown | {kept.column: kept.values for kept in run.invariants}
         units: dict[str, str | None] = {name: unit_of(run.system, name) for name in shown}
@@ -70,17 +83,18 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
         further, units = further | dict(drifts), units | dict.fromkeys(drifts, "")
         table = Hashed(trajectory_parts(run.trajectory, further, units))
         files[f"trajectory{mark}.csv"] = table
-    if run.certificate is not None and run.certificate.rows and "csv" in asked.formats:
+    if run.certificate is not None and run.certificate.rows and "csv" in formats:
         files[f"enclosure{mark}.csv"] = enclosure_csv(run.certificate, run.times, run.system)
     files |= {f"{stem}{mark}.csv": text for stem, text in _happened(run).items()}
-    if "bodies-csv" in asked.formats:
+    if "bodies-csv" in formats:
         files[f"bodies{mark}.csv"] = bodies_parts(_bodies(run), run.system)
-    kinds = [kind for kind in asked.formats if kind in FIGURES]
+    kinds = [kind for kind in formats if kind in FIGURES]
     stopped: BaseException | None = None
+    notes: tuple[str, ...] = ()
     try:
-        with status(asked.quiet, "drawing"):
-            pictures = _pictures(run, kinds) if kinds else {}
-            pictures |= _animation(run, asked.formats) | _section(run, kinds)
+        pictures = _pictures(run, kinds) if kinds else {}
+        moving, notes = _animation(run, formats)
+        pictures |= moving | _section(run, kinds)
     except (Exception, KeyboardInterrupt) as error:
         stopped, pictures = error, {}
     for name, content in pictures.items():
@@ -89,10 +103,40 @@ def write_files(folder: Path, run: Simulation, asked: Asked) -> list[Path]:
     names = list(files)
     # Made when the table, which stands before it, has been written: until then there is no hash of it.
     files["simulation.json"] = (simulation_json(run, names, None if table is None else table.digest) for _ in range(1))
-    paths = deliver(folder, files, "simulate")
-    if stopped is not None:
-        raise stopped
-    return paths
+    if derivatives is not None:
+        from mbsym.report.runs.sensitivity_csv import sensitivity_csv  # few ask for them
+
+        files["sensitivity.csv"] = sensitivity_csv(derivatives)
+    return Files(files, notes, stopped)
+
+
+def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
+    """Of many motions: curves of few, else fan charts."""
+    from mbsym.report.figures.figures import Curve, curves, fan_charts
+    from mbsym.report.runs.ensemble_tables import ensemble_csv, ensemble_json, members_csv
+    from mbsym.studies.simulate.fitting import variations_of
+
+    files: dict[str, str | bytes] = {}
+    ensemble, kinds = result.ensemble, [kind for kind in request.formats if kind != "csv"]
+    if "csv" in request.formats:
+        files |= {"ensemble.csv": ensemble_csv(ensemble), "members.csv": members_csv(ensemble)}
+    if kinds and result.few and all(len(run.times) > 1 for run in result.few.values()):
+        drawn = [Curve(run.trajectory, rates_along(run), name) for name, run in result.few.items()]
+        files |= curves(drawn, kinds)
+    elif kinds and len(ensemble.times) > 1:
+        files |= fan_charts(ensemble, kinds)
+    how = (variations_of(request), request.seed, request.sampling)
+    return files | {"ensemble.json": ensemble_json(ensemble, *how, list(files))}
+
+
+def note(trajectory: Trajectory) -> str:
+    """What figures say of a trajectory that is not whole, in the language of the description."""
+    unit, say = pretty(time_unit(trajectory.system)), Language(trajectory.system.language).say
+    if trajectory.breakdown is not None:
+        time, kind = with_unit(f"{trajectory.breakdown.time:.6g}", unit), Message(trajectory.breakdown.kind)
+        return say(Message("ended early: [[kind]] at t = [[time]]", kind=kind, time=time))
+    time = with_unit(f"{trajectory.times[-1]:.6g}", unit)
+    return say(Message("interrupted at t = [[time]]", time=time)) if trajectory.interrupted else ""
 
 
 def _bodies(run: Simulation) -> Iterator[BodyMotions]:
@@ -127,10 +171,10 @@ def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     return section_figure(run.section, run.system, note(run.trajectory), kinds)
 
 
-def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
+def _animation(run: Simulation, formats: Sequence[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
     if not {"html", "gif"} & set(formats):
-        return {}
+        return {}, ()
     files: dict[str, bytes | None] = {}
     if "html" in formats:
         from mbsym.report.viewer.page import animation_page
@@ -141,11 +185,12 @@ def _animation(run: Simulation, formats: Sequence[str]) -> dict[str, bytes]:
         from mbsym.report.figures.animation_gif import animation_gif
 
         files["animation.gif"] = animation_gif(run)
-    for name, data in files.items():
-        if data is None:
-            told = Message("no [[file]]: no body has a place that could be drawn", file=name)
-            print(Language(run.system.language).say(told), file=sys.stderr)
-    return {name: data for name, data in files.items() if data is not None}
+    none = tuple(
+        Message("no [[file]]: no body has a place that could be drawn", file=name)
+        for name, data in files.items()
+        if data is None
+    )
+    return {name: data for name, data in files.items() if data is not None}, none
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:

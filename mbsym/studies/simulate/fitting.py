@@ -1,0 +1,646 @@
+"""What does not go together in ``mbsym simulate``, and what the rest leaves to be integrated; the results."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import product
+from math import ceil, inf, prod
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from mbsym import simulation
+from mbsym.expressions.message import Message, joined, worded
+from mbsym.expressions.safe import quoted
+from mbsym.model.constraints import listed as listed_constraints
+from mbsym.simulation import Request as Run
+from mbsym.source.scope import closest, did_you_mean, listed
+from mbsym.studies.simulate import WORK, Command, Request
+from mbsym.studies.study import Asked, NotFit, Unfit, Watch
+
+if TYPE_CHECKING:
+    from mbsym.algebra.failures import Failure
+    from mbsym.expressions.place import Complaint
+    from mbsym.model.system import System
+    from mbsym.numerics.ensembles.ensemble import Ensemble
+    from mbsym.numerics.ensembles.variation import Variation
+    from mbsym.numerics.planning.models import Model
+    from mbsym.numerics.planning.plan import Accuracy, Plan
+    from mbsym.numerics.planning.planning import Pins
+    from mbsym.numerics.scenario import Scenario
+    from mbsym.simulation.motions import Sensitivities
+    from mbsym.simulation.request import Earlier
+    from mbsym.simulation.run import Stage
+
+#: What an option that goes with coordinates only is answered with.
+WAY_OUT = "--variables coordinates integrates coordinates and their velocities, angles among them"
+
+#: Formats that tell what bodies do, which is known in coordinates.
+OF_BODIES = {"bodies-csv": "--bodies"}
+
+#: A first try of a fixed step is the whole time divided by this.
+TRIAL_STEPS = 10_000
+
+#: So many motions of a grid are drawn as curves beside each other.
+MOST_BESIDE = 6
+
+
+# --- what is integrated ---
+
+
+class Reasons(list[Unfit]):
+    """Why a request cannot be met."""
+
+    def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
+        self.append(Unfit(option, code, message, hint))
+
+    def unread(self, option: str, text: str, complaint: Complaint) -> None:
+        """Of a place in a text."""
+        self.append(Unfit(f"--{option}", complaint.code, complaint.message, complaint.hint, "", text, complaint.span))
+
+
+@dataclass(frozen=True)
+class Settled:
+    """What is integrated; if an accuracy is asked for, that and what was settled by hand; what is ``wrong``."""
+
+    request: Run
+    goal: tuple[Accuracy, Pins] | None
+    wrong: Reasons
+
+
+def integrated(system: System, variables: str) -> System:
+    """The system with what is integrated in the place of coordinates and velocities, where that can be told."""
+    from mbsym.algebra.failures import Failure
+
+    try:
+        return simulation.integrated_system(system, variables)
+    except Failure:
+        return system  # said when it is integrated
+
+
+def basic(request: Request, seen: System, wrong: Reasons | None = None) -> Run:
+    """What commands and Python ask alike of the system ``seen``; fields that could not be read are as if left out.
+
+    Raises ValueError for texts that cannot be read, where there are no Reasons that take them.
+    """
+    found = simulation.read_watch(
+        seen, _several(request.events), _several(request.stop), request.section, request.axes,
+        None if wrong is None else wrong.unread,
+    )  # fmt: skip
+    return Run(
+        time=request.time or 0.0,
+        method=request.method or "auto",
+        arithmetic=request.arithmetic or "float64",
+        step_limit=request.step_limit or 1,
+        longest=request.max_step,
+        events=found,
+        variables=request.variables or simulation.request.DECLARED,
+        certify_seconds=inf if request.certify_seconds is None else request.certify_seconds,
+        **{name: getattr(request, name) for name in ("samples", "every", "tolerance", "step")},
+        **{name: getattr(request, name) for name in ("invariants", "estimate", "whole", "certify")},
+    )
+
+
+def _several(texts: str | Iterable[str]) -> tuple[str, ...]:
+    return tuple(" ".join(text.splitlines()) for text in ((texts,) if isinstance(texts, str) else texts))
+
+
+def settled(asked: Asked, request: Command) -> Settled:
+    """What the options say, held against each other, before anything is compiled."""
+    given, typed, wrong = asked.scenario, asked.typed, Reasons()
+    system = asked.system if given is None else given.system
+    seen = integrated(system, request.variables or simulation.request.DECLARED)
+    _check_names(typed, wrong)
+    wanted = basic(request, seen, wrong)
+    if request.certify_seconds is None:
+        wanted = replace(wanted, certify_limit=WORK)
+    if "samples" not in typed or "every" not in typed:
+        _check_rows(system, request.time, request.every, request.samples, wrong)
+    if request.step is not None and request.time is not None and request.step > request.time:
+        longer = "[[step]] is longer than the whole time [[time]]"
+        times = {"step": f"{request.step:g}", "time": f"{request.time:g}"}
+        wrong.complain("--step", "bad-number", Message(longer, **times))
+    if request.method is not None:
+        _check_method(system, wanted, typed, wrong)
+    if "variables" in typed and request.variables is not None and not system.speeds:
+        hint = "coordinates and their velocities are integrated; leave --variables out"
+        wrong.complain("--variables", "idle-option", "the description declares no speeds", hint)
+    wanted = replace(wanted, model=_model(request, system, typed, wrong))
+    if "fixed" in typed:
+        wanted = _fixed(wanted, request.fixed, system, wrong)
+    if request.path is not None:
+        wanted = _continued(wanted, request.path, system, wrong)
+        wanted = _going_on(wanted, _begun_at(given, wanted), typed, wrong)
+    _check_held(wanted, system, bool({"vary", "sensitivity"} & set(typed)), wrong)
+    if request.vary or "vary" in typed:
+        _check_varied(request, wanted, given, typed, wrong)
+    if "sensitivity" in typed and given is not None:
+        _sensitive(request.sensitivity, given, wrong)
+    _check_constrained(system, wanted, wrong)
+    _check_states(seen, wanted, request.formats, wrong)
+    if request.accuracy is None:
+        return Settled(wanted, None, wrong)
+    from mbsym.simulation.accurate import read_accuracy, settled_by  # few ask for an accuracy
+
+    pins = settled_by(wanted)
+    if "arithmetic" in typed:
+        pins = replace(pins, scalar=wanted.arithmetic)
+    return Settled(wanted, (read_accuracy(seen, request.accuracy), pins), wrong)
+
+
+def _check_names(typed: Mapping[str, Any], wrong: Reasons) -> None:
+    """Complains of names whose value two options give."""
+    names = {text.partition("=")[0].strip() for text in typed.get("values", ())}
+    for option in ("vary", "without"):
+        for name in dict.fromkeys(text.partition("=")[0].strip() for text in typed.get(option, ())):
+            if name in names and name.isidentifier():  # what is no name is complained about where it is read
+                words = "--set [[name]] does not go with [[option]] [[name]]: both give its value"
+                wrong.complain("--set", "conflicting-options", Message(words, name=name, option=f"--{option}"))
+
+
+def _model(request: Command, system: System, typed: Mapping[str, Any], wrong: Reasons) -> Model:
+    """The model that was settled by hand."""
+    from mbsym.numerics.planning.models import Model
+
+    if "gravity" in typed and not system.newtonian_fields:
+        wrong.complain("--gravity", "unsuitable-option", "there is no Newtonian gravity in this description")
+    if request.linear and not system.motion:
+        hint = "the description says with 'motion:' what the equations are linearised about"
+        wrong.complain("--linear", "unsuitable-option", "there is no unperturbed motion", hint)
+    order = int(request.gravity) if request.gravity is not None and request.gravity.isdigit() else request.gravity
+    return Model(order, request.linear, tuple(dict.fromkeys(request.without)))
+
+
+def _fixed(request: Run, names: Sequence[str], system: System, wrong: Reasons) -> Run:
+    """With initial values that stay."""
+    if not system.constraints:
+        hint = "initial values stay as they are given; leave --fixed out"
+        wrong.complain("--fixed", "idle-option", "there are no constraints that initial values would follow", hint)
+        return request
+    known = (*system.coordinates, *system.velocities)
+    for name in names:
+        if name not in known:
+            way = did_you_mean(name, known) or listed("these can be fixed", known)
+            told = Message("there is nothing called [[name]] to be fixed", name=quoted(name))
+            wrong.complain("--fixed", "unknown-name", told, way)
+    return replace(request, fixed=tuple(name for name in names if name in known))
+
+
+def _check_varied(
+    request: Command, wanted: Run, given: Scenario | None, typed: Mapping[str, Any], wrong: Reasons
+) -> None:
+    """Complains of what an ensemble does not know, and of what cannot vary."""
+    from mbsym.numerics.ensembles.variation import Grid, complaints_of
+
+    _check_members(wanted, request.formats, wrong)
+    variations = variations_of(request)
+    if variations and all(isinstance(variation, Grid) for variation in variations):
+        for option in (f"--{name}" for name in ("sampling", "seed") if name in typed):
+            words = "[[option]] does not go with --vary [[name]]: a grid, of which nothing is drawn"
+            drawn = Message(words, option=option, name=variations[0].name)
+            wrong.complain(option, "conflicting-options", drawn, "draw it: name=uniform(low, high)")
+    unread = request.vary is None or request.seed is None or request.sampling is None
+    if given is None or unread or ("members" in typed and request.members is None):
+        return
+    for name, message, hint in complaints_of(given.system, variations, request.members):
+        wrong.complain(f"--vary {name}", "bad-variation", message, hint or None)
+
+
+def variations_of(request: Command) -> tuple[Variation, ...]:
+    return tuple(one.variation for one in request.vary or ())
+
+
+def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, wrong: Reasons) -> None:
+    from mbsym.numerics.columns import most_rows_in_file
+
+    rows, option = samples, "--samples"
+    if every is not None:
+        rows, option = None if end is None else int(min(ceil(end / every), 10**18)) + 1, "--every"
+    most = most_rows_in_file(system)
+    if rows is not None and rows > most:
+        hint = Message("at most [[most]] for this system; use --every with a longer interval, or --samples", most=most)
+        wrong.complain(option, "too-large", Message("[[rows]] rows are too many", rows=rows), hint)
+
+
+def _check_held(request: Run, system: System, many: bool, wrong: Reasons) -> None:
+    """Complains about rows that have to be in memory together, and do not fit: the others go to a file."""
+    from mbsym.numerics.columns import most_rows
+
+    why = {
+        "--certify": request.certify is not None,
+        "--continue": request.earlier is not None,
+        "--vary, --sensitivity": many,
+    }
+    needing = [option for option, there in why.items() if there]
+    rows = request.rows if request.earlier is None else request.samples
+    tied = bool(system.constraints)  # their drift is measured by the whole motion
+    if not (needing or tied) or rows is None or rows <= most_rows(system):
+        return
+    hint = Message("at most [[most]] for this system", most=most_rows(system))
+    if needing and not tied:
+        words = "at most [[most]] for this system, or leave out [[options]]"
+        hint = Message(words, most=most_rows(system), options=", ".join(needing))
+    option = "--every" if request.every is not None else "--samples"
+    told = Message("[[rows]] rows are too many to be held in memory, as they have to be here", rows=rows)
+    wrong.complain(option, "too-large", told, hint)
+
+
+def _check_method(system: System, request: Run, typed: Mapping[str, Any], wrong: Reasons) -> None:
+    """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
+    from mbsym.numerics.methods.symplectic import without_potential
+    from mbsym.numerics.methods.table import METHODS
+
+    name = request.method
+    has_step, has_tolerance = "step" in typed, "tolerance" in typed
+    given = METHODS.get(name)
+    if has_step and has_tolerance and not (given is not None and given.traits.fixed):
+        hint = "a method takes one or the other"
+        wrong.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
+    fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
+    if name == "auto":
+        if has_step and not has_tolerance:
+            words = "--step goes with a method of fixed step, for example --method rk4 (also [[others]])"
+            hint = Message(words, others=fixed)
+            wrong.complain("--step", "conflicting-options", "--method auto chooses its steps by a tolerance", hint)
+        return
+    traits = METHODS[name].traits
+    if request.arithmetic not in traits.scalars:
+        able = ", ".join(key for key, other in METHODS.items() if request.arithmetic in other.traits.scalars)
+        message = Message("[[method]] does not compute in [[arithmetic]]", method=name, arithmetic=request.arithmetic)
+        wrong.complain(
+            "--arithmetic",
+            "conflicting-options",
+            message,
+            Message("these do: [[names]]", names=able) if able else "no method does",
+        )
+    if traits.fixed and has_tolerance:
+        hint = "give a --step in its place, or take a method that chooses its steps, for example --method dop853"
+        if has_step:
+            hint = "leave it out, or take a method that chooses its steps, for example --method dop853"
+        told = Message("[[method]] takes steps of one length, no tolerance", method=name)
+        wrong.complain("--tolerance", "conflicting-options", told, hint)
+    elif traits.fixed and not has_step:
+        many = f"--step {request.time / TRIAL_STEPS:.2g}" if request.time else "--step H"
+        hint = Message(
+            "for example [[step]], a [[steps]]th of the time; then halve it until the results no longer change",
+            step=many, steps=TRIAL_STEPS,
+        )  # fmt: skip
+        told = Message("[[method]] takes steps of one length, and there is no --step", method=name)
+        wrong.complain("--method", "missing-option", told, hint)
+    if traits.fixed and "max_step" in typed:
+        example = f"{request.longest or 0.01:g}"
+        hint = Message("give a shorter --step in its place, for example --step [[step]]", step=example)
+        told = Message("[[method]] takes steps of one length", method=name)
+        wrong.complain("--max-step", "conflicting-options", told, hint)
+    if not traits.fixed and has_step and not has_tolerance:
+        hint = Message("leave --step out, give a --tolerance, or take a method of fixed step: [[names]]", names=fixed)
+        told = Message("[[method]] chooses its steps by a --tolerance", method=name)
+        wrong.complain("--step", "conflicting-options", told, hint)
+    loads = without_potential(system) if traits.conservative else ()
+    if loads:
+        words = "[[method]] is for conservative systems; these loads have no potential: [[loads]]"
+        message = Message(words, method=name, loads=", ".join(loads))
+        wrong.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
+
+
+def _check_members(request: Run, formats: Sequence[str], wrong: Reasons) -> None:
+    from mbsym.numerics.ensembles.side_by_side import TABLEAUX
+
+    if request.method != "auto" and request.method not in TABLEAUX:
+        told = Message("members do not run side by side with [[method]]", method=request.method)
+        wrong.complain(
+            "--method", "unsuitable-method", told, Message("choose from [[names]]", names=", ".join(TABLEAUX))
+        )
+    for kind in formats:
+        if kind not in ("csv", "svg", "png", "pdf"):
+            told = Message("there is no [[format]] of an ensemble", format=kind)
+            wrong.complain(
+                "--format", "conflicting-options", told, Message("choose from [[names]]", names="csv, svg, png, pdf")
+            )
+
+
+def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
+    """Complains about every option that does not know constraints yet."""
+    if not system.constraints:
+        return
+    from mbsym.numerics.methods.table import METHODS
+
+    told = listed_constraints(system.constraints)
+    if request.model.linear:
+        message = Message("--linear does not take constraints into account yet ([[which]])", which=told)
+        wrong.complain("--linear", "constraints", message, "without them this would be another system")
+    if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
+        hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, radau, bdf")
+        message = Message("[[method]] does not keep to constraints ([[which]])", method=request.method, which=told)
+        wrong.complain("--method", "unsuitable-method", message, hint)
+
+
+def _check_states(system: System, request: Run, formats: Sequence[str], wrong: Reasons) -> None:
+    """Complains about every option that goes with coordinates only, where a run has other variables."""
+    from mbsym.model.states import InStates
+
+    if not isinstance(system, InStates):
+        return
+    from mbsym.numerics.methods.table import METHODS
+
+    options = {
+        "--continue": request.earlier is not None,
+        "--linear": request.model.linear,
+        **{option: kind in formats for kind, option in OF_BODIES.items()},
+    }
+    for option, there in options.items():
+        if there:
+            words = "[[option]] knows coordinates and their velocities only, and this system has speeds"
+            message = Message(words, option=option)
+            wrong.complain(option, "variables", message, WAY_OUT)
+    if request.method == "lsoda" and any(body.orientation for body in system.bodies):
+        lengths = "lsoda does not keep quaternions and unit vectors at their lengths"
+        wrong.complain("--method", "unsuitable-method", lengths, "take dop853, rk4, taylor, radau or bdf")
+    if request.method in METHODS and METHODS[request.method].traits.conservative:
+        words = "[[method]] integrates coordinates and their velocities only, and this system has speeds"
+        message = Message(words, method=request.method)
+        wrong.complain(
+            "--method",
+            "unsuitable-method",
+            message,
+            joined(("take dop853, rk4, taylor or radau", worded(WAY_OUT)), "; "),
+        )
+
+
+def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
+    """Complains of what the motion cannot be differentiated by."""
+    if not named:
+        wrong.complain(
+            "--sensitivity",
+            "missing-option",
+            "there is no name in it",
+            Message("for example [[example]]", example="theta,m1"),
+        )
+    system = given.system
+    known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
+    following = {relation.name for relation in system.relations}
+    for name in named:
+        if name not in known:
+            close = closest(name, known)
+            hint = Message("there are [[names]]", names=", ".join(known))
+            if close:
+                hint = Message("did you mean '[[other]]'?", other=close)
+            told = Message("there is nothing called '[[name]]' here", name=name)
+            wrong.complain("--sensitivity", "unknown-name", told, hint)
+        elif name in following:
+            told = Message("[[name]] follows from other parameters", name=name)
+            wrong.complain("--sensitivity", "bad-variation", told, "name those of which its relation is made")
+    if _jumps(given):
+        jumps = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
+        way = "compare runs: --vary with two or three values close together"
+        wrong.complain("--sensitivity", "not-smooth", jumps, way)
+
+
+def _jumps(given: Scenario) -> bool:
+    """Whether the rates have switches; False where there are no rates, which is told later."""
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.dynamics import Dynamics
+
+    try:
+        return bool(Dynamics(given).switches.outputs)
+    except Failure:
+        return False
+
+
+def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
+    from mbsym.report.runs.earlier_run import Unfit as UnfitRun
+    from mbsym.report.runs.earlier_run import read_earlier
+
+    try:
+        earlier = read_earlier(path, system)
+    except UnfitRun as error:
+        wrong.complain("--continue", "unfit-run", error.reason, "take the simulation.json of a run of this FILE")
+        return request
+    if 0 < request.time <= earlier.time:
+        there = f"{earlier.time:.9g}"
+        hint = Message("--time is counted from the start: take one beyond [[time]]", time=there)
+        told = Message("that run is at t = [[time]] already", time=there)
+        wrong.complain("--time", "conflicting-options", told, hint)
+    return replace(request, earlier=earlier)
+
+
+def _begun_at(given: Scenario | None, request: Run) -> Scenario | None:
+    """With the initial state that a run takes; what was given where there is an answer to that question only later."""
+    if given is None or not given.system.constraints or request.earlier is None:
+        return given
+    from mbsym.algebra.failures import Failure
+    from mbsym.numerics.closing import closed
+
+    try:
+        return closed(given, request.fixed).scenario
+    except Failure:
+        return given
+
+
+def _going_on(request: Run, given: Scenario | None, typed: Mapping[str, Any], wrong: Reasons) -> Run:
+    """The request, integrated as the earlier run was but for what was ``typed``; what does not fit is complained about.
+
+    The model and the arithmetic stay: rows of two models, or of a state that was rounded on the way, are no run.
+    """
+    from mbsym.numerics.methods.table import METHODS
+
+    earlier = request.earlier
+    if earlier is None:
+        return request
+    if request.model != earlier.model:
+        for option in (f"--{name}" for name in sorted({"gravity", "linear", "without"} & set(typed))):
+            message = Message("[[option]] does not go with --continue: that run was one as described", option=option)
+            if earlier.model.label != "as described":
+                words = "[[option]] does not go with --continue: that run was one of another model: [[model]]"
+                message = Message(words, option=option, model=worded(earlier.model.label))
+            wrong.complain(option, "conflicting-options", message, "leave it out: the model of that run is taken")
+    request = replace(request, model=earlier.model, arithmetic=earlier.arithmetic)
+    if request.method == "auto":
+        request = _as_before(request, earlier, typed, wrong)
+    elif earlier.arithmetic not in METHODS[request.method].traits.scalars:
+        words = "--method [[method]] does not go with --continue: that run was one in [[arithmetic]]"
+        message = Message(words, method=request.method, arithmetic=earlier.arithmetic)
+        able = ", ".join(name for name, one in METHODS.items() if earlier.arithmetic in one.traits.scalars)
+        wrong.complain(
+            "--method", "conflicting-options", message, Message("these compute in it: [[names]]", names=able)
+        )
+    _check_values(request, given, wrong)
+    return request
+
+
+def _as_before(request: Run, earlier: Earlier, typed: Mapping[str, Any], wrong: Reasons) -> Run:
+    """With the method of the earlier run, its tolerance unless one was typed, or its step."""
+    if earlier.step is not None:
+        for option in (option for option in ("--max-step", "--tolerance") if option[2:].replace("-", "_") in typed):
+            words = "[[option]] does not go with --continue: that run took steps of one length by [[method]]"
+            message = Message(words, option=option, method=earlier.method)
+            wrong.complain(option, "conflicting-options", message, "--method dop853 chooses its steps")
+    tolerance = None if earlier.step is not None else request.tolerance or earlier.tolerance
+    return replace(request, method=earlier.method, tolerance=tolerance, step=earlier.step)
+
+
+def _check_values(request: Run, given: Scenario | None, wrong: Reasons) -> None:
+    """Complains about values that are not those of the run that is gone on from."""
+    from mbsym.report.runs.earlier_run import changed
+
+    if request.earlier is None or given is None:
+        return
+    different = list(changed(request.earlier, given))
+    if different:
+        message = Message("that run had other values: [[values]]", values=joined(different, "; "))
+        wrong.complain("--continue", "unfit-run", message, "repeat the --set of that run, or leave out --continue")
+
+
+# --- what is found ---
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One motion, with its derivatives by some names where these are asked for, or what broke them off."""
+
+    run: simulation.Simulation
+    derivatives: Sensitivities | None = None
+    stopped: Failure | KeyboardInterrupt | None = None
+
+
+@dataclass(frozen=True)
+class Planned:
+    """What an accuracy chooses, and the request that repeats its run."""
+
+    plan: Plan
+    request: Run
+
+
+@dataclass(frozen=True)
+class Many:
+    """An ensemble; the runs of its members where these are few, by what varies."""
+
+    ensemble: Ensemble
+    few: Mapping[str, simulation.Simulation] = field(default_factory=dict)
+
+
+Result: TypeAlias = Motion | Planned | Many
+
+
+def derived(asked: Asked, request: Command, watch: Watch) -> Result:
+    """Raises NotFit for what is seen only when equations are put into code, Breakdown where nothing can be planned."""
+    from mbsym.algebra.failures import message_of
+    from mbsym.numerics.enclosure.field import NotAnalytic
+    from mbsym.numerics.ensembles.variation import Unvaried
+    from mbsym.numerics.methods.interface import Unusable
+
+    try:
+        return _derived(asked, request, watch)
+    except simulation.NoEvent as error:
+        message = Message("[[name]] has no value: [[why]]", name=quoted(error.text), why=error.reason)
+        reasons = [Unfit(f"--{error.option}", "no-value", message)]
+    except Unusable as error:
+        hint = "--method auto chooses one that can"
+        reasons = [Unfit("--method", "unsuitable-method", message_of(error), hint)]
+    except NotAnalytic as error:
+        message = Message("[[what]] in the equations has no power series", what=str(error))
+        hint = "leave --certify out: enclosures go through power series"
+        reasons = [Unfit("--certify", "not-analytic", message, hint)]
+    except Unvaried as error:
+        reasons = [Unfit(f"--vary {name}", "bad-variation", text, hint or None) for name, text, hint in error.reasons]
+    raise NotFit(reasons)
+
+
+def _derived(asked: Asked, request: Command, watch: Watch) -> Result:
+    from mbsym.algebra.failures import Failure
+
+    given, settling = asked.motion, settled(asked, request)
+    wanted = settling.request
+    if settling.goal is not None and request.plan:
+        from mbsym.simulation.accurate import plan_for
+
+        watch(PLANNING)
+        return Planned(*plan_for(given, wanted, *settling.goal))
+    if request.vary:
+        return _many(asked, request, wanted, watch)
+    at, stage = _watched(wanted.time, watch)
+    stored = replace(wanted, store=asked.store())
+    if settling.goal is not None:
+        from mbsym.simulation.accurate import simulate_accurately
+
+        run = simulate_accurately(given, stored, *settling.goal, at, stage)
+    else:
+        run = simulation.simulate(given, stored, at, stage)
+    result = Motion(run)
+    if request.sensitivity and run.whole:
+        from mbsym.simulation.motions import sensitivities
+
+        watch("how it answers to changes")
+        try:
+            values = simulation.read_values(given.system, request.values)
+            result = Motion(run, sensitivities(given, wanted, request.sensitivity, values))
+        except (Failure, KeyboardInterrupt) as error:  # what was integrated is written all the same
+            result = Motion(run, stopped=error)
+    watch("drawing")
+    return result
+
+
+PLANNING = "choosing model, method and tolerance"
+
+
+def _watched(time: float, watch: Watch) -> tuple[Callable[[float], None], Stage]:
+    """(the bar, words about what goes before and after)."""
+    from mbsym.simulation import CERTIFYING, COMPILING, ESTIMATING, INTEGRATING, run
+
+    words = {
+        run.PLANNING: PLANNING,
+        COMPILING: "compiling",
+        INTEGRATING: "",
+        ESTIMATING: "the same more finely, to see how good it is",
+        CERTIFYING: "enclosing the exact solution",
+    }
+    doing = [""]
+
+    @contextmanager
+    def stage(what: str) -> Iterator[None]:
+        doing.append(words[what])
+        watch(doing[-1])
+        yield
+        doing.pop()
+
+    return lambda t: watch(doing[-1], t, time), stage
+
+
+def _many(asked: Asked, request: Command, wanted: Run, watch: Watch) -> Many:
+    """Curves of a few members are runs of their own; none where one of these has no scenario."""
+    from mbsym.expressions.tree import number
+    from mbsym.numerics.scenario import Incomplete, scenario
+    from mbsym.simulation.ensembles import Spread, simulate_many
+
+    given, variations = asked.motion, variations_of(request)
+    spread = Spread(wanted, variations, request.members, request.seed, request.sampling)
+    values = simulation.read_values(given.system, request.values)
+    ensemble = simulate_many(given, spread, values, watch=lambda t: watch("", t, wanted.time))
+    few: dict[str, simulation.Simulation] = {}
+    drawn = set(request.formats) - {"csv"} and not ensemble.interrupted
+    for member in _few(variations) if drawn else ():
+        name = ", ".join(f"{name} = {value:.12g}" for name, value in member)
+        own = {name: number(Fraction(str(value))) for name, value in member}
+        try:
+            begun = scenario(given.system, {**values, **own}, declared=request.variables == simulation.request.DECLARED)
+        except Incomplete:
+            return Many(ensemble)
+        few[name] = simulation.simulate(
+            begun,
+            replace(wanted, estimate=False),
+            lambda t, name=name: watch(name, t, wanted.time),  # type: ignore[misc]
+        )
+    watch("drawing")
+    return Many(ensemble, few)
+
+
+def _few(variations: Sequence[Variation]) -> tuple[tuple[tuple[str, float], ...], ...]:
+    """The members by what varies, where they are grids of no more than can be drawn beside each other."""
+    from mbsym.numerics.ensembles.variation import Grid
+
+    grids = [one for one in variations if isinstance(one, Grid)]
+    if len(grids) < len(variations) or prod(one.count for one in grids) > MOST_BESIDE:
+        return ()
+    return tuple(product(*([(one.name, float(value)) for value in one.values] for one in grids)))
