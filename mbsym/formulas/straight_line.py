@@ -119,16 +119,24 @@ class _Writer:
 
     def listing(self, inline: bool) -> Listing:
         uses, inputs = _uses(self.program, self.outputs), []
+        instructions, signs, written = self.program.instructions, self._signs, self.written
         for number in self.live:
-            instruction = self.program.instructions[number]
-            text, precedence = self._text(instruction)
-            if instruction.operation == "input":
+            instruction = instructions[number]
+            operation, operands, _ = instruction
+            known = signs.get(operation)
+            if known is not None:  # nearly all are of this kind, and there may be hundreds of thousands
+                sign, left, right, precedence = known
+                (a, first), (b, second) = written[operands[0]], written[operands[1]]
+                text = f"{a if first >= left else f'({a})'}{sign}{b if second >= right else f'({b})'}"
+            else:
+                text, precedence = self._text(instruction)
+            if operation == "input":
                 inputs.append(str(instruction.payload))
-            elif not inline and instruction.operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
+            elif not inline and operation != "constant" and (uses[number] > 1 or len(text) > WIDTH):
                 name = self._fresh(instruction)
                 self.assignments.append((name, text))
                 text, precedence = name, _ATOM
-            self.written[number] = text, precedence
+            written[number] = text, precedence
         results = tuple(self.written[node.number][0] for node in self.outputs)
         return Listing(tuple(self.assignments), results, tuple(inputs))
 
@@ -147,11 +155,7 @@ class _Writer:
                 return name
 
     def _text(self, instruction: Instruction) -> tuple[str, int]:
-        known = self._signs.get(instruction.operation)
-        if known is not None:
-            sign, left, right, made = known
-            a, b = instruction.operands
-            return f"{self._operand(a, left)}{sign}{self._operand(b, right)}", made
+        """Whatever is no operation on two, and how tightly it binds."""
         match instruction.operation, instruction.payload, instruction.operands:
             case "input", str(name), _:
                 return self.names[name], _ATOM
