@@ -24,7 +24,6 @@ from mbsym.algebra.program import Node, Program
 from mbsym.algebra.vectors import Vector, axis_vector
 from mbsym.mechanics.articulated import bias_forces, forcing
 from mbsym.mechanics.articulation import Articulation, articulation
-from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics, constrained_dynamics
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.newton_euler import residuals
@@ -38,6 +37,7 @@ from mbsym.report.code.functions import Function, Functions
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Ring
     from mbsym.analysis import Analysis
+    from mbsym.mechanics.constraints.dynamics import ConstrainedDynamics
 
 #: Poses and Jacobians of all frames take so many operations at most; of those beyond there are none.
 MOST_OPERATIONS = 30_000
@@ -160,7 +160,9 @@ def _forward(analysis: Analysis) -> Computed | None:
     pushed = dict(zip(system.coordinates, force_names(system), strict=True))
     found: ForwardDynamics | ConstrainedDynamics
     if system.constraints:
-        from mbsym.report.code.constrained_code import tied_of  # few systems have constraints
+        # few systems have constraints
+        from mbsym.mechanics.constraints.dynamics import constrained_dynamics
+        from mbsym.report.code.constrained_code import tied_of
 
         tied = tied_of(analysis)
         if isinstance(tied, str):
