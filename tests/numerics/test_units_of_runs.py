@@ -105,16 +105,9 @@ def assert_alike(one: Simulation, other: Simulation, steps: float = 0.02) -> Non
         assert max(second, ROUNDINGS) <= 2 * max(first, ROUNDINGS), (first, second)
 
 
-#: What is said of the energy of the sphere in a dish still hangs on the unit of length: "not conserved" in microns,
-#: "verified numerically" in metres.
-OPEN = {("dish-sphere", "microns"), ("dish-sphere", "megametres")}
-
-
 @pytest.mark.parametrize("units", OTHER)
 @pytest.mark.parametrize("name", sorted(UNITS))
 def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
-    if (name, units) in OPEN:
-        pytest.xfail("the energy's standing hangs on the unit of length")
     system = described(name)
     given = scenario(system)
     other = rescaled(given, OTHER[units])

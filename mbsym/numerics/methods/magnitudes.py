@@ -46,6 +46,9 @@ SHARE = 1 / 32
 #: Nor for so little that its tolerance is below so many roundings of that size.
 ROUNDINGS = 16.0
 
+#: Rates that are smaller parts of the others are roundings.
+NOISE = 1e-12
+
 #: Nor for less than short floats can divide by.
 SMALLEST = 1e-30
 
@@ -152,7 +155,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reach = (DISPLACED * sizes[placed]).astype(states.dtype)
     largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
     largest = np.maximum(largest, _finite(base))
-    rate, still = largest[moving], states.copy()
+    rate, still = _without_noise(largest[moving], kinds, begin, states), states.copy()
     still[moving] = 0
     push = np.where(rate > 0, rate, 1.0)
     pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
@@ -184,6 +187,14 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
     natural[moving] = np.minimum(sizes[moving], np.maximum(own, SHARE * sizes[moving]))
     return Magnitudes(sizes, shortest, natural)
+
+
+def _without_noise(rates: Any, kinds: Variables, begin: Any, states: Any) -> Any:
+    """Rates of velocities, 0 for roundings of forces that cancel: tiny beside the others, weighed by masses."""
+    if np.min(rates, where=rates > 0, initial=np.inf) >= NOISE * np.max(rates, initial=0.0):
+        return rates
+    weighed = rates * kinds.weights(begin, states)
+    return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, rates)
 
 
 def _ratio(a: Any, b: Any) -> Any:
