@@ -183,7 +183,7 @@ def test_what_goes_with_coordinates_only_is_refused(jacobi: Analysis) -> None:
     linear = Request(1.0, model=Model(linear=True))
     with pytest.raises(ValueError, match="a linear model integrates coordinates"):
         simulate(scenario(jacobi.system, declared=True), linear)
-    with pytest.raises(ValueError, match="no variables angles"):
+    with pytest.raises(ValueError, match="no choice of variables angles: choose from declared, coordinates"):
         mbsym.simulate(jacobi, 1.0, variables="angles")
 
 
