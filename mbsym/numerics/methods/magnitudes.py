@@ -89,8 +89,7 @@ def variables(dynamics: Dynamics) -> Variables:
     system = dynamics.system
     names = dynamics.inputs[1 : 1 + dynamics.dimension]
     bounded = set(angle_denominators(system))
-    if dynamics.in_states:
-        bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
+    bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
     bounded &= set(system.coordinates)
     groups = bounded, set(system.velocities), set(system.parameter_names)
     n = len(system.velocities)
