@@ -163,6 +163,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
     arcs = _finite(base)[placed] ** 2 / bends
     sizes[placed] = np.maximum(sizes[placed], LEAST * arcs)
+    given[moving], sizes[placed] = _apart_from_noise(given[moving], sizes[placed], ways, kinds, begin, states)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
     times = np.sqrt(_ratio(path, rate))
@@ -194,6 +195,19 @@ def _without_noise(rates: Any, kinds: Variables, begin: Any, states: Any) -> Any
         return rates
     weighed = rates * kinds.weights(begin, states)
     return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, rates)
+
+
+def _apart_from_noise(speeds: Any, sizes: Any, ways: Any, kinds: Variables, begin: Any, states: Any) -> tuple[Any, Any]:
+    """|v_j| and S_i, 0 for roundings of what is to be at 0: those with a tiny part of the others' kinetic energy."""
+    paths = _ratio(sizes[:, None], ways)
+    paths = np.where(np.isfinite(paths) & (paths > 0), paths, 0.0)
+    if not any(np.min(a, where=a > 0, initial=np.inf) < NOISE * np.max(a, initial=0.0) for a in (speeds, paths)):
+        return speeds, sizes
+    weights = kinds.weights(begin, states)
+    speeds = np.where(speeds * weights < NOISE * np.max(speeds * weights, axis=0, initial=0.0), 0.0, speeds)
+    paths = paths * weights
+    least = np.min(np.where(paths > 0, paths, np.inf), axis=1, initial=np.inf)
+    return speeds, np.where(least < NOISE * np.max(paths, axis=(0, 1), initial=0.0), 0.0, sizes)
 
 
 def _ratio(a: Any, b: Any) -> Any:
