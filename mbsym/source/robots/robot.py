@@ -179,6 +179,8 @@ def _of_joints(element: Element, joints: set[str], reader: Reader) -> JointTie |
 def _of_points(
     element: Element, links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
 ) -> PointTie | None:
+    # A weld that does not weigh angles holds points alone.
+    welded = element.tag == "weld" and float(reader.number(element, "torquescale", "1")) != 0
     if element.get("site1"):
         ends = [element.get("site1"), reader.name(element, "site2")]
         unknown = [name for name in ends if name not in sites]
@@ -186,9 +188,9 @@ def _of_points(
             reader.error("unknown-name", f"there is no site {ascii_safe(unknown[0])}", element)
             return None
         tie = PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
-        return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if element.tag == "weld" else tie
+        return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if welded else tie
     first, second = reader.name(element, "body1"), element.get("body2") or GROUND
-    second = GROUND if second == "world" else second
+    first, second = (GROUND if name == "world" else name for name in (first, second))
     unknown = [name for name in (first, second) if name != GROUND and name not in links]
     if unknown:
         reader.error("unknown-name", f"there is no body {ascii_safe(unknown[0])}", element)
@@ -208,7 +210,10 @@ def _of_points(
         there = list(map(float, place))  # as MuJoCo has it: where the anchor is, not the origin of the body
     one = [a + b for a, b in zip(there, across, strict=True)]
     other = [float(a) + float(b) for a, b in zip(anchor, _UNITS[1], strict=True)]
-    return PointTie(first, _texts(there), second, anchor, (_texts(axis), _UNITS[2]), (_texts(one), _texts(other)))
+    tie = PointTie(first, _texts(there), second, anchor)
+    if not welded:
+        return tie
+    return replace(tie, axes=(_texts(axis), _UNITS[2]), apart=(_texts(one), _texts(other)))
 
 
 def _by(quaternion: list[float], v: list[float]) -> list[float]:
