@@ -90,6 +90,17 @@ def test_a_point_in_spherical_coordinates_rests_at_the_pole_under_no_load_across
     assert one.equilibrium.singular == ((("phi", 1),),)
 
 
+@pytest.mark.parametrize(
+    "load", ["spring: {coordinate: psi, stiffness: m*g*l}", "potential: m*g*l*psi**2/2", "potential: m*g*l*psi*theta"]
+)
+def test_loads_on_angles_themselves_are_in_balance_where_they_vanish(load: str, tmp_path: Path) -> None:
+    """A spring on an angle is the same load when it is written as its potential."""
+    path = tmp_path / "top.yaml"
+    text = TOP.format(bodies=turned("[3, 1, 3]", LIGHT), gravity="0, 0, -g", motion="theta: 0")
+    path.write_text(text.replace("loads: [", f"loads: [{{{load}}}, "))
+    assert mbsym.load(path, (3, 4)).equilibrium.satisfied
+
+
 def test_what_is_left_out_is_found_by_the_second_route(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def nothing(analysis: Analysis, singular: Sequence[Displacement]) -> list[Polynomial]:
         return [analysis.ring.zero] * 3 * len(singular)
