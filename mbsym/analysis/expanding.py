@@ -36,7 +36,7 @@ class Expansion(Shown):
     """The manifold with the ring in which it is told.
 
     ``choice``: which root of the lowest order was taken; ``others``: the values of the fast
-    variables at those that were not; ``unknown``: how many are neither rational nor square roots; ``real``: what makes
+    variables at those that were not; ``unknown``: how many need other roots; ``real``: what makes
     the square root real, and not zero.  ``missing``: why
     nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have negative real
     parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what was divided

@@ -183,23 +183,28 @@ def _of_points(
     welded = element.tag == "weld" and float(reader.number(element, "torquescale", "1")) != 0
     if element.get("site1"):
         ends = [element.get("site1"), reader.name(element, "site2")]
-        unknown = [name for name in ends if name not in sites]
-        if unknown:
-            reader.error("unknown-name", f"there is no site {ascii_safe(unknown[0])}", element)
+        for name in dict.fromkeys(ends):
+            if name and name not in sites:
+                reader.error("unknown-name", f"there is no site {ascii_safe(name)}", element)
+        if not all(name in sites for name in ends):
             return None
         tie = PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
         return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if welded else tie
     first, second = reader.name(element, "body1"), element.get("body2") or GROUND
     first, second = (GROUND if name == "world" else name for name in (first, second))
-    unknown = [name for name in (first, second) if name != GROUND and name not in links]
-    if unknown:
-        reader.error("unknown-name", f"there is no body {ascii_safe(unknown[0])}", element)
+    anchor, pose = reader.three(element, "anchor"), _AT_ZERO.split()
+    if element.tag == "weld":
+        pose = [*reader.numbers(element, "relpose", 7, _AT_ZERO)]
+    known = {GROUND, *links}
+    for name in dict.fromkeys((first, second)):
+        if name and name not in known:
+            reader.error("unknown-name", f"there is no body {ascii_safe(name)}", element)
+    if not known.issuperset((first, second)):
         return None
-    anchor = reader.three(element, "anchor")
     if element.tag == "connect":
         return PointTie(first, anchor, second, _texts(_seen_from(first, second, anchor, links)))
     # The anchor of a weld is a point of the second body, which stands in the first as it is said, or as at zero.
-    place, quaternion = (pose := reader.numbers(element, "relpose", 7, _AT_ZERO))[:3], list(map(float, pose[3:]))
+    place, quaternion = pose[:3], list(map(float, pose[3:]))
     if not any(quaternion):
         origin, there, tip, side = (
             _seen_from(second, first, x, links) for x in (NOWHERE, anchor, _UNITS[2], _UNITS[0])
