@@ -174,7 +174,8 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
 
 def _holds(found: SlowManifold, root: Adjoined) -> bool:
     """Whether the square root stands in the expansion."""
-    quotients = [c for one in (*found.functions, *found.flow) for c in one.coefficients.values()]
+    flow = [one for name, one in zip(found.slow, found.flow, strict=True) if name != root.label]
+    quotients = [c for one in (*found.functions, *flow) for c in one.coefficients.values()]
     return any(not _rationalised(c, root)[1].is_zero() for c in quotients)
 
 
@@ -256,6 +257,8 @@ def _about(
         at = _steady_values(analysis, plain, motion, numbers)
         functions = dict(zip(found.fast, found.functions, strict=True))
         steady = steady_states(found.field, flow, functions, at, found.order)
+        if found.root is not None:
+            steady = replace(steady, free=slow.free_without_root(steady.free, found.root, plain.names))
     except Failure as reason:
         return replace(plain, missing=message_of(reason))
     except ZeroDivisionError:

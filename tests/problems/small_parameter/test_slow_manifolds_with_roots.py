@@ -128,6 +128,9 @@ def test_a_square_root_of_squares_is_refused():
         expansion(mbsym.loads(text.replace("mass: eps*m", "mass: eps")), 1)
 
 
+SLOW = "{{name: {0}, attached to: 0, connection point: [{1}], mass: m, coordinates: [{0}]}}"
+
+
 def drag(law):
     """eps m z'' = law."""
     return mbsym.loads(FALL.replace("m*g - c*(1 + z/h)*z_dot**2", law))
@@ -160,3 +163,21 @@ def test_numbers_that_are_no_squares_have_no_remedy():
     with pytest.raises(NoClosedForm, match="square root of something") as raised:
         expansion(drag("c*(2 - z_dot**2)"), 1)
     assert not raised.value.remedy
+
+
+def test_a_set_of_steady_states_is_told_in_the_variables_of_the_description():
+    """Any x with x' = y' = 0 is steady; y' = +-sqrt(x + 1) are no solutions that it needs."""
+    text = ACTIVE.replace("coordinates: [x]}", "coordinates: [x]}, " + SLOW.format("y", "0, y, 0"))
+    text = text.replace("x: SIGN*c*x_dot*(1 - x_dot) - k*x", "x: -c*x_dot*(1 + y - x_dot**2), y: -k*y_dot")
+    found = expansion(mbsym.loads(text), 1)
+    assert found.choice is Choice.ON_MOTION
+    assert len(found.others) == 2
+    assert found.manifold.steady.free == ("y",)
+    assert found.stabilizable == (Outcome.HOLDS, ())
+    assert found.real == ()
+    text = text.replace("1 + y - x_dot**2", "1 + y + z - x_dot**2")
+    text = text.replace("bodies: [", "bodies: [" + SLOW.format("z", "0, 0, z") + ", ")
+    both = expansion(mbsym.loads(text.replace("y: -k*y_dot", "y: -k*y_dot, z: -k*z_dot")), 1)
+    assert set(both.manifold.steady.free) == {"y", "z"}
+    tied = expansion(mbsym.loads(text.replace("y: -k*y_dot", "y: -k*y_dot - k*(y + z), z: -k*z_dot")), 1)
+    assert tied.manifold.steady.free == ()
