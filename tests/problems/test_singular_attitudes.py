@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.ring import Polynomial
@@ -13,6 +14,7 @@ from mbsym.analysis import Analysis, approximation
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.checks import Check
 from mbsym.problems.equilibrium import Displacement
+from mbsym_cli.main import main
 
 TOP = """mbsym: 1
 name: top
@@ -111,6 +113,15 @@ def test_loads_on_angles_themselves_are_in_balance_where_they_vanish(load: str, 
     text = TOP.format(bodies=turned("[3, 1, 3]", LIGHT), gravity="0, 0, -g", motion="theta: 0")
     path.write_text(text.replace("loads: [", f"loads: [{{{load}}}, "))
     assert mbsym.load(path, (3, 4)).equilibrium.satisfied
+
+
+def test_the_summary_tells_whose_angles_are_judged(tmp_path: Path) -> None:
+    """theta and phi lean in the angles 3, 1, 2; in those of the description phi turns about the vertical and drifts."""
+    found(tmp_path, turned("[3, 1, 3]", LIGHT), "0, 0, -g", "theta: 0")
+    done = CliRunner().invoke(main, ["run", str(tmp_path / "top.yaml"), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0
+    assert "phi: unstable" in done.output
+    assert "about axes 3, 1, 2 by psi, theta, phi" in " ".join(done.output.split())
 
 
 def test_what_is_left_out_is_found_by_the_second_route(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
