@@ -137,8 +137,11 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
     try:
         scene = linearisation.quadratised(resting.parameters_scene, resting.system, order=0)  # nothing deviates here
         values = [-x.value for x in newton_euler.residuals(scene).values()]
-        return equilibrium.equilibrium(resting.parameters_scene, values, resting.signs).satisfied
-    except Failure:
+        found = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
+        if found.satisfied and equilibrium.singular_displacements(resting.expanded):
+            return resting.equilibrium.satisfied  # more is demanded there
+        return found.satisfied
+    except (Failure, Unavailable):
         return None
 
 

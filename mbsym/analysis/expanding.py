@@ -36,7 +36,7 @@ class Expansion(Shown):
     """The manifold with the ring in which it is told.
 
     ``choice``: which root of the lowest order was taken; ``others``: the values of the fast
-    variables at those that were not; ``unknown``: how many are neither rational nor square roots; ``real``: what makes
+    variables at those that were not; ``unknown``: how many need other roots; ``real``: what makes
     the square root real, and not zero.  ``missing``: why
     nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have negative real
     parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what was divided
@@ -147,7 +147,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
-    there, known, root = _with_root(there, fast, (*fast, small.name, *dict(small.powers)))
+    there, known, root = _with_root(analysis, there, fast, (*fast, small.name, *dict(small.powers)))
     velocities = () if form is not None else analysis.system.velocities
     names = tuple(there.field.context.names())
     found: list[tuple[Expansion, Root]] = []
@@ -160,7 +160,8 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
         if root is not None:
             square = plain.moved(root.square)
             provided.pop(str(Formula(analysis.ring, analysis.ring.square_root(square))), None)
-            plain = replace(plain, real=sharpest([_unscaled(analysis).condition(square)]))
+            if _holds(one, root):
+                plain = replace(plain, real=sharpest([_unscaled(analysis).condition(square)]))
         plain = replace(plain, provided=tuple(provided.values()))
         try:
             found.append((_about(analysis, plain, motion, numbers), start))
@@ -171,11 +172,44 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     return _chosen(analysis, found, known)
 
 
+def _holds(found: SlowManifold, root: Adjoined) -> bool:
+    """Whether the square root stands in the expansion."""
+    flow = [one for name, one in zip(found.slow, found.flow, strict=True) if name != root.label]
+    quotients = [c for one in (*found.functions, *flow) for c in one.coefficients.values()]
+    return any(not _rationalised(c, root)[1].is_zero() for c in quotients)
+
+
+def _real_roots(analysis: Analysis, there: ScaledField, fast: tuple[str, ...]) -> Roots:
+    """The roots of the lowest order, without square roots that are nowhere real."""
+    found, signs = slow.roots_of(there, fast), _declared_signs(analysis, there.field.context)
+    found = replace(found, squares=tuple(x for x in found.squares if signs.condition(x).kind != "never"))
+    if not found.any:
+        raise NoClosedForm(
+            Message(
+                "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
+                "rational or square roots",
+                small=there.small,
+                fast=", ".join(fast),
+            )
+        )
+    return found
+
+
+def _declared_signs(analysis: Analysis, context: Any, root: Adjoined | None = None) -> Signs:
+    """Of the parameters; a square root is positive."""
+    known, assumed = {one.name: one.sign for one in analysis.system.parameters}, []
+    if root is not None:
+        if known.get(root.instead) == "positive":
+            assumed.append((root.value.top * root.value.bottom, ">"))
+        known[root.label] = "positive"
+    return Signs(context, tuple(known.get(name, "real") for name in context.names()), tuple(assumed))
+
+
 def _with_root(
-    there: ScaledField, fast: tuple[str, ...], held: Collection[str]
+    analysis: Analysis, there: ScaledField, fast: tuple[str, ...], held: Collection[str]
 ) -> tuple[ScaledField, Roots, Adjoined | None]:
     """The field in which the roots of the lowest order are rational, these, and the square root that it needs."""
-    known = slow.roots_of(there, fast)
+    known = _real_roots(analysis, there, fast)
     if not known.squares:
         return there, known, None
     square = known.squares[0]
@@ -185,11 +219,11 @@ def _with_root(
             return there, known, None
         raise NoClosedForm(
             "the fast variables hold a square root of something in which no slow variable or parameter is linear",
-            remedy="put in numbers with --set",
+            remedy="" if square.is_constant() else "put in numbers with --set that make it a square",
         )
     field, root = given
     there = scaled(field, there.small, dict(there.powers))
-    return there, slow.roots_of(there, fast), root
+    return there, _real_roots(analysis, there, fast), root
 
 
 def _expanded(
@@ -223,6 +257,8 @@ def _about(
         at = _steady_values(analysis, plain, motion, numbers)
         functions = dict(zip(found.fast, found.functions, strict=True))
         steady = steady_states(found.field, flow, functions, at, found.order)
+        if found.root is not None:
+            steady = replace(steady, free=slow.free_without_root(steady.free, found.root, plain.names))
     except Failure as reason:
         return replace(plain, missing=message_of(reason))
     except ZeroDivisionError:
@@ -262,17 +298,15 @@ def _attracts(analysis: Analysis, plain: Expansion, start: Root) -> bool:
     scale = manifold.field.scales[manifold.field.field.variables.index(manifold.fast[0])]
     if len(manifold.fast) != 1 or scale <= 0:
         return False
-    there, root = manifold.field, manifold.root
+    there = manifold.field
     place = len(there.field.parameters) + there.field.variables.index(manifold.fast[0])
     ratio = start.determinant * put(there.denominator[0], {place: start.values[0]})
-    declared = {one.name: one.sign for one in analysis.system.parameters}
-    known, assumed = {name: declared.get(name, "real") for name in plain.names}, []
+    context, root = there.field.context, manifold.root
     if root is not None:
-        known[root.label] = "positive"
-        if declared.get(root.instead) == "positive":
-            assumed.append((root.value.top * root.value.bottom, ">"))
-    signs = Signs(there.field.context, tuple(known.values()), tuple(assumed))
-    return signs.sign(ratio.top * ratio.bottom) == "negative"
+        whole, part, below = _rationalised(ratio, root)
+        if part.is_zero():  # this root is there where the square root is not real, too
+            ratio, context, root = Quotient(whole, below), whole.context(), None
+    return _declared_signs(analysis, context, root).sign(ratio.top * ratio.bottom) == "negative"
 
 
 def _refuse(

@@ -30,6 +30,7 @@ from mbsym.algebra.plane.numbers import Number, ascending, between_simply, compa
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.branches_curve import Curve, CurvePoint, CurvePoints, curves, joined
 from mbsym.maps.branches_events import decided_throughout, is_undamped, named, stability_changes
@@ -74,6 +75,9 @@ def branches(
     leaving = joined([*(one.borders() for one in parts), lost])
     changing = joined([stability_changes(one) for one in parts])
     remarks = _doubts(bifurcating, leaving, changing)
+    if any(one.in_angles for one in parts):  # where something happens is not found: all of the curve seems to be there
+        text = Message("[[name]] stands in a root or a function", name=axis.name)
+        remarks = [Remark(Doubt.UNFINISHED, text) if x.doubt is Doubt.THROUGHOUT else x for x in remarks]
     of_all = (bifurcating, leaving, changing)
     numbers = _distinct([x for one in of_all for x in (*(y.number for y in one.points), *one.continua)])
     count_proved = not any(one.unfinished or one.throughout for one in (bifurcating, leaving))

@@ -226,6 +226,12 @@ class Curve(Varied):
         self.index = self.ring.index("parameter", self.parameter)
         self.low, self.high = (rationals.exact(x) for x in (low, high))
 
+    @cached_property
+    def in_angles(self) -> bool:
+        """Whether the parameter stands in sines and cosines, which are unknowns beside it."""
+        used = [self.ring.generators[k] for k in occurring(self.search.equations)]
+        return any(g.kind in ("sine", "cosine") and g.name == self.parameter for g in used)
+
     def along(self, x: Polynomial) -> Polynomial:
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""
         for k in occurring([x]):

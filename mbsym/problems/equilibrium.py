@@ -38,9 +38,12 @@ from mbsym.algebra.point import Rationals
 from mbsym.algebra.rationals import exact, fraction
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.rates import velocity_name
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Column, Formula, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined, motion_values, relations, steadied, unperturbed_with, unsteady
+from mbsym.model.loads import ForceFunction, Rayleigh
 from mbsym.model.system import System
 
 #: A displacement by (coordinate, part), without parts that are zero.
@@ -132,6 +135,10 @@ def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
     system, n = expanded.system, len(expanded.system.coordinates)
     loaded = {name for load in system.loads for name in load.bodies or ()}
     held = {name for load in system.loads for name in load.coordinates}
+    for load in system.loads:
+        if isinstance(load, ForceFunction | Rayleigh):
+            inside = names(load.expression)
+            held |= {x for x in system.coordinates if not inside.isdisjoint((x, velocity_name(x)))}
     felt: list[Jet] = []
     for name, motion in expanded.motions.items():
         if name in loaded or motion.gyrostatic_moment is not None:
@@ -140,16 +147,16 @@ def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
             felt += motion.velocity_mass_centre
         if motion.inertia is not None:
             felt += motion.inertia @ motion.angular_velocity
-    names = [name for name in system.coordinates if name not in held]
-    places = [n + system.coordinates.index(name) for name in names]
+    free = [name for name in system.coordinates if name not in held]
+    places = [n + system.coordinates.index(name) for name in free]
     zero = expanded.ring.zero
     rows: dict[Any, list[Any]] = {}
     for at, x in enumerate(felt):
         slopes = x.first
         for column_, k in enumerate(places):
             for monomial, c in slopes[k].terms() if k in slopes else ():
-                rows.setdefault((at, monomial), [fmpq(0)] * len(names))[column_] = c
-    reduced = reduced_rows(fmpq_mat(len(rows), len(names), [c for row in rows.values() for c in row]))
+                rows.setdefault((at, monomial), [fmpq(0)] * len(free))[column_] = c
+    reduced = reduced_rows(fmpq_mat(len(rows), len(free), [c for row in rows.values() for c in row]))
 
     def moves(parts: Sequence[Any]) -> bool:
         """Whether it moves something beside the motion."""
@@ -161,8 +168,8 @@ def singular_displacements(expanded: Scene[Jet]) -> tuple[Displacement, ...]:
         return any(not x.is_zero() for x in changes)
 
     return tuple(
-        tuple((name, fraction(part)) for name, part in zip(names, parts, strict=True) if part)
-        for parts in null_vectors(Rationals({}, {}), reduced, len(names))
+        tuple((name, fraction(part)) for name, part in zip(free, parts, strict=True) if part)
+        for parts in null_vectors(Rationals({}, {}), reduced, len(free))
         if moves(parts)
     )
 

@@ -15,6 +15,7 @@ from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Branches
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values, rational_values
+from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.report.maps.words import critical_words
 
 #: A bead of weight 8 on a hoop of radius 2 that turns with the rate Omega; the pitchfork is at Omega^2 = g/R = 4.
@@ -137,3 +138,11 @@ def test_damping_leaves_open_where_stability_changes_and_says_so(tmp_path: Path)
     assert counts(there) == [(2, 1), (4, 2)]
     (remark,) = there.remarks
     assert "damping" in remark.about
+
+
+def test_a_list_that_leaves_positions_out_is_not_called_complete(tmp_path: Path) -> None:
+    """Of the two rests on the circle x = sin(1/2) none is found where equations are not algebraic."""
+    path = tmp_path / "cut.yaml"
+    path.write_text(CUT.replace("relation: x = p", "relation: x = sin(p)"))
+    listed = equilibria(mbsym.load(path, ()).system, {"p": Fraction(1, 2), "g": Fraction(1), "m": Fraction(1)})
+    assert len(listed.equilibria) == 2 or not listed.complete

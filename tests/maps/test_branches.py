@@ -137,6 +137,15 @@ def test_a_double_root_over_the_whole_interval_is_no_proof(tmp_path: Path) -> No
     assert not any(piece.throughout for piece in there.pieces)
 
 
+def test_a_parameter_in_an_angle_is_told_and_no_set_of_singular_equilibria(tmp_path: Path) -> None:
+    """x^2 = sin p - 1/2 folds at p = pi/6 alone, which is not found."""
+    there = found(ball(tmp_path, "sin(p) - 1/2 - x**2"), "p", "-1", "1")
+    assert not there.proved
+    (remark,) = there.remarks
+    assert remark.doubt is Doubt.UNFINISHED
+    assert "root or a function" in remark.about
+
+
 def test_a_rotating_pendulum_splits_at_the_rate_that_gravity_allows(tmp_path: Path) -> None:
     path = tmp_path / "hoop.yaml"
     path.write_text(HOOP.format(torque="0"))

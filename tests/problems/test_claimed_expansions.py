@@ -264,3 +264,16 @@ def test_the_first_lyapunov_coefficient():
     assert [one.outcome for one in found] == [*formulas.values(), UNDECIDED]
     assert "opposite" in found[3].remark
     assert "another case" in found[8].remark
+
+
+def test_a_root_of_a_square_is_not_what_was_squared():
+    """sqrt(k^2) is |k|, and the frequency grows with k, whatever its sign."""
+    outcomes, _ = judged(
+        (
+            "oscillation frequency, order: 1, equals: 3*sqrt(k**2)*a**2/(8*w)",
+            "oscillation frequency, order: 1, equals: 3*sqrt(k**2*c)*a**2/(8*w*sqrt(c))",
+            "oscillation frequency, order: 1, equals: 3*k*sqrt(c**2)*a**2/(8*w*c)",
+            "oscillation frequency, order: 1, equals: 3*k*sqrt(w**2*c)*a**2/(8*w**2*c**(1/2))",
+        )
+    )
+    assert outcomes == [UNDECIDED, UNDECIDED, EXACT, EXACT]

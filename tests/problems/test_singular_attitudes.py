@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import mbsym
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis import Analysis, approximation
+from mbsym.analysis.stages import Unavailable
 from mbsym.problems.checks import Check
 from mbsym.problems.equilibrium import Displacement
+from mbsym_cli.main import main
 
 TOP = """mbsym: 1
 name: top
@@ -88,6 +91,37 @@ def test_a_point_in_spherical_coordinates_rests_at_the_pole_under_no_load_across
     one = found(tmp_path, POINT, "h, k, -g", "theta: 0")
     assert dict(one.equilibrium.solved).keys() == {"h", "k"}
     assert one.equilibrium.singular == ((("phi", 1),),)
+
+
+def test_a_motion_that_is_proposed_is_one(tmp_path: Path) -> None:
+    """Where none is given, rest at zero is; under a load across the upright top has none."""
+    for gravity, proposed in (("0, 0, -g", True), ("g, 0, -g", False)):
+        path = tmp_path / "top.yaml"
+        text = TOP.format(bodies=turned("[3, 1, 3]", LIGHT), gravity=gravity, motion="")
+        path.write_text(text.replace("motion: {}\n", ""))
+        with pytest.raises(Unavailable) as refused:
+            assert mbsym.load(path, (4,)).equilibrium
+        assert ("add for example" in str(refused.value.args)) == proposed, refused.value.args
+
+
+@pytest.mark.parametrize(
+    "load", ["spring: {coordinate: psi, stiffness: m*g*l}", "potential: m*g*l*psi**2/2", "potential: m*g*l*psi*theta"]
+)
+def test_loads_on_angles_themselves_are_in_balance_where_they_vanish(load: str, tmp_path: Path) -> None:
+    """A spring on an angle is the same load when it is written as its potential."""
+    path = tmp_path / "top.yaml"
+    text = TOP.format(bodies=turned("[3, 1, 3]", LIGHT), gravity="0, 0, -g", motion="theta: 0")
+    path.write_text(text.replace("loads: [", f"loads: [{{{load}}}, "))
+    assert mbsym.load(path, (3, 4)).equilibrium.satisfied
+
+
+def test_the_summary_tells_whose_angles_are_judged(tmp_path: Path) -> None:
+    """theta and phi lean in the angles 3, 1, 2; in those of the description phi turns about the vertical and drifts."""
+    found(tmp_path, turned("[3, 1, 3]", LIGHT), "0, 0, -g", "theta: 0")
+    done = CliRunner().invoke(main, ["run", str(tmp_path / "top.yaml"), "--out", str(tmp_path / "out")])
+    assert done.exit_code == 0
+    assert "phi: unstable" in done.output
+    assert "about axes 3, 1, 2 by psi, theta, phi" in " ".join(done.output.split())
 
 
 def test_what_is_left_out_is_found_by_the_second_route(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

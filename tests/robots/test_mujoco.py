@@ -190,6 +190,30 @@ def test_welds_hold_what_mujoco_s_hold(weld: str) -> None:
         assert found[5] == pytest.approx((parted @ parted - 2) / 2, rel=CLOSE)
 
 
+@pytest.mark.parametrize(
+    ("tie", "count"),
+    [
+        ('<weld body1="world" body2="c"/>', 6),
+        ('<connect body1="world" body2="c" anchor="0.5 0.1 0"/>', 3),
+        ('<weld body1="b" body2="c" torquescale="2"/>', 6),
+        ('<weld body1="b" body2="c" torquescale="0"/>', 3),
+        ('<weld site1="p" site2="s" torquescale="0"/>', 3),
+    ],
+)
+def test_ties_to_the_world_and_without_weight_of_angles(tie: str, count: int) -> None:
+    """As many conditions as the Jacobian has that MuJoCo makes of it."""
+    text = WELDED.format(tie)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert np.linalg.matrix_rank(data.efc_J[: data.ne * model.nv].reshape(data.ne, model.nv)) == count
+    _, own, joints = ours(text)
+    found = np.array(own.constraints(np.zeros(len(joints)), own.DEFAULTS))
+    assert len(found) == count
+    if "site" not in tie:
+        assert np.allclose(found, 0, atol=1e-9)
+
+
 def quaternion(matrix: np.ndarray) -> np.ndarray:
     found = np.zeros(4)
     mujoco.mju_mat2Quat(found, matrix.flatten())

@@ -317,6 +317,23 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
     assert found.span.line == 2
 
 
+def test_of_ties_all_that_is_wrong_is_told_and_once() -> None:
+    text = """<mujoco><worldbody><body name="a"><joint/><inertial mass="1" pos="0 0 1" diaginertia="1 1 1"/></body>
+</worldbody><equality>
+<weld body1="a" body2="z" anchor="1 2"/>
+<weld site1="q" site2="w" torquescale="x"/>
+<weld body2="a"/>
+</equality></mujoco>"""
+    assert sorted(complaints_of(text), key=lambda x: x[::-1]) == [
+        ("unknown-name", 3),
+        ("wrong-shape", 3),
+        ("bad-number", 4),
+        ("unknown-name", 4),
+        ("unknown-name", 4),
+        ("missing-key", 5),
+    ]
+
+
 def test_what_looks_like_nothing_known_is_left_out_by_name() -> None:
     """It may be of a later MuJoCo; the same names in sections that are not read are nobody's business."""
     after = '<tendon><joint joint1="a" polycoef="1"/></tendon><sensor><geom obj="b"/></sensor>'

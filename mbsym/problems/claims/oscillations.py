@@ -23,6 +23,7 @@ from flint import nmod_mat
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.quotients import Quotient
+from mbsym.algebra.signs import Signs
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
@@ -276,7 +277,8 @@ def _formulas(system: System, told: SolutionInRing) -> WaveFormulas:
     defined: dict[str, Expression] = {one.name: one.value for one in system.relations}
     defined |= {one.name: one.value for one in system.notation}
     defined |= {one.name: one.value for one in system.abbreviations}
-    return WaveFormulas(tower, told.phase, known, defined)
+    signs = {one.name: one.sign for one in system.parameters} | {AMPLITUDE: "positive"}
+    return WaveFormulas(tower, told.phase, known, defined, signs)
 
 
 def _frequencies(found: Oscillation) -> list[Harmonics]:
@@ -377,7 +379,7 @@ class _InVariables:
             raise NoClosedForm(Message("a root of an odd power of [[small]]", small=self.found.small))
         first = self._first(series)
         root = self.found.amplitude if (first - self.found.amplitude * self.found.amplitude).is_zero() else None
-        found = [Harmonics.constant(tower, tower.square_root(first) if root is None else root)]
+        found = [Harmonics.constant(tower, self.formulas.square_root(first) if root is None else root)]
         inverse = tower.reciprocal(found[0].mean + found[0].mean)
         for n in range(1, len(series)):
             x = series[n]
@@ -473,12 +475,20 @@ MOST_POWER, MOST_HARMONIC = 24, 60
 class WaveFormulas:
     """Values of expressions.  ``known`` names have values, ``defined`` ones stand for an expression.
 
-    Raises NoClosedForm for what is no trigonometric polynomial of the phase with such coefficients.
+    ``signs`` of parameters of the tower, where they are declared.  Raises NoClosedForm for what is no trigonometric
+    polynomial of the phase with such coefficients.
     """
 
     def __init__(
-        self, tower: Tower, phase: str, known: Mapping[str, Element], defined: Mapping[str, Expression]
+        self,
+        tower: Tower,
+        phase: str,
+        known: Mapping[str, Element],
+        defined: Mapping[str, Expression],
+        signs: Mapping[str, str],
     ) -> None:
+        declared = (*["positive"] * MOST_ROOTS, *(signs.get(name, "real") for name in tower.parameters))
+        self.signs = Signs(tower.context, declared)
         self.tower, self.phase = tower, phase
         self.defined = defined
         self._values = {name: Harmonics.constant(tower, x) for name, x in known.items()}
@@ -502,7 +512,7 @@ class WaveFormulas:
             case Operation("**", base, exponent):
                 return self._power(self(base), exponent)
             case Call("sqrt", argument):
-                return self._constant(self.tower.square_root(self.constant(argument)))
+                return self._constant(self.square_root(self.constant(argument)))
             case Call("sin" | "cos" as function, argument):
                 return self._wave(function, argument)
             case Call(function, _):
@@ -510,6 +520,20 @@ class WaveFormulas:
                     Message("[[function]] in the coefficient of an expansion: not compared", function=function)
                 )
         raise NoClosedForm("an expression that is not compared with expansions")
+
+    def square_root(self, x: Element) -> Element:
+        """The root whose factors are positive beside the roots of the tower.  Raises NoClosedForm of unknown signs."""
+        root = self.tower.square_root(x)
+        places = [k for k, degree in enumerate(root.top.degrees()[:MOST_ROOTS]) if degree > 0]
+        outside = root.top / root.top.context().gen(places[0]) if len(places) == 1 else root.top
+        sign = self.signs.sign(outside)
+        if self.signs.sign(root.bottom) == "negative":
+            root = -root
+        if sign in ("positive", "nonnegative", "zero"):
+            return root
+        if sign in ("negative", "nonpositive"):
+            return -root
+        raise NoClosedForm("a square root of the square of a quantity of unknown sign: not compared")
 
     def constant(self, expression: Expression) -> Element:
         """The value of what does not hold the phase."""
@@ -544,7 +568,7 @@ class WaveFormulas:
                 raise NoClosedForm("division by, or a root of, what changes with the phase: not compared")
             value = base.mean
             if power.denominator == 2:
-                value, power = self.tower.square_root(value), power * 2
+                value, power = self.square_root(value), power * 2
             base = self._constant(self.tower.reciprocal(value) if power < 0 else value)
         found = self._constant(self.tower.one)
         for _ in range(abs(int(power))):

@@ -224,7 +224,7 @@ def searches_of(
             return False
         return there
 
-    for case in cases(chart.found, possible):
+    for case in list(cases(chart.found, possible)):  # all, as what is left out concerns the first, too
         search = _ChartSearch(chart, within, limits, case, rank, parameters)
         search.is_real = (case.zero, case.nonzero) in real
         if left_out:

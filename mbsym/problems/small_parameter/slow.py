@@ -193,3 +193,13 @@ def without_root(flow: dict[str, Series], root: Adjoined, names: Sequence[str]) 
     total = reduce(add, rates)
     named = {root.label: root.instead}
     return {named.get(name, name): total if name in named else x for name, x in flow.items()}
+
+
+def free_without_root(free: tuple[str, ...], root: Adjoined, names: Sequence[str]) -> tuple[str, ...]:
+    """Variables that are free in a set of steady states, k, which rho stands for, among them; none where k depends.
+
+    Where rho rests while others are free that stand in k, the set is no plane along the axes with k in place of rho.
+    """
+    if root.label in free:
+        return tuple(root.instead if name == root.label else name for name in free)
+    return () if any(not root.value.derivative(names.index(name)).is_zero for name in free) else free

@@ -88,7 +88,7 @@ class Roots(Part, Generic[F], frozen=True, kw_only=True):
 
     chosen: Annotated[Choice, "which of them the expansion begins with"]
     others: Annotated[list[dict[str, F]], "the fast variables at the others"]
-    unknown: Annotated[int, "how many are neither rational nor square roots"]
+    unknown: Annotated[int, "how many need other roots than the one square root that is adjoined"]
     positive: Annotated[list[F], "what stands under the square root and is positive where it is real"]
 
 

@@ -19,6 +19,8 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.stabilisation import Stabilisation
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.enclosed import numbers
+from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
 from mbsym.report.brief import claims_counted, ranges, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
@@ -215,6 +217,9 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
         yield Phrase((named(part.coordinates), ": ", first))
         yield from further
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
+    reasons = (one for part in found.subsystems for one in part.theory.verdict.reasons)
+    for reason in dict.fromkeys(one for one in reasons if one.code is Because.OTHER_ANGLES):  # the names mean others
+        yield worded(sentence(reason))
 
 
 def _meanings(lines: Iterable[Inline], system: System) -> Iterator[Inline]:

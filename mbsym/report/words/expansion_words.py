@@ -268,7 +268,7 @@ def _choice(found: Expansion) -> Iterator[Said]:
         shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
         yield say("Another one begins with [[values]].", values=shown)
     if found.unknown:
-        text = "Solutions that are neither rational nor square roots are not expanded; their number: [[count]]."
+        text = "Solutions that need other roots, real or not, are not expanded; their number: [[count]]."
         yield say(text, count=str(found.unknown))
 
 

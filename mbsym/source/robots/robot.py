@@ -179,25 +179,32 @@ def _of_joints(element: Element, joints: set[str], reader: Reader) -> JointTie |
 def _of_points(
     element: Element, links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
 ) -> PointTie | None:
+    # A weld that does not weigh angles holds points alone.
+    welded = element.tag == "weld" and float(reader.number(element, "torquescale", "1")) != 0
     if element.get("site1"):
         ends = [element.get("site1"), reader.name(element, "site2")]
-        unknown = [name for name in ends if name not in sites]
-        if unknown:
-            reader.error("unknown-name", f"there is no site {ascii_safe(unknown[0])}", element)
+        for name in dict.fromkeys(ends):
+            if name and name not in sites:
+                reader.error("unknown-name", f"there is no site {ascii_safe(name)}", element)
+        if not all(name in sites for name in ends):
             return None
         tie = PointTie(sites[ends[0]], NOWHERE, sites[ends[1]], NOWHERE)
-        return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if element.tag == "weld" else tie
+        return replace(tie, axes=(_UNITS[2], _UNITS[2]), apart=_UNITS[:2]) if welded else tie
     first, second = reader.name(element, "body1"), element.get("body2") or GROUND
-    second = GROUND if second == "world" else second
-    unknown = [name for name in (first, second) if name != GROUND and name not in links]
-    if unknown:
-        reader.error("unknown-name", f"there is no body {ascii_safe(unknown[0])}", element)
+    first, second = (GROUND if name == "world" else name for name in (first, second))
+    anchor, pose = reader.three(element, "anchor"), _AT_ZERO.split()
+    if element.tag == "weld":
+        pose = [*reader.numbers(element, "relpose", 7, _AT_ZERO)]
+    known = {GROUND, *links}
+    for name in dict.fromkeys((first, second)):
+        if name and name not in known:
+            reader.error("unknown-name", f"there is no body {ascii_safe(name)}", element)
+    if not known.issuperset((first, second)):
         return None
-    anchor = reader.three(element, "anchor")
     if element.tag == "connect":
         return PointTie(first, anchor, second, _texts(_seen_from(first, second, anchor, links)))
     # The anchor of a weld is a point of the second body, which stands in the first as it is said, or as at zero.
-    place, quaternion = (pose := reader.numbers(element, "relpose", 7, _AT_ZERO))[:3], list(map(float, pose[3:]))
+    place, quaternion = pose[:3], list(map(float, pose[3:]))
     if not any(quaternion):
         origin, there, tip, side = (
             _seen_from(second, first, x, links) for x in (NOWHERE, anchor, _UNITS[2], _UNITS[0])
@@ -208,7 +215,10 @@ def _of_points(
         there = list(map(float, place))  # as MuJoCo has it: where the anchor is, not the origin of the body
     one = [a + b for a, b in zip(there, across, strict=True)]
     other = [float(a) + float(b) for a, b in zip(anchor, _UNITS[1], strict=True)]
-    return PointTie(first, _texts(there), second, anchor, (_texts(axis), _UNITS[2]), (_texts(one), _texts(other)))
+    tie = PointTie(first, _texts(there), second, anchor)
+    if not welded:
+        return tie
+    return replace(tie, axes=(_texts(axis), _UNITS[2]), apart=(_texts(one), _texts(other)))
 
 
 def _by(quaternion: list[float], v: list[float]) -> list[float]:

@@ -126,3 +126,58 @@ def test_a_square_root_of_squares_is_refused():
     text = FALL.replace("(1 + z/h)", "(1 + z**2/h**2)").replace("m*g", "m**2*g**2").replace("c*", "c**2*")
     with pytest.raises(NoClosedForm, match="no slow variable or parameter is linear"):
         expansion(mbsym.loads(text.replace("mass: eps*m", "mass: eps")), 1)
+
+
+SLOW = "{{name: {0}, attached to: 0, connection point: [{1}], mass: m, coordinates: [{0}]}}"
+
+
+def drag(law):
+    """eps m z'' = law."""
+    return mbsym.loads(FALL.replace("m*g - c*(1 + z/h)*z_dot**2", law))
+
+
+@pytest.mark.parametrize("law", ["c*(1 - z_dot)*(1 + z_dot**2)", "c*(z_dot - 1)*(z_dot**2 + h)"])
+def test_square_roots_that_are_nowhere_real_are_no_solutions(law):
+    found = expansion(drag(law), 1)
+    assert (found.choice, found.others, found.unknown, found.real) == (Choice.ONLY, (), 0, ())
+    assert [str(x) for x in told(found)["z_dot"]] == ["1", "0"]
+
+
+@pytest.mark.parametrize("law", ["-c*(1 + z_dot**2)", "-c*(z**2 + h + z_dot**2)"])
+def test_without_real_solutions_none_is_looked_for_further(law):
+    with pytest.raises(NoClosedForm, match="no simple real solutions") as raised:
+        expansion(drag(law), 1)
+    assert not raised.value.remedy
+
+
+def test_a_rational_solution_is_real_without_conditions():
+    """x' = 0 beside x' = +-sqrt(x + k): only those need x + k > 0.  It attracts there, and repels where x + k < 0."""
+    found = expansion(mbsym.loads(ACTIVE.replace("SIGN*c*x_dot*(1 - x_dot) - k*x", "c*x_dot*(x_dot**2 - x - k)")), 1)
+    assert found.choice is Choice.FIRST
+    assert str(told(found)["x_dot"][0]) == "0"
+    assert len(found.others) == 2
+    assert found.real == ()
+
+
+def test_numbers_that_are_no_squares_have_no_remedy():
+    with pytest.raises(NoClosedForm, match="square root of something") as raised:
+        expansion(drag("c*(2 - z_dot**2)"), 1)
+    assert not raised.value.remedy
+
+
+def test_a_set_of_steady_states_is_told_in_the_variables_of_the_description():
+    """Any x with x' = y' = 0 is steady; y' = +-sqrt(x + 1) are no solutions that it needs."""
+    text = ACTIVE.replace("coordinates: [x]}", "coordinates: [x]}, " + SLOW.format("y", "0, y, 0"))
+    text = text.replace("x: SIGN*c*x_dot*(1 - x_dot) - k*x", "x: -c*x_dot*(1 + y - x_dot**2), y: -k*y_dot")
+    found = expansion(mbsym.loads(text), 1)
+    assert found.choice is Choice.ON_MOTION
+    assert len(found.others) == 2
+    assert found.manifold.steady.free == ("y",)
+    assert found.stabilizable == (Outcome.HOLDS, ())
+    assert found.real == ()
+    text = text.replace("1 + y - x_dot**2", "1 + y + z - x_dot**2")
+    text = text.replace("bodies: [", "bodies: [" + SLOW.format("z", "0, 0, z") + ", ")
+    both = expansion(mbsym.loads(text.replace("y: -k*y_dot", "y: -k*y_dot, z: -k*z_dot")), 1)
+    assert set(both.manifold.steady.free) == {"y", "z"}
+    tied = expansion(mbsym.loads(text.replace("y: -k*y_dot", "y: -k*y_dot - k*(y + z), z: -k*z_dot")), 1)
+    assert tied.manifold.steady.free == ()
