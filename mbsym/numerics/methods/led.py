@@ -181,7 +181,7 @@ TIMES = 2
 #: A correction beyond this part of the state is none: the constraints are nearly singular there.
 LARGEST_PART = 1e-2
 
-DO = Message("these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf")
+DO = Message("these methods do: rk4, rk45, dop853, taylor, rodas5p, scipy-rk45, scipy-dop853, radau, bdf")
 
 #: So many states at ends of steps or questions are kept, to look back from a singular position.
 REMEMBERED = 400
