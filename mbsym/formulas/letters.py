@@ -27,7 +27,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.ring import MOST_DEGREE, Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Tower
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.tree import Call, Expression, names, substitute
@@ -265,6 +265,8 @@ class Rewriter:
                 if failure.limit is not None:
                     raise
             else:
+                if max((*found.top.degrees(), *found.bottom.degrees())) > MOST_DEGREE:
+                    return []
                 if not field.squares:
                     relation = field.parameter(name).top * found.bottom - found.top
                     images = [ring.zero] * MOST_ROOTS + [self.named[x] for x in held]

@@ -32,7 +32,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import NOT_SMOOTH, STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
@@ -179,6 +179,9 @@ def estimated(
                 why, left = Lacking.CUT, left - budget.spent
                 continue
             except Ended as ended:
+                if ended.breakdown.kind == NOT_SMOOTH:
+                    left -= budget.spent
+                    continue
                 if ended.breakdown.kind != STEP_LIMIT:
                     return NoEstimate(Lacking.BREAKS_DOWN)
                 why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent

@@ -321,6 +321,12 @@ class Frozen(Dynamics):
         return Code(found.program, found.inputs, held(found, self._signs))
 
     @cached_property
+    def mass_matrix(self) -> Code:
+        """(t, q, q') -> M row by row, on this side of every switch."""
+        found = self.whole.mass_matrix
+        return Code(found.program, found.inputs, held(found, self._signs))
+
+    @cached_property
     def holding(self) -> Code:
         """(t, q, q') -> (s, 0 where that is a solution); see ``sign_that_holds``."""
         assert self.sliding is not None

@@ -20,13 +20,14 @@ from conftest import OWN, SHIPPED, reference
 from scipy import integrate
 
 import mbsym
+from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function
 from mbsym.numerics.methods import runge_kutta, symplectic
-from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable, once
+from mbsym.numerics.methods.interface import BLOW_UP, NOT_SMOOTH, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable, once
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, RODAS5P
 from mbsym.numerics.scenario import scenario
@@ -466,6 +467,38 @@ def test_a_start_that_is_singular_is_reported(name: str) -> None:
     with pytest.raises(Breakdown) as failed:
         start(name, dynamics_of(text), step_limit=10_000, **setting).advance(1.0)
     assert failed.value.time < 0.05
+
+
+@pytest.mark.parametrize("force", ["-sign(x)*sqrt(abs(x)) - 100000*x_dot", "sqrt(t)"])
+def test_rodas5p_does_not_step_from_where_a_derivative_is_infinite(force: str) -> None:
+    """1/inf = 0 would leave everything where it is, with an estimated error of 0; dop853 goes on there."""
+    text = POLE.replace("force function: 2*x**3", f"generalized force: {{x: {force}}}").replace(
+        "position: 1", "position: 0"
+    )
+    with pytest.raises(Breakdown) as failed:
+        start("rodas5p", dynamics_of(text), tolerance=1e-8).advance(1e-4)
+    assert failed.value.kind == NOT_SMOOTH
+    assert failed.value.time == 0
+    moved = start("dop853", dynamics_of(text), tolerance=1e-8).advance(1e-4)
+    assert moved[0] > 1e-5
+
+
+def test_a_better_run_that_needs_derivatives_leaves_the_estimate_to_another() -> None:
+    """sqrt(t) has none at t = 0: rodas5p would be taken beside radau."""
+    text = POLE.replace("force function: 2*x**3", "generalized force: {x: sqrt(t) - x}")
+    run = mbsym.simulate(mbsym.loads(text), 1.0, method="radau", tolerance=1e-7)
+    assert isinstance(run.error, ErrorEstimate)
+    assert run.error.against.method == "dop853"
+
+
+@pytest.mark.parametrize("name", ["dop853", "rk45", "rodas5p"])
+def test_what_is_not_finite_just_ahead_is_no_blow_up(name: str) -> None:
+    """A root of 1 - x, as x passes 1 at a speed of 3: neither values nor rates grow."""
+    text = POLE.replace("force function: 2*x**3", "generalized force: {x: sqrt(1 - x)}")
+    text = text.replace("position: 1", "position: 0")
+    with pytest.raises(Breakdown) as failed:
+        start(name, dynamics_of(text), tolerance=1e-8).advance(2.0)
+    assert failed.value.kind == STUCK
 
 
 @pytest.mark.parametrize("name", [method.name for method in symplectic.METHODS])

@@ -111,8 +111,8 @@ def test_a_change_to_a_wrong_state_is_caught(monkeypatch: pytest.MonkeyPatch) ->
     right = error()
     original = switching.SwitchingRun._turned
 
-    def forgetful(self, stiff, time, state):  # type: ignore[no-untyped-def]
-        original(self, stiff, time, np.asarray(state) + (np.array([0.1, 0.0]) if stiff else 0))
+    def forgetful(self, stiff, time, state, *sizes):  # type: ignore[no-untyped-def]
+        original(self, stiff, time, np.asarray(state) + (np.array([0.1, 0.0]) if stiff else 0), *sizes)
 
     monkeypatch.setattr(switching.SwitchingRun, "_turned", forgetful)
     assert right < 1e-6 < 1e-2 < error()

@@ -258,8 +258,16 @@ def of_runs() -> Iterator[str]:
     yield from (value for key, value in named.items() if key not in ("FINENESS", "KERNEL"))  # never told
     yield from (plan.MODEL, plan.INTEGRATION, plan.ARITHMETIC, EXTENDED, ARTICULATED, FACTORISED)
     yield from (interface.BLOW_UP, interface.SINGULAR, interface.STEP_LIMIT, interface.STUCK, interface.UNDEFINED)
-    yield from (interface.SINGULAR_CONSTRAINTS, sides.OUTSIDE, sides.SWITCHING, "energy", "generalised energy")
-    yield from (one.title for one in vars(tableaux).values() if isinstance(one, tableaux.Tableau))
+    yield from (
+        interface.SINGULAR_CONSTRAINTS,
+        interface.OUT_OF_REACH,
+        interface.NOT_SMOOTH,
+        sides.OUTSIDE,
+        sides.SWITCHING,
+        "energy",
+        "generalised energy",
+    )
+    yield from (one.title for one in vars(tableaux).values() if isinstance(one, tableaux.Tableau | tableaux.Rosenbrock))
 
 
 @pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "state_run_words", "events"])

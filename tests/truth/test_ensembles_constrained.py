@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import atan, cosh, sqrt, tanh
+from math import atan, cosh, hypot, sqrt, tanh
 
 import numpy as np
 import pytest
@@ -32,7 +32,9 @@ def test_members_of_a_sleigh_move_as_the_closed_form_says() -> None:
         last = dict(zip(names, found.final[:, member], strict=True))
         assert last["theta"] == pytest.approx(theta, rel=1e-9)
         assert last["theta_dot"] == pytest.approx(whole / k / cosh(s), rel=1e-9)
-        assert last["x_dot"] * np.sin(theta) == pytest.approx(last["y_dot"] * np.cos(theta), abs=1e-12)
+        assert hypot(last["x_dot"], last["y_dot"]) == pytest.approx(whole * tanh(s), rel=1e-9)
+        across = last["x_dot"] * np.sin(last["theta"]) - last["y_dot"] * np.cos(last["theta"])
+        assert across == pytest.approx(0, abs=1e-15)
     assert found.compared.largest < 1e-8
 
 

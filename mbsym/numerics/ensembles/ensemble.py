@@ -286,6 +286,11 @@ class WithParameters(Dynamics):
         """(t, q, q', p) -> those of the matrices."""
         return self.base.pivots
 
+    @cached_property
+    def mass_matrix(self) -> Code:
+        """(t, q, q', p) -> M row by row."""
+        return self.base.mass_matrix
+
 
 class OneByOne:
     """Members under way, as ``SideBySide`` has them: ``starts`` (2n, m), ``parameters`` (p, m)."""

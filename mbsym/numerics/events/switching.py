@@ -247,7 +247,7 @@ class SwitchingRun(Stepping):
 
     def _tried(self, stiff: bool) -> float:
         """The length of the last of some steps of a method from here; 0 where they fail."""
-        run = self._run(stiff, self.reached, self.end)
+        run = self._run(stiff, self.reached, self.end, self._active.sizes)
         before = run.reached
         try:
             for _ in range(TRIAL):
@@ -260,14 +260,14 @@ class SwitchingRun(Stepping):
     def _change(self, stiff: bool, why: str) -> None:
         traits = (self._method.implicit if stiff else self._method.explicit).traits
         self.work.changes.append(Change(float(self.reached), traits.name, why))
-        self._turned(stiff, self.reached, np.array(self.end, dtype=float))
+        self._turned(stiff, self.reached, np.array(self.end, dtype=float), self._active.sizes)
 
-    def _turned(self, stiff: bool, time: float, state: Any) -> None:
-        self._active = self._run(stiff, time, state)
+    def _turned(self, stiff: bool, time: float, state: Any, sizes: Any = 0.0) -> None:
+        self._active = self._run(stiff, time, state, sizes)
         self._stiff, self._since = stiff, (self.work.steps, float(time))
 
-    def _run(self, stiff: bool, time: float, state: Any) -> Any:
-        """The run of one of the methods, from a state."""
+    def _run(self, stiff: bool, time: float, state: Any, sizes: Any) -> Any:
+        """The run of one of the methods, from a state; it measures errors by ``sizes`` at least, those of its past."""
         run: Any
         if stiff in self._runs:
             run = self._runs[stiff]
@@ -277,7 +277,8 @@ class SwitchingRun(Stepping):
             run = method.start(self._dynamics, self._setting, "float64", state, float(time))
             self._runs[stiff] = run
             self._added(run.work, Work())
-        return self._runs[stiff]
+        run.sizes[:] = np.maximum(run.sizes, sizes)
+        return run
 
     def _counted(self, action: Callable[[], Any], run: Any = None) -> Any:
         """What an action of a run costs is added to the work."""

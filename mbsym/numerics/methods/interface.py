@@ -47,6 +47,9 @@ SINGULAR_CONSTRAINTS = "singular constraints"
 #: Constraints that move leave no position behind a time: a mechanism that is stretched out, or blocked.
 OUT_OF_REACH = "out of reach"
 
+#: The rates are finite, their derivatives are not: methods that need these cannot go on.
+NOT_SMOOTH = "no finite derivatives"
+
 #: No mistake: an event asked for it.
 STOPPED = "stopped by an event"
 

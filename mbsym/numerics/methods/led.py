@@ -39,8 +39,8 @@ from mbsym.numerics.methods.interface import (
 #     q(t) = sum_k a_k T_k,      q and q' at ``NODES`` times in a window before the stop,
 #
 # over an interval that is short beside the window, and led back to the constraints behind the position.  That is
-# accepted only if accelerations behind are those of the polynomial, and velocities and positions need no more than a
-# small correction: another branch would show.
+# accepted only if velocities and positions behind need no more than a small correction, and if the velocities lead from
+# the positions before to those behind: another branch would show, or another motion on the same one.
 
 
 #: Times in the window, the degree of the polynomial, and the window's length in distances to the singular position.
@@ -101,6 +101,9 @@ def bridge(
     arrived = led(end, guess)
     size = 1 + np.max(np.abs(states), axis=1)
     near = bool(np.all(np.abs(arrived - guess) <= CORRECTED * size))
+    halfway = fitted(np.array([(times[-1] + end) / 2]))[:, 0]
+    by_velocities = (end - times[-1]) * (states[n:, -1] + 4 * halfway[n:] + arrived[n:]) / 6  # Simpson's rule
+    near &= bool(np.all(np.abs(arrived[:n] - states[:n, -1] - by_velocities) <= CORRECTED * size[:n]))
     if not near or not np.all(np.isfinite(arrived)) or led.near(end, arrived):
         return None
     return Bridge(time, end, time + away, arrived, fitted)
@@ -178,7 +181,7 @@ TIMES = 2
 #: A correction beyond this part of the state is none: the constraints are nearly singular there.
 LARGEST_PART = 1e-2
 
-DO = Message("these methods do: rk4, rk45, dop853, taylor, scipy-rk45, scipy-dop853, radau, bdf")
+DO = Message("these methods do: rk4, rk45, dop853, taylor, rodas5p, scipy-rk45, scipy-dop853, radau, bdf")
 
 #: So many states at ends of steps or questions are kept, to look back from a singular position.
 REMEMBERED = 400

@@ -68,7 +68,7 @@ class LibraryRun(Stepping):
         begin, states = np.array([self.time]), self.state[:, None]
         self._magnitudes = magnitudes(self._rates, self._kinds, begin, states)
         floor = self._magnitudes.floor(self._tolerance, float(np.finfo(float).eps))[:, 0]
-        self._sizes = np.maximum(np.abs(self.state), floor)
+        self.sizes = np.maximum(np.abs(self.state), floor)
         self._solver: Any = None
         self._dense: Any = None
 
@@ -86,7 +86,7 @@ class LibraryRun(Stepping):
         """The solver, which looks at the right-hand side as soon as it is made."""
         time, state = self._first
         options = dict(self._options)
-        options["atol"] = self._tolerance * self._sizes
+        options["atol"] = self._tolerance * self.sizes
         begin, order = np.array([time]), self._method.traits.order or LEAST_ORDER
         steps, rates = first_steps(
             self._rates, order, self._magnitudes, begin, state[:, None], self._tolerance, options["rtol"]
@@ -152,12 +152,12 @@ class LibraryRun(Stepping):
 
     def _measured(self, solver: Any) -> None:
         """The next step's errors are measured by the largest values so far (``magnitudes``)."""
-        if np.any(np.abs(solver.y) > self._sizes):
-            self._sizes = np.maximum(self._sizes, np.abs(solver.y))
+        if np.any(np.abs(solver.y) > self.sizes):
+            self.sizes = np.maximum(self.sizes, np.abs(solver.y))
             if self._method.traits.name == "lsoda":
-                solver._lsoda_solver._integrator.call_args[1] = self._tolerance * self._sizes
+                solver._lsoda_solver._integrator.call_args[1] = self._tolerance * self.sizes
             else:
-                solver.atol = self._tolerance * self._sizes
+                solver.atol = self._tolerance * self.sizes
 
     def _kept_on(self, solver: Any) -> None:
         """The end of the step is led to the constraints, before the solver goes on from there."""

@@ -46,6 +46,9 @@ SHARE = 1 / 32
 #: Nor for so little that its tolerance is below so many roundings of that size.
 ROUNDINGS = 16.0
 
+#: Rates that are smaller parts of the others are roundings.
+NOISE = 1e-12
+
 #: Nor for less than short floats can divide by.
 SMALLEST = 1e-30
 
@@ -86,8 +89,7 @@ def variables(dynamics: Dynamics) -> Variables:
     system = dynamics.system
     names = dynamics.inputs[1 : 1 + dynamics.dimension]
     bounded = set(angle_denominators(system))
-    if dynamics.in_states:
-        bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
+    bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
     bounded &= set(system.coordinates)
     groups = bounded, set(system.velocities), set(system.parameter_names)
     n = len(system.velocities)
@@ -152,7 +154,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reach = (DISPLACED * sizes[placed]).astype(states.dtype)
     largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
     largest = np.maximum(largest, _finite(base))
-    rate, still = largest[moving], states.copy()
+    rate, still = _without_noise(largest[moving], kinds, begin, states), states.copy()
     still[moving] = 0
     push = np.where(rate > 0, rate, 1.0)
     pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
@@ -161,6 +163,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
     arcs = _finite(base)[placed] ** 2 / bends
     sizes[placed] = np.maximum(sizes[placed], LEAST * arcs)
+    given[moving], sizes[placed] = _apart_from_noise(given[moving], sizes[placed], ways, kinds, begin, states)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
     times = np.sqrt(_ratio(path, rate))
@@ -184,6 +187,27 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
     natural[moving] = np.minimum(sizes[moving], np.maximum(own, SHARE * sizes[moving]))
     return Magnitudes(sizes, shortest, natural)
+
+
+def _without_noise(rates: Any, kinds: Variables, begin: Any, states: Any) -> Any:
+    """Rates of velocities, 0 for roundings of forces that cancel: tiny beside the others, weighed by masses."""
+    if np.min(rates, where=rates > 0, initial=np.inf) >= NOISE * np.max(rates, initial=0.0):
+        return rates
+    weighed = rates * kinds.weights(begin, states)
+    return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, rates)
+
+
+def _apart_from_noise(speeds: Any, sizes: Any, ways: Any, kinds: Variables, begin: Any, states: Any) -> tuple[Any, Any]:
+    """|v_j| and S_i, 0 for roundings of what is to be at 0: those with a tiny part of the others' kinetic energy."""
+    paths = _ratio(sizes[:, None], ways)
+    paths = np.where(np.isfinite(paths) & (paths > 0), paths, 0.0)
+    if not any(np.min(a, where=a > 0, initial=np.inf) < NOISE * np.max(a, initial=0.0) for a in (speeds, paths)):
+        return speeds, sizes
+    weights = kinds.weights(begin, states)
+    speeds = np.where(speeds * weights < NOISE * np.max(speeds * weights, axis=0, initial=0.0), 0.0, speeds)
+    paths = paths * weights
+    least = np.min(np.where(paths > 0, paths, np.inf), axis=1, initial=np.inf)
+    return speeds, np.where(least < NOISE * np.max(paths, axis=(0, 1), initial=0.0), 0.0, sizes)
 
 
 def _ratio(a: Any, b: Any) -> Any:

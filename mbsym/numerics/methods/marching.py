@@ -262,7 +262,10 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
 
 
 def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, step: Value) -> None:
-    """The u_i of a step in the rows of ``k``, and f at its begin behind them; the matrix is factorised once."""
+    """The u_i of a step in the rows of ``k``, and f at its begin behind them; the matrix is factorised once.
+
+    They are no numbers where a derivative is not finite: 1/inf = 0 would make a step of it in which nothing moves.
+    """
     x, k, size = f["x"], f["k"], s.size
     slopes = f.slot(s.kind, size + size * size)
     matrix, exchanged = f.slot(s.kind, size * size), f.slot(INTEGER, size)
@@ -272,8 +275,15 @@ def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, ste
     s.evaluate(time, begin)
     f.do("slopes", s.argument, slopes)
     f.store(f.load(INTEGER, f["count"], JACOBIANS) + 1, INTEGER, f["count"], JACOBIANS)
+    nothing = f.slot(s.kind)
+    f.store(0, s.kind, nothing)
+    for i in f.each(size):
+        by_time = f.load(s.kind, slopes, i)
+        f.store(f.load(s.kind, nothing) + (by_time - by_time), s.kind, nothing)
     with f.repeat(size * size) as entry:
-        f.store(0 - f.load(s.kind, slopes, entry + size), s.kind, matrix, entry)
+        slope = f.load(s.kind, slopes, entry + size)
+        f.store(f.load(s.kind, nothing) + (slope - slope), s.kind, nothing)
+        f.store(0 - slope, s.kind, matrix, entry)
     with f.repeat(size) as row:
         place = row * (size + 1)
         f.store(f.load(s.kind, matrix, place) + inverse / tableau.gamma, s.kind, matrix, place)
@@ -287,7 +297,11 @@ def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, ste
         else:
             s.copy(begin, own)
         for i in f.each(size):
-            total = f.load(s.kind, own, i) + h * tableau.slopes[number] * f.load(s.kind, slopes, i)
+            total = (
+                f.load(s.kind, own, i)
+                + f.load(s.kind, nothing)
+                + h * tableau.slopes[number] * f.load(s.kind, slopes, i)
+            )
             if number:
                 total = total + inverse * s.combination(k, coupling, i)
             f.store(total, s.kind, own, i)

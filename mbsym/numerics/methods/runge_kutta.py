@@ -26,6 +26,7 @@ from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clo
 from mbsym.numerics.methods.interface import (
     BLOW_UP,
     LARGEST,
+    NOT_SMOOTH,
     STEP_LIMIT,
     STUCK,
     Breakdown,
@@ -532,6 +533,7 @@ class AdaptiveRun(CompiledRun):
         smallest = 4 * float(np.finfo(self.dtype).eps)
         self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
         self.clock[LONGEST] = 1e30 if setting.longest is None else setting.longest
+        self._dynamics = dynamics
         self._rates = counted(compiled_kernel(dynamics, "right_hand_side", scalar), self.work)
         self._kinds = variables(dynamics)
         self.restart(at, initial)
@@ -583,14 +585,21 @@ class AdaptiveRun(CompiledRun):
         slopes = np.abs(self.k[self.tableau.begin])
         size = float(np.max(np.abs(self.x) / usual, initial=0.0))
         steep = float(np.max(slopes / usual, initial=0.0)) * unit
-        if self.count[INFINITE] or not size < LARGEST or not steep < LARGEST:
+        if not size < LARGEST or not steep < LARGEST:
             fastest = float(np.max(slopes, initial=0.0))
             text = "values or rates grow too large to go on (largest rate [[rate]])"
             message = Message(text, rate=f"{fastest:.2g}")
             return self._fail(BLOW_UP, message, self.clock[TIME], self.x)
-        return self._fail(
-            STUCK, Message("step [[step]]", step=f"{float(self.clock[STEP]):.2g}"), self.clock[TIME], self.x
-        )
+        message = Message("step [[step]]", step=f"{float(self.clock[STEP]):.2g}")
+        if self.count[INFINITE] and isinstance(self.tableau, Rosenbrock):
+            slopes = compiled_kernel(self._dynamics, "slopes")(np.concatenate([[self.clock[TIME]], self.x]))
+            if not np.all(np.isfinite(slopes)):
+                text = "[[method]] needs the derivatives of the rates, and not all of them are finite here"
+                message = Message(text, method=self.tableau.name)
+                return self._fail(NOT_SMOOTH, message, self.clock[TIME], self.x)
+        if self.count[INFINITE]:
+            message = Message("the rates just ahead are not finite")
+        return self._fail(STUCK, message, self.clock[TIME], self.x)
 
 
 @dataclass(frozen=True)

@@ -94,8 +94,16 @@ class Variational(Dynamics):
     @cached_property
     def pivots(self) -> Code:
         """Those of the motion's own matrices."""
-        found = self.base.pivots
-        return Code(self._specialised, self.inputs, tuple(substituted(found.program, found.outputs, self._specialised)))
+        return self._of_motion(self.base.pivots)
+
+    @cached_property
+    def mass_matrix(self) -> Code:
+        """That of the motion itself."""
+        return self._of_motion(self.base.mass_matrix)
+
+    def _of_motion(self, code: Code) -> Code:
+        outputs = substituted(code.program, code.outputs, self._specialised)
+        return Code(self._specialised, self.inputs, tuple(outputs))
 
     @cached_property
     def right_hand_side(self) -> Code:

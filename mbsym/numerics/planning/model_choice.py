@@ -96,6 +96,11 @@ class Propagated(Dynamics):
         return Code(self._simple.pivots.program, self.inputs, self._simple.pivots.outputs)
 
     @cached_property
+    def mass_matrix(self) -> Code:
+        """That of the simpler model."""
+        return Code(self._simple.mass_matrix.program, self.inputs, self._simple.mass_matrix.outputs)
+
+    @cached_property
     def _specialised(self) -> Specialised:
         return Specialised()
 

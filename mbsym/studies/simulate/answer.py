@@ -123,6 +123,7 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
     """What happened, when, and in which state; what was kept."""
     from mbsym.numerics.methods.interface import (
         BLOW_UP,
+        NOT_SMOOTH,
         OUT_OF_REACH,
         SINGULAR,
         SINGULAR_CONSTRAINTS,
@@ -159,8 +160,9 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
             "stop earlier, or let it move less far"
         ),
         STEP_LIMIT: Message(
-            "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method radau"
+            "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method rodas5p"
         ),
+        NOT_SMOOTH: Message("--method dop853 does without them"),
         UNDEFINED: Message("the model says nothing beyond this state; is the sign under a root or a logarithm right?"),
         OUTSIDE: Message("choose a shorter --time, give more points, or say how the table goes on, as 'outside: hold'"),
         SWITCHING: Message(

@@ -332,7 +332,7 @@ def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
         message = Message("--linear does not take constraints into account yet ([[which]])", which=constraints)
         wrong.complain("--linear", "constraints", message, "without them this would be another system")
     if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
-        hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, radau, bdf")
+        hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, rodas5p, radau, bdf")
         message = Message(
             "[[method]] does not keep to constraints ([[which]])", method=request.method, which=constraints
         )
@@ -359,7 +359,7 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
             wrong.complain(option, "variables", message, WAY_OUT)
     if request.method == "lsoda" and any(body.orientation for body in system.bodies):
         lengths = "lsoda does not keep quaternions and unit vectors at their lengths"
-        wrong.complain("--method", "unsuitable-method", lengths, "take dop853, rk4, taylor, radau or bdf")
+        wrong.complain("--method", "unsuitable-method", lengths, "take dop853, rk4, taylor, rodas5p, radau or bdf")
     if request.method in METHODS and METHODS[request.method].traits.conservative:
         words = "[[method]] integrates coordinates and their velocities only, and this system has speeds"
         message = Message(words, method=request.method)
