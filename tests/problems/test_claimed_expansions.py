@@ -6,7 +6,7 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.claims import DIFFERS, EXACT, FACTOR, SCALED, UNDECIDED
+from mbsym.problems.claims import DIFFERS, EXACT, FACTOR, NUMERICAL, SCALED, UNDECIDED
 from mbsym.source import to_text, to_yaml
 
 OSCILLATOR = """mbsym: 1
@@ -277,3 +277,35 @@ def test_a_root_of_a_square_is_not_what_was_squared():
         )
     )
     assert outcomes == [UNDECIDED, UNDECIDED, EXACT, EXACT]
+
+
+FALL = """mbsym: 1
+name: a light ball
+parameters: {{m: positive, c: positive, g: positive, h: positive, eps: positive}}
+bodies: [{{name: ball, attached to: 0, connection point: [0, 0, -z], mass: eps*m, coordinates: [z]{speeds}}}]
+loads: [{{generalized force: {{z: m*g - c*(1 + z/h)*{rate}**2}}}}]
+small parameter: eps
+claims:
+{claims}
+"""
+
+
+@pytest.mark.parametrize(
+    ("of", "speeds", "rate"), [("z", "", "z_dot"), ("v", ", speeds: {v: z_dot}", "v")], ids=["coordinates", "speeds"]
+)
+def test_a_slow_manifold_with_a_square_root_is_compared(of, speeds, rate):
+    """v0 = sqrt(m g/(c d)), v1 = m^2 g/(4 c^2 h d^3 v0), d = 1 + z/h, by hand; the rate of z without speeds."""
+    formulas = (
+        (0, "sqrt(m*g/(c*(1 + z/h)))"),
+        (0, "sqrt(m*g*h/(c*(h + z)))"),
+        (0, "-sqrt(m*g/(c*(1 + z/h)))"),
+        (1, "m**2*g/(4*c**2*h*(1 + z/h)**3*sqrt(m*g/(c*(1 + z/h))))"),
+        (1, "m**2*g/(4*c**2*h*(1 + z/h)**2*sqrt(m*g/(c*(1 + z/h))))"),
+    )
+    claims = "".join(f"  - {{claim: slow manifold, of: {of}, order: {n}, equals: {x}}}\n" for n, x in formulas)
+    analysis = mbsym.loads(FALL.format(speeds=speeds, rate=rate, claims=claims))
+    outcomes = [one.outcome for one in analysis.claims]
+    assert not analysis.defects
+    holds = (EXACT, NUMERICAL)
+    assert [x in holds for x in outcomes] == [True, True, False, True, False]
+    assert outcomes[2] == outcomes[4] == DIFFERS

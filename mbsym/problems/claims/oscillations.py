@@ -32,6 +32,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
 from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived, in_parameters
+from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
@@ -442,7 +443,6 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """The coefficient of eps^n of a fast variable on the slow manifold, or of the rate of a slow one there."""
     told = derived.claimed_manifold
     found, form = told.manifold, derived.speed_form
-    assert form is not None
     names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
     if claim.of not in names:
         raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
@@ -458,11 +458,17 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if told.transfer.images:
         claimed = ring.substitute(claimed, told.transfer.images)
     difference = ring.reduce(claimed - truth)
-    known = form.vanishes(difference)
     result = ClaimResult(claim, about, EXACT, Formula(ring, truth))
+    known = None if form is None else form.vanishes(difference)
     if known is True:
         return result
-    return replace(result, outcome=DIFFERS if known is False else UNDECIDED, difference=Formula(ring, difference))
+    if form is None or found.root is not None:  # a square root may be written with squares in it
+        outcome, where = decided(derived, difference)
+    else:
+        outcome, where = DIFFERS if known is False else UNDECIDED, ""
+    return replace(
+        result, outcome=outcome, where=where, difference=None if outcome == EXACT else Formula(ring, difference)
+    )
 
 
 # Formulas of claims as trigonometric polynomials of a phase, over the numbers in which a solution is told.
