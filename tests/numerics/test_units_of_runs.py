@@ -121,6 +121,9 @@ CHOSEN += [(name, ("microns", "megametres", "milliseconds")[k % 3]) for k, name 
 @pytest.mark.parametrize(("name", "units"), sorted(CHOSEN))
 def test_a_system_runs_alike_in_all_units(name: str, units: str) -> None:
     given, known = as_described(name)
+    by = factors(given.system, OTHER[units])
+    if OTHER[units][2] != 1 and all(by[velocity_name(x)] == by[x] for x in given.system.coordinates):
+        pytest.skip("the time is a number")
     assert_alike(known, run(rescaled(given, OTHER[units]), 2 * OTHER[units][2]))
 
 

@@ -46,6 +46,9 @@ SHARE = 1 / 32
 #: Nor for so little that its tolerance is below so many roundings of that size.
 ROUNDINGS = 16.0
 
+#: Arcs are no longer than what is passed in so many times of the fastest position.
+FARTHEST = 100.0
+
 #: Rates that are smaller parts of the others are roundings.
 NOISE = 1e-12
 
@@ -161,7 +164,10 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
     bends = np.max(ways * rate, axis=1, initial=0.0)
     bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
-    arcs = _finite(base)[placed] ** 2 / bends
+    passing = _ratio(np.where(sizes > 0, sizes, np.inf)[placed], largest[placed])
+    farthest = FARTHEST * np.min(passing, axis=0, initial=np.inf)  # an arc that is longer bends by roundings alone
+    speed = _finite(base)[placed]
+    arcs = np.minimum(speed**2 / bends, np.where(np.isfinite(farthest) & (speed > 0), speed * farthest, np.inf))
     sizes[placed] = np.maximum(sizes[placed], LEAST * arcs)
     given[moving], sizes[placed] = _apart_from_noise(given[moving], sizes[placed], ways, kinds, begin, states)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
