@@ -303,6 +303,9 @@ MOSTLY = 1.2
 #: Rounding in extended arithmetic beside that in float64.
 MORE_DIGITS = 2.0**-11
 
+#: A difference of up to so many times the rounding may be rounding, of which finer tolerances leave all.
+ROUNDED = 4.0
+
 #: Runs further apart than this part of the motion tell nothing of how rounding counts.
 COARSE = 0.03
 
@@ -350,9 +353,11 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
         longest *= SHORTER
         now = bench.run(method, scalar, Setting(tolerance, longest=longest))
         apart, _ = bench.compared(before.states, now.states)
+        if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
+            rounding = max(rounding, apart * MORE_DIGITS)
         gain = apart / last if 0 < last < inf else USUAL_GAIN
         less = max(min(gain, USUAL_GAIN), _ruled(now, longest, bench)) if gain <= LEAST_GAIN else 1.0
-        known = max(apart * less, rounding)
+        known = max(apart * less, rounding + min(apart, ROUNDED * rounding))
         known = max(known, _roundings(scalar) / bench.finest_target)
         if known <= best.known:
             factor = (AIM * goal / apart) ** (1 / USUAL_SLOPE) if apart > 0 else 1.0
