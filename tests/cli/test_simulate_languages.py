@@ -17,6 +17,7 @@ from mbsym_cli.main import main
 TYPED = {"mbsym", "simulate", "yaml", "csv", "json", "heyoka", "SciPy", "float64", "float32", "trajectory", "enclosure"}
 TYPED |= {
     "dop853",
+    "rodas5",  # rodas5p: a letter behind the number is no part of a word here
     "rk45",
     "rk4",
     "taylor",
