@@ -114,15 +114,18 @@ class Shown:
 
 @dataclass(frozen=True)
 class _Source:
-    """What formulas are taken from."""
+    """What formulas are taken from; ``given``: whose letters those are in that no description can hold."""
 
+    given: System
     analysis: Analysis
     formulas: Formulas | None = None
     reduction: Reduced | None = None
 
     @property
     def system(self) -> System:
-        return self.analysis.system if self.reduction is None else self.reduction.system
+        if self.reduction is not None:
+            return self.reduction.system
+        return self.given if self.formulas is not None else self.analysis.system
 
     def lines(self, name: str) -> list[Line]:
         """Raises Failure."""
@@ -203,12 +206,12 @@ def _source(asked: Asked, request: Request, watch: Watch) -> _Source:
             raise Underived("--scale", error) from error
     analysis = Analysis(system, terms=request.terms) if formulas is None else formulas.analysis
     if request.reduce is None:
-        return _Source(analysis, formulas)
+        return _Source(system, analysis, formulas)
     from mbsym.analysis.reducing import reduced
 
     watch("reducing")
     try:
-        return _Source(analysis, formulas, reduced(analysis, request.reduce, formulas, system.claims))
+        return _Source(system, analysis, formulas, reduced(analysis, request.reduce, formulas, system.claims))
     except Failure as error:
         raise Underived("--reduce", error) from error
 
