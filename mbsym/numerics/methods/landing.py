@@ -42,6 +42,7 @@ from mbsym.numerics.methods.interface import (
     Work,
 )
 from mbsym.numerics.methods.led import LedRun, lead
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.runge_kutta import CompiledRun
 from mbsym.numerics.methods.sides import BESIDE, TOGETHER, Leaving, Sides, along, endless, feature_kernel, harmless, met
 
@@ -254,7 +255,6 @@ class LandingRun:
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state; its sides are looked for anew."""
         self.time, self.state = time, np.array(state)
-        self._largest: Any = np.abs(self.state)
         self._sides: tuple[int, ...] | None = None
         self._ahead: Run | None = None
         self._windows: list[_Window] = []
@@ -394,8 +394,9 @@ class LandingRun:
         run = self._run(self._sides)
         if run is not self._ahead or run.time != self.time:
             run.restart(self.time, self.state)
-            if (sizes := getattr(run, "sizes", None)) is not None:  # what stays at a switch has moved before
-                np.maximum(sizes, self._largest, out=sizes)
+            sizes = getattr(run, "sizes", None)
+            if sizes is not None and run is not self._runs.get(None):  # what stays at a switch is measured as it moves
+                sizes[:] = np.maximum(sizes, about(self._dynamics, float(self.time), self.state).sizes[:, 0])
             self._ahead = run
         if self.work.steps >= self._setting.step_limit:
             made = Message("[[count]] steps", count=self.work.steps)
@@ -429,7 +430,6 @@ class LandingRun:
         self._check_sides(piece)
         self._length = max(float(piece.end - piece.start), 0.5 * self._length)  # a piece may be the rest of a step
         self.time, self.state = piece.end, self._ahead.state
-        self._largest = np.maximum(self._largest, np.abs(self.state))
         self._windows = [window for window in self._windows if window.end > self.time]
         self._together = 0
         knots = self._switches.reached(self.time, self._sides or ())
