@@ -38,13 +38,13 @@ from mbsym.numerics.methods.interface import Work, compiled_kernel
 DISPLACED = 1 / 8
 
 #: No component counts for less than this part of the size that the scene would give it.
-LEAST = 1e-4
+LEAST = 1e-6
 
 #: The least part of a size where the rates at the state itself tell less.
 SHARE = 1 / 32
 
 #: Nor for so little that its tolerance is below so many roundings of that size.
-ROUNDINGS = 16.0
+ROUNDINGS = 0.25
 
 #: Arcs are no longer than what is passed in so many times of the fastest position.
 FARTHEST = 100.0
@@ -168,7 +168,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     farthest = FARTHEST * np.min(passing, axis=0, initial=np.inf)  # an arc that is longer bends by roundings alone
     speed = _finite(base)[placed]
     arcs = np.minimum(speed**2 / bends, np.where(np.isfinite(farthest) & (speed > 0), speed * farthest, np.inf))
-    sizes[placed] = np.maximum(sizes[placed], LEAST * arcs)
+    sizes[placed] = np.maximum(sizes[placed], 1e-4 * arcs)
     given[moving], sizes[placed] = _apart_from_noise(given[moving], sizes[placed], ways, kinds, begin, states)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
