@@ -38,13 +38,13 @@ from mbsym.numerics.methods.interface import Work, compiled_kernel
 DISPLACED = 1 / 8
 
 #: No component counts for less than this part of the size that the scene would give it.
-LEAST = 1e-6
+LEAST = 1e-4
 
 #: The least part of a size where the rates at the state itself tell less.
 SHARE = 1 / 32
 
 #: Nor for so little that its tolerance is below so many roundings of that size.
-ROUNDINGS = 0.25
+ROUNDINGS = 16.0
 
 #: Arcs are no longer than what is passed in so many times of the fastest position.
 FARTHEST = 100.0
@@ -120,7 +120,7 @@ class Magnitudes:
     def floor(self, tolerance: float, precision: float) -> Any:
         """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""
         part = max(LEAST, ROUNDINGS * precision / tolerance) if tolerance > 0 else 1.0
-        return np.maximum(part * self.sizes, SMALLEST)
+        return np.maximum(part * self.natural, SMALLEST)
 
 
 def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
