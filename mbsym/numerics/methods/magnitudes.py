@@ -41,7 +41,7 @@ DISPLACED = 1 / 8
 LEAST = 1e-4
 
 #: The least part of a size where the rates at the state itself tell less.
-SHARE = 1 / 32
+SHARE = 1 / 256
 
 #: Nor for so little that its tolerance is below so many roundings of that size.
 ROUNDINGS = 16.0
