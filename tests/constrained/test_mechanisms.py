@@ -54,7 +54,7 @@ def test_the_squeezer_starts_as_published() -> None:
         assert found == pytest.approx(float(truth[name]), rel=1e-12, abs=1e-9)
 
 
-@pytest.mark.parametrize(("tolerance", "error"), [(1e-8, 2e-9), (1e-12, 1e-12)])
+@pytest.mark.parametrize(("tolerance", "error"), [(4e-9, 2e-9), (1e-12, 1e-12)])
 def test_the_squeezer_at_three_hundredths_of_a_second(tolerance: float, error: float) -> None:
     """The best published run reaches 2e-11; angles turn through 15.8 rad, rates are 1e3."""
     truth = reference("andrews_squeezer")["reference"]["recomputed_t003"]
