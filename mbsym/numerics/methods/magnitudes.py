@@ -6,22 +6,26 @@ A step's error in x_i is held against
 
 so that whatever unit a length, a mass or the time is written in, the same steps are taken, but for rounding.  The floor
 is what keeps a component that rests but for rounding from ruling the steps: a small part of the size that the scene
-would give it.  That size is found where a run begins, by evaluating the rates beside its state:
+would give it, with the rates at the state itself (``natural``).  Sizes are found where a run begins, by evaluating the
+rates beside its state:
 
-    q:   S_i = |q_i|, of angles at least 1; of others, which may be at 0 as they pass, at least 1e-4 q_i'^2/|q_i''|
+    q:   S_i = |q_i|, of angles at least 1; of others, which may be at 0 as they pass, at least 1e-4 q_i'^2/|q_i''|,
+         where that is no more than 100 times what q_i passes in the shortest S_k/|q_k'|
     v:   V_j = max(|v_j|, F_j tau_j),   F_j = max |v_j'| where one coordinate is displaced by S_i/8,
          tau_j = sqrt(D_j / F_j),   D_j = min S_i/A_ij over the coordinates that v_j moves, q_i' = A_ij v_j
 
 Of what is at 0 and rests sizes are those that the same kinetic energy gives it: D_j sqrt(M_jj) and V_j sqrt(M_jj) are
-the largest of the others, and S_i = max A_ij D_j.  Columns of derivatives that are 0 have the size of their rate times
-the shortest tau.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by a push
-that has no other measure.
+the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that have, times sqrt(M_jj), less than 1e-12
+of the largest are roundings and count as 0.  Columns of derivatives that are 0 have the size of their rate times the
+shortest tau.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by a push that
+has no other measure.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -49,7 +53,7 @@ ROUNDINGS = 16.0
 #: Arcs are no longer than what is passed in so many times of the fastest position.
 FARTHEST = 100.0
 
-#: Rates that are smaller parts of the others are roundings.
+#: What is a smaller part of the largest, weighed by masses, is a rounding.
 NOISE = 1e-12
 
 #: Nor for less than short floats can divide by.
@@ -97,6 +101,7 @@ def variables(dynamics: Dynamics) -> Variables:
     groups = bounded, set(system.velocities), set(system.parameter_names)
     n = len(system.velocities)
 
+    @cache
     def masses() -> Kernel:
         whole = dynamics.mass_matrix
         return arrays.kernel(Code(whole.program, whole.inputs, whole.outputs[:: n + 1]))
@@ -157,25 +162,21 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reach = (DISPLACED * sizes[placed]).astype(states.dtype)
     largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
     largest = np.maximum(largest, _finite(base))
-    rate, still = _without_noise(largest[moving], kinds, begin, states), states.copy()
+    weights = kinds.weights(begin, states)
+    rate, still = _above_noise(largest[moving], weights), states.copy()
     still[moving] = 0
     push = np.where(rate > 0, rate, 1.0)
     pushed = _beside(rates, begin, still, moving, push.astype(states.dtype))
     ways = _finite(pushed - rates(begin, still)[:, None])[placed] / push  # A_ij, shape (positions, velocities, m)
     bends = np.max(ways * rate, axis=1, initial=0.0)
-    bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
-    passing = _ratio(np.where(sizes > 0, sizes, np.inf)[placed], largest[placed])
-    farthest = FARTHEST * np.min(passing, axis=0, initial=np.inf)  # an arc that is longer bends by roundings alone
-    speed = _finite(base)[placed]
-    arcs = np.minimum(speed**2 / bends, np.where(np.isfinite(farthest) & (speed > 0), speed * farthest, np.inf))
-    sizes[placed] = np.maximum(sizes[placed], 1e-4 * arcs)
-    given[moving], sizes[placed] = _apart_from_noise(given[moving], sizes[placed], ways, kinds, begin, states)
+    arcs = _arcs(kinds, placed, sizes[placed], _finite(base)[placed], largest[placed], bends)
+    sizes[placed] = _sizes_above_noise(np.maximum(sizes[placed], LEAST * arcs), ways, weights)
+    given[moving] = _above_noise(given[moving], weights)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
     times = np.sqrt(_ratio(path, rate))
     speeds = np.maximum(given[moving], np.where(np.isfinite(times), rate * times, 0.0))
     if not (np.all(path > 0) and np.all(speeds > 0)):
-        weights = kinds.weights(begin, states)
         path, speeds = _weighed(path, weights), _weighed(speeds, weights)
         times = np.minimum(np.sqrt(_ratio(path, rate)), _ratio(path, speeds))
         speeds = _weighed(np.maximum(speeds, np.where(np.isfinite(times), rate * times, 0.0)), weights)
@@ -195,25 +196,26 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     return Magnitudes(sizes, shortest, natural)
 
 
-def _without_noise(rates: Any, kinds: Variables, begin: Any, states: Any) -> Any:
-    """Rates of velocities, 0 for roundings of forces that cancel: tiny beside the others, weighed by masses."""
-    if np.min(rates, where=rates > 0, initial=np.inf) >= NOISE * np.max(rates, initial=0.0):
-        return rates
-    weighed = rates * kinds.weights(begin, states)
-    return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, rates)
+def _arcs(kinds: Variables, placed: Any, sizes: Any, base: Any, largest: Any, bends: Any) -> Any:
+    """q_i'^2/|q_i''| of the positions (n, m), 0 of angles; no longer than what the fastest position lets pass."""
+    bends = np.where(kinds.angles[placed][:, None] | (bends <= 0), np.inf, bends)
+    passing = _ratio(np.where(sizes > 0, sizes, np.inf), largest)
+    farthest = FARTHEST * np.min(passing, axis=0, initial=np.inf)  # an arc that is longer bends by roundings alone
+    return np.minimum(base**2 / bends, np.where(np.isfinite(farthest) & (base > 0), base * farthest, np.inf))
 
 
-def _apart_from_noise(speeds: Any, sizes: Any, ways: Any, kinds: Variables, begin: Any, states: Any) -> tuple[Any, Any]:
-    """|v_j| and S_i, 0 for roundings of what is to be at 0: those with a tiny part of the others' kinetic energy."""
+def _above_noise(values: Any, weights: Any) -> Any:
+    """The values (n, m), 0 for those that are roundings: tiny beside the others when all are weighed by masses."""
+    weighed = values * weights
+    return np.where(weighed < NOISE * np.max(weighed, axis=0, initial=0.0), 0.0, values)
+
+
+def _sizes_above_noise(sizes: Any, ways: Any, weights: Any) -> Any:
+    """S_i, 0 for those that are roundings: of D_j sqrt(M_jj) on any way they make a tiny part of the largest."""
     paths = _ratio(sizes[:, None], ways)
-    paths = np.where(np.isfinite(paths) & (paths > 0), paths, 0.0)
-    if not any(np.min(a, where=a > 0, initial=np.inf) < NOISE * np.max(a, initial=0.0) for a in (speeds, paths)):
-        return speeds, sizes
-    weights = kinds.weights(begin, states)
-    speeds = np.where(speeds * weights < NOISE * np.max(speeds * weights, axis=0, initial=0.0), 0.0, speeds)
-    paths = paths * weights
+    paths = np.where(np.isfinite(paths) & (paths > 0), paths, 0.0) * weights
     least = np.min(np.where(paths > 0, paths, np.inf), axis=1, initial=np.inf)
-    return speeds, np.where(least < NOISE * np.max(paths, axis=(0, 1), initial=0.0), 0.0, sizes)
+    return np.where(least < NOISE * np.max(paths, axis=(0, 1), initial=0.0), 0.0, sizes)
 
 
 def _ratio(a: Any, b: Any) -> Any:
