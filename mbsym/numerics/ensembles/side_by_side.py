@@ -175,7 +175,8 @@ class SideBySide:
         constant = np.append(kinds.constant, np.ones(still, bool))
         behind = Variables(angles, moving, constant, kinds.masses)
         found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
-        return Magnitudes(found.sizes[: self.made.size], found.times, found.natural[: self.made.size])
+        size = self.made.size
+        return Magnitudes(found.sizes[:size], found.times, found.natural[:size], found.roundings[:size])
 
     def _flat(self, grouped: Any) -> Any:
         """(rows, members and what fills the last group)."""

@@ -24,7 +24,7 @@ has no other measure.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -44,11 +44,11 @@ DISPLACED = 1 / 8
 #: No component counts for less than this part of the size that the scene would give it.
 LEAST = 1e-4
 
-#: The least part of a size where the rates at the state itself tell less.
-SHARE = 1 / 256
+#: The part of a size that counts where the rates at the state itself tell nothing.
+SHARE = 1 / 32
 
-#: Nor for so little that its tolerance is below so many roundings of that size.
-ROUNDINGS = 16.0
+#: Nor for so little that its tolerance is below so many roundings of that size; velocities change by more than theirs.
+ROUNDINGS, OF_VELOCITIES = 16.0, 1.0
 
 #: Arcs are no longer than what is passed in so many times of the fastest position.
 FARTHEST = 100.0
@@ -114,18 +114,21 @@ def variables(dynamics: Dynamics) -> Variables:
 class Magnitudes:
     """``sizes`` (d, m) that a scene gives the components of m states, and ``times`` (m,) in which it moves them.
 
-    ``natural`` are those with the rates at the states themselves, at least ``SHARE`` of the others: a displacement may
-    lead to where forces are much larger.
+    ``natural`` are those with the rates at the states themselves, of velocities that rest with as much kinetic energy
+    as the others have: a displacement may lead to where forces are much larger.  ``roundings`` (d, 1): of so many,
+    relative to the natural size, no tolerance is less.
     """
 
     sizes: Any
     times: Any
     natural: Any
+    roundings: Any = ROUNDINGS
 
     def floor(self, tolerance: float, precision: float) -> Any:
         """The least L (d, m) for a tolerance in an arithmetic whose next number after 1 is 1 + ``precision``."""
-        part = max(LEAST, ROUNDINGS * precision / tolerance) if tolerance > 0 else 1.0
-        return np.maximum(part * self.natural, SMALLEST)
+        if not tolerance > 0:
+            return np.maximum(self.natural, SMALLEST)
+        return np.maximum(np.maximum(LEAST, self.roundings * precision / tolerance) * self.natural, SMALLEST)
 
 
 def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
@@ -135,7 +138,7 @@ def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magni
     with np.errstate(all="ignore"):
         found = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
     sizes, natural = (np.hstack([getattr(one, name) for one in found]) for name in ("sizes", "natural"))
-    return Magnitudes(sizes, np.concatenate([one.times for one in found]), natural)
+    return replace(found[0], sizes=sizes, times=np.concatenate([one.times for one in found]), natural=natural)
 
 
 def about(dynamics: Dynamics, time: float, state: Any) -> Magnitudes:
@@ -192,8 +195,9 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     natural = sizes.copy()
     own = np.maximum(given[moving], np.sqrt(_finite(base)[moving] * path))
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
-    natural[moving] = np.minimum(sizes[moving], np.maximum(own, SHARE * sizes[moving]))
-    return Magnitudes(sizes, shortest, natural)
+    own = np.maximum(own, _alike(own, weights))
+    natural[moving] = np.minimum(sizes[moving], np.where(own > 0, own, SHARE * sizes[moving]))
+    return Magnitudes(sizes, shortest, natural, np.where(kinds.velocities, OF_VELOCITIES, ROUNDINGS)[:, None])
 
 
 def _arcs(kinds: Variables, placed: Any, sizes: Any, base: Any, largest: Any, bends: Any) -> Any:
@@ -225,8 +229,12 @@ def _ratio(a: Any, b: Any) -> Any:
 
 def _weighed(values: Any, weights: Any) -> Any:
     """The values, those that are 0 replaced by what the same kinetic energy makes of the largest of the others."""
-    largest = np.max(values * weights, axis=0, initial=0.0)
-    found = np.where(values > 0, values, _ratio(largest, weights))
+    return np.where(values > 0, values, _alike(values, weights))
+
+
+def _alike(values: Any, weights: Any) -> Any:
+    """What the kinetic energy of the largest of the values would be in each of them; 0 where masses are not known."""
+    found = _ratio(np.max(values * weights, axis=0, initial=0.0), weights)
     return np.where(np.isfinite(found), found, 0.0)
 
 
