@@ -35,12 +35,12 @@ if TYPE_CHECKING:
 class Expansion(Shown):
     """The manifold with the ring in which it is told.
 
-    ``choice``: which root of the lowest order was taken; ``others``: the values of the fast
-    variables at those that were not; ``unknown``: how many need other roots; ``real``: what makes
-    the square root real, and not zero.  ``missing``: why
-    nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether the roots have negative real
-    parts for all sufficiently small eps > 0, with what that takes of the parameters; ``provided``: what was divided
-    by, and is not zero where the expansion holds; ``velocities``: variables that are rates of others.
+    ``choice``: which root of the lowest order was taken; ``others``: the values of the fast variables at those that
+    were not; ``unknown``: how many are neither rational nor square roots; ``real``: what makes the square root real,
+    and not zero.  ``missing``: why nothing is said of steady states, "" where something is; ``fast``, ``slow``: whether
+    the roots have negative real parts for all sufficiently small eps > 0, with what that takes of the parameters;
+    ``provided``: what was divided by, and is not zero where the expansion holds; ``velocities``: variables that are
+    rates of others.
     """
 
     manifold: SlowManifold

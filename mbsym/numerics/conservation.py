@@ -82,6 +82,7 @@ class Doubt(StrEnum):
     NOT_FINITE = "its rate has no value, or no narrow enclosure, at the states looked at"
     TINY = "its rate is tiny beside its terms, but larger than roundings"
     NO_VALUES = "it has no finite value along this run"
+    NO_MOTION = "the run ends where it begins"
 
 
 class Measure(StrEnum):
@@ -124,6 +125,8 @@ def confronted(
     change = float(np.max(np.abs(values - values[0]))) / scale
     doubt = doubt if standing is Standing.UNDECIDED else None
     found = Conservation(quantity, standing, change, scale, doubt, measure)
+    if standing is Standing.VERIFIED and len(values) < 2:
+        return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.NO_MOTION)
     if standing is Standing.VERIFIED and not change <= CONTRADICTION:
         return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
     return found

@@ -108,11 +108,10 @@ class Answer:
     """What is said of a result: ``lines`` beneath the system's name, ``files``, and ``complaints`` after them.
 
     Of blocks, and of complaints that are messages, the language is that of the description.  ``after``: what stands
-    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath
-    the names of files.  ``owner``: the command whose set
-    the files are, unless it is that of the study; ``more``: what is said behind their names; ``stopped``: what broke
-    off the making of some of them, which is raised when the others have been written; ``text``: what is
-    printed as it is, and nothing else, for other programs.
+    behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath the names
+    of files.  ``owner``: the command whose set the files are, unless it is that of the study; ``more``: what is said
+    behind their names; ``stopped``: what broke off the making of some of them, which is raised when the others have
+    been written; ``text``: what is printed as it is, and nothing else, for other programs.
     """
 
     lines: Iterable[Line | Block] = ()

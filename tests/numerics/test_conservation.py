@@ -326,3 +326,11 @@ def test_where_there_is_nothing_to_watch_that_is_said() -> None:
     for name, none in (("henon-heiles", True), ("heavy-top", False)):
         run = mbsym.simulate(SHIPPED / f"{name}.yaml", 0.1, samples=3, estimate=False, invariants=True)
         assert ("none is known beside the energy" in run.no_invariants) is none is (not run.invariants)
+
+
+def test_a_run_that_ends_where_it_begins_verifies_nothing() -> None:
+    """One value of a quantity does not change; that it does not is no finding."""
+    found = confronted("energy", Standing.VERIFIED, np.array([2.0]), 1.0)
+    assert (found.standing, found.doubt) == (Standing.UNDECIDED, Doubt.NO_MOTION)
+    assert confronted("energy", Standing.PROVED, np.array([2.0]), 1.0).standing is Standing.PROVED
+    assert confronted("energy", Standing.VERIFIED, np.array([2.0, 2.0]), 1.0).standing is Standing.VERIFIED

@@ -111,9 +111,7 @@ def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
         text = "The equations do not contain [[names]]: integrals that do are not looked for here."
         yield say(text, names=named(found.aside))
     if found.rational:
-        text = (
-            "Integrals of problem 7 that are quotients of polynomials in these variables, and none of these: [[names]]."
-        )
+        text = "Integrals of problem 7 that are no polynomials in these variables, but quotients of such: [[names]]."
         yield say(text, names=joined((worded(x) for x in found.rational), ", "))
     if any(name.startswith("exp(") for name in found.field.variables):
         yield Said("Polynomials are those in these variables: what stands in exponentials is none by itself.")
