@@ -79,16 +79,9 @@ class Expansion(Shown):
 
     def moved(self, p: Any) -> Any:
         """A polynomial without the square root in the ring."""
-        root, transfer = self.manifold.root, self.transfer
+        root = self.manifold.root
         names = [root.instead if root is not None and name == root.label else name for name in self.names]
-        places = [(*transfer.parameters, *transfer.variables).index(name) for name in names]
-        terms = {}
-        for monomial, number in p.to_dict().items():
-            exponents = [0] * len(transfer.context.names())
-            for k, power in zip(places, monomial, strict=True):
-                exponents[k] = power
-            terms[tuple(exponents)] = number
-        return transfer.back(transfer.context.from_dict(terms))
+        return self.transfer.told(p, names)
 
 
 def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:

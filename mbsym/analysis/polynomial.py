@@ -78,14 +78,7 @@ class Setting:
 
     def formula(self, p: Any) -> Formula:
         """A polynomial over ``field``, or one with numbers in place of further parameters, as a formula."""
-        places = [(*self.whole.parameters, *self.whole.variables).index(name) for name in p.context().names()]
-        terms = {}
-        for monomial, c in p.to_dict().items():
-            exponents = [0] * len(self.whole.context.names())
-            for k, power in zip(places, monomial, strict=True):
-                exponents[k] = power
-            terms[tuple(exponents)] = c
-        return Formula(self.transfer.ring, self.transfer.back(self.whole.context.from_dict(terms)))
+        return Formula(self.transfer.ring, self.transfer.told(p, p.context().names()))
 
     def quotient_over(self, field: PolynomialField, top: Any) -> Formula:
         """``top`` over the denominator of a field with numbers in place of further parameters."""

@@ -323,6 +323,17 @@ class Transfer:
             bottom *= self(factor) ** exponent
         return self(top), bottom
 
+    def told(self, p: Any, names: Sequence[str]) -> Polynomial:
+        """A polynomial over generators of these names, some of the context's, in the ring."""
+        places = [(*self.parameters, *self.variables).index(name) for name in names]
+        terms = {}
+        for monomial, c in p.to_dict().items():
+            exponents = [0] * len(self.places)
+            for k, power in zip(places, monomial, strict=True):
+                exponents[k] = power
+            terms[tuple(exponents)] = c
+        return self.back(self.context.from_dict(terms))
+
     def back(self, p: Any) -> Polynomial:
         """A polynomial of the context in the ring."""
         total: dict[tuple[int, ...], Any] = {}

@@ -244,14 +244,12 @@ def sentences(found: Expansion) -> Iterator[Said]:
     )
 
 
+#: Of several solutions of the lowest order.
 _CHOICE = {
-    Choice.ON_MOTION: "At the lowest order the fast variables have solutions; their number: [[count]]. This one holds "
-    "the unperturbed motion.",
-    Choice.ATTRACTING: "At the lowest order the fast variables have solutions; their number: [[count]]. This one "
-    "attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the fast rate by [[fast]] is "
-    "negative there).",
-    Choice.FIRST: "At the lowest order the fast variables have solutions; their number: [[count]]. This is the first; "
-    "which of them attract is not decided.",
+    Choice.ON_MOTION: "This one holds the unperturbed motion.",
+    Choice.ATTRACTING: "This one attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the fast "
+    "rate by [[fast]] is negative there).",
+    Choice.FIRST: "This is the first; which of them attract is not decided.",
 }
 
 
@@ -259,11 +257,13 @@ def _choice(found: Expansion) -> Iterator[Said]:
     """Which solution of the lowest order this one begins with, and the others."""
     if found.choice is Choice.ONLY:
         return
-    fast = [_variable(found, name) for name in found.manifold.fast]
-    count = str(1 + len(found.others) + found.unknown)
-    small = Name(found.manifold.field.small)
-    gaps: Gaps = {"count": count, "small": small, "fast": tuple(fast)}
-    yield Said(_CHOICE[found.choice], {k: x for k, x in gaps.items() if f"[[{k}]]" in _CHOICE[found.choice]})
+    fast = tuple(_variable(found, name) for name in found.manifold.fast)
+    text = "At the lowest order the fast variables have solutions; their number: [[count]]."
+    yield say(text, count=str(1 + len(found.others)))
+    gaps: Gaps = (
+        {} if found.choice is not Choice.ATTRACTING else {"small": Name(found.manifold.field.small), "fast": fast}
+    )
+    yield Said(_CHOICE[found.choice], gaps)
     for values in found.others:
         shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
         yield say("Another one begins with [[values]].", values=shown)
