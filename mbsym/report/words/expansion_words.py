@@ -247,8 +247,8 @@ def sentences(found: Expansion) -> Iterator[Said]:
 #: Of several solutions of the lowest order.
 _CHOICE = {
     Choice.ON_MOTION: "This one holds the unperturbed motion.",
-    Choice.ATTRACTING: "This one attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the fast "
-    "rate by [[fast]] is negative there).",
+    Choice.ATTRACTING: "This one attracts for all sufficiently small $[[small]] > 0$ (proved: the derivative of the "
+    "fast rate by [[fast]] is negative there).",
     Choice.FIRST: "This is the first; which of them attract is not decided.",
 }
 
@@ -260,9 +260,8 @@ def _choice(found: Expansion) -> Iterator[Said]:
     fast = tuple(_variable(found, name) for name in found.manifold.fast)
     text = "At the lowest order the fast variables have solutions; their number: [[count]]."
     yield say(text, count=str(1 + len(found.others)))
-    gaps: Gaps = (
-        {} if found.choice is not Choice.ATTRACTING else {"small": Name(found.manifold.field.small), "fast": fast}
-    )
+    attracting = found.choice is Choice.ATTRACTING
+    gaps: Gaps = {"small": Name(found.manifold.field.small), "fast": fast} if attracting else {}
     yield Said(_CHOICE[found.choice], gaps)
     for values in found.others:
         shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
