@@ -166,9 +166,8 @@ class Film:
         every = [x for body in found.bodies for at_ in (body.origin, body.centre) for x in self._track(at_)]
         every += [x for line in found.lines for at_ in (line.start, line.end) for x in self._track(at_)]
         spread = [_width([dot(row, x) for x in every]) for row in look[:2]] if every else [0.0, 0.0]
-        solids = [solid for body in found.bodies if (solid := _shown(body)) is not None]
-        solid = max((max(x.half_axes) for x in solids), default=0.0)
-        wide, tall = (max(x, 2 * solid) for x in spread)
+        solids = [2 * max(solid.half_axes) for body in found.bodies if (solid := _shown(body))]
+        wide, tall = (max([x, *solids]) for x in spread)
         size = max(hypot(wide, tall), 1e-9 * found.extent) or 1.0
         self.unit = min(WIDE / max(wide, 1e-9 * size), TALL / max(tall, 1e-9 * size), 8.0 / size)
         paths = [[(self.unit * x, self.unit * y) for x, y in one] for one in flat]

@@ -184,7 +184,9 @@ def test_a_cart_has_wheels_on_the_ground_and_its_spring_a_wall() -> None:
 
 def test_a_guide_that_turns_in_time_is_no_track() -> None:
     """Of a bead on a rod that turns as prescribed nothing stands still: no ground, no cart, the spring alone."""
-    turning = CART.replace("[x, 0, 0]", "[x*cos(w*t), x*sin(w*t), 0]").replace("g: positive}", "g: positive, w: positive}")
+    turning = CART.replace("[x, 0, 0]", "[x*cos(w*t), x*sin(w*t), 0]").replace(
+        "g: positive}", "g: positive, w: positive}"
+    )
     turning = turning.replace("g: 10}", "g: 10, w: 1}")
     assert {body.name: body.cart for body in picture(mbsym.loads(CART).system).bodies} == {"cart": True, "pole": False}
     assert not any(body.cart for body in picture(mbsym.loads(turning).system).bodies)
