@@ -199,6 +199,32 @@ def test_motion_waits_for_those_who_want_less_of_it(opened: Callable[..., Any]) 
     assert shown.evaluate("() => mbsymViewer.playing.t") == 0
 
 
+TURNTABLE = """mbsym: 1
+name: turntable
+parameters: {w: {sign: positive, value: 2, meaning: rate of the table}}
+bodies:
+  - {name: table, attached to: 0, mass: 0, rotation: {axes: [3], angles: [w*t]}}
+  - {name: arm, attached to: table, mass: 1, mass centre: [1, 0, 0], coordinates: [z], connection point: [0, 0, z]}
+loads: [{spring: {coordinate: z, stiffness: 3}}]
+initial: {z: 0}
+"""
+
+
+def test_the_page_tells_its_values_and_no_rest_of_what_turns(opened: Callable[..., Any]) -> None:
+    """Parameters and initial values stand there, and a table that turns as prescribed does not rest with its arm."""
+    shown = opened(animation_page(mbsym.simulate(mbsym.loads(TURNTABLE), 5.0)), reduced_motion="reduce")
+    said = shown.locator("#viewer").text_content()
+    assert "No coordinate changes in this motion." in said
+    assert "rests" not in said
+    shown.locator("summary", has_text="Values").click()
+    rows = shown.locator("details", has_text="Values").locator("tr")
+    assert [row.split() for row in rows.all_inner_texts()] == [
+        ["w", "2", "rate", "of", "the", "table"],
+        ["z", "0", "initial", "value"],
+        ["dz/dt", "0", "initial", "velocity"],
+    ]
+
+
 def test_the_policy_lets_the_page_run_as_it_is(opened: Callable[..., Any]) -> None:
     """With a hostile name, which stays a name."""
     attack = "</script><script>document.title='owned'</script>"
