@@ -30,10 +30,13 @@ export function remedies(model: Model, complaint: Complaint, path: Path): Remedy
   return found;
 }
 
-/** Names that nobody knows and that are no slip of the pen. */
+/** What a complaint advises where a parameter is all that its name can be: no slip of the pen, no coordinate. */
+const DECLARE = "declare it under 'parameters'";
+
+/** Names that nobody knows and that can only be parameters. */
 export function unknownNames(model: Model): Map<string, Complaint> {
   const text = model.understoodText ?? "";
-  const found = (model.understood?.complaints ?? []).filter((one) => one.code === "unknown-name" && !one.hint?.startsWith("did you mean"));
+  const found = (model.understood?.complaints ?? []).filter((one) => one.code === "unknown-name" && one.hint === DECLARE);
   return new Map(found.map((one) => [text.slice(one.from, one.to), one] as const).filter(([name]) => /^[A-Za-z]\w*$/.test(name) && !/_dot$|_ddot$/.test(name)));
 }
 

@@ -432,7 +432,9 @@ class _Made:
         outlines = shapes(body, values)
         massive = not self.scene.algebra.vanishes(motion.mass)
         only_slides = straight == [True] and not motion.turns and motion.mass_centre.vanishes()
-        on_frame = body.attached_to == places.frame
+        # Where the line itself moves in time there is no track that could stand.
+        known = {*self.system.parameter_names, *self.system.coordinates}
+        on_frame = body.attached_to == places.frame and all(names(x) <= known for x in body.connection_point)
         return Drawn(
             name=name,
             parent=body.attached_to if body.attached_to in places.carried else None,

@@ -19,6 +19,7 @@ from mbsym.picture.values import Closure, Drawn, Picture
 
 def as_json(found: Picture) -> dict[str, Any]:
     """The picture with the sentences that have to stand beside it."""
+    stand_ins = dict(found.notes.stand_ins)
     return {
         "name": found.name,
         "frame": found.frame,
@@ -44,6 +45,7 @@ def as_json(found: Picture) -> dict[str, Any]:
                 "value": number(x.value),
                 "unit": x.unit,
                 "meaning": x.meaning,
+                "given": x.name not in stand_ins,
             }
             for x in found.parameters
         ],

@@ -209,10 +209,10 @@ def shapes(body: Body, values: Mapping[str, Fraction]) -> tuple[Outline, ...]:
     return tuple(found)
 
 
-def ellipsoid(body: Body, values: Mapping[str, Fraction], thickness: float = THICKNESS) -> Ellipsoid | None:
+def ellipsoid(body: Body, values: Mapping[str, Fraction]) -> Ellipsoid | None:
     """The homogeneous ellipsoid with a body's mass and inertia; None where there is none, or it has no number.
 
-    No semi-axis is shorter than ``thickness`` times the longest.
+    No semi-axis is shorter than ``THICKNESS`` times the longest.
     """
     if body.inertia is None:
         return None
@@ -233,7 +233,7 @@ def ellipsoid(body: Body, values: Mapping[str, Fraction], thickness: float = THI
     if not max(moments) > 0 or min(squares) < -ROUNDING * max(squares):
         return None
     half = [sqrt(max(x, 0.0) * (2.5 / mass if mass > 0 else 1.0)) for x in squares]
-    return Ellipsoid(_numbers([max(x, thickness * max(half)) for x in half]), rows, mass > 0)
+    return Ellipsoid(_numbers([max(x, THICKNESS * max(half)) for x in half]), rows, mass > 0)
 
 
 def turned(rotation: Rotation, values: Mapping[str, Fraction]) -> Rows:

@@ -166,8 +166,8 @@ class Film:
         every = [x for body in found.bodies for at_ in (body.origin, body.centre) for x in self._track(at_)]
         every += [x for line in found.lines for at_ in (line.start, line.end) for x in self._track(at_)]
         spread = [_width([dot(row, x) for x in every]) for row in look[:2]] if every else [0.0, 0.0]
-        solid = max((max(body.ellipsoid.half_axes) for body in found.bodies if body.ellipsoid), default=0.0)
-        wide, tall = (max(x, 2 * solid) for x in spread)
+        solids = [2 * max(solid.half_axes) for body in found.bodies if (solid := _shown(body))]
+        wide, tall = (max([x, *solids]) for x in spread)
         size = max(hypot(wide, tall), 1e-9 * found.extent) or 1.0
         self.unit = min(WIDE / max(wide, 1e-9 * size), TALL / max(tall, 1e-9 * size), 8.0 / size)
         paths = [[(self.unit * x, self.unit * y) for x, y in one] for one in flat]
@@ -183,6 +183,12 @@ class Film:
         ranges = {name: (float(min(x)), float(max(x))) for name, x in self._names.items()}
         paper = _Paper(self._found, self._system, (), state, [row[k] for row in self._rows])
         return paper.film(self.unit, ranges)
+
+
+def _shown(body: Drawn) -> Ellipsoid | None:
+    """The ellipsoid that is drawn: of a known size, and telling."""
+    found = body.ellipsoid
+    return found if found is not None and found.true_size and found.telling else None
 
 
 def _width(values: Sequence[float]) -> float:
@@ -348,15 +354,10 @@ class _Paper:
                 middle = combined((1.0, *shape.at), (origin, *axes))
                 rows = tuple(combined(row, axes) for row in shape.axes)
                 yield self._solid(body.name, shape.kind, shape.size, middle, rows)
-            ellipsoid = self._ellipsoid(body)
+            ellipsoid = _shown(body)
             if ellipsoid is not None:
                 rows = tuple(combined(row, axes) for row in ellipsoid.axes)
                 yield self._solid(body.name, "ellipsoid", ellipsoid.half_axes, self.point(body.centre), rows)
-
-    def _ellipsoid(self, body: Drawn) -> Ellipsoid | None:
-        """The one that is drawn: of a known size, and telling."""
-        found = body.ellipsoid
-        return found if found is not None and found.true_size and found.telling else None
 
     def _solid(
         self, of: str, kind: str, size: Sequence[float], middle: Numbers, rows: Sequence[Numbers]
@@ -935,7 +936,7 @@ class _Paper:
             tuple((name, self.state[name]) for name in names_of),
             self.found.frame,
             tuple(name for name in self.unknown if name in self._geometry()),
-            any(self._ellipsoid(body) is not None for body in self.found.bodies),
+            any(_shown(body) is not None for body in self.found.bodies),
         )
 
     def _geometry(self) -> set[str]:

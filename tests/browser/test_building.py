@@ -326,4 +326,23 @@ def test_a_cart_with_a_pole_by_keys_alone(show: Show) -> None:
     assert spring == {"spring": {"coordinate": coordinate, "stiffness": "k"}}
     assert found["parameters"]["k"] == {"sign": "positive", "value": 1}
     window.press("Alt+Shift+Digit4", "Tab", "Tab", "Enter")
-    page.get_by_text("Nothing moves: it rests here.").wait_for()
+    page.get_by_text("No coordinate changes in this motion.").wait_for()
+
+
+def test_a_coordinate_that_is_not_there_becomes_no_parameter(show: Show) -> None:
+    """Of a spring on 'zz' the stiffness is declared; that there is no such coordinate stays a mistake."""
+    window = show(
+        "mbsym: 1\nname: bead\nparameters: {m: positive}\nbodies:\n"
+        "  - {name: bead, attached to: 0, mass: m, coordinates: [x], connection point: [x, 0, 0]}\n"
+    )
+    window.form_of("System")
+    window.page.get_by_label("Add a load", exact=True).click()
+    dialog = window.page.locator("dialog[open]")
+    dialog.get_by_label("Kind", exact=True).select_option(label="spring: on a coordinate")
+    dialog.get_by_label("coordinate", exact=True).fill("zz")
+    dialog.get_by_label("stiffness", exact=True).fill("k")
+    dialog.get_by_role("button", name="Add", exact=True).click()
+    window.told("k is a parameter now")
+    window.settled()
+    assert set(yaml_of(window.text)["parameters"]) == {"m", "k"}
+    assert any("unknown name 'zz'" in words for words in window.complaints)

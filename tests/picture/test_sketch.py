@@ -18,7 +18,7 @@ from mbsym.picture import lettering, picture
 from mbsym.picture.looking import principal, projection
 from mbsym.picture.outlined import hull, outlined
 from mbsym.picture.program import Varied
-from mbsym.picture.sketch import Dot, Sketch, Stroke, sketch
+from mbsym.picture.sketch import Dot, Film, Sketch, Stroke, sketch
 from mbsym.picture.values import View
 from mbsym.report.html.writer import Writer as HtmlWriter
 from mbsym.report.language import Language
@@ -180,6 +180,39 @@ def test_a_cart_has_wheels_on_the_ground_and_its_spring_a_wall() -> None:
     assert last[0] > first[0] >= np.max(box[:, 0])
     assert first[1] == last[1]
     assert letters(found) >= {"M", "m", "l", "k", "x", "a", "F", "g"}
+
+
+def test_a_guide_that_turns_in_time_is_no_track() -> None:
+    """Of a bead on a rod that turns as prescribed nothing stands still: no ground, no cart, the spring alone."""
+    turning = CART.replace("[x, 0, 0]", "[x*cos(w*t), x*sin(w*t), 0]").replace(
+        "g: positive}", "g: positive, w: positive}"
+    )
+    turning = turning.replace("g: 10}", "g: 10, w: 1}")
+    assert {body.name: body.cart for body in picture(mbsym.loads(CART).system).bodies} == {"cart": True, "pole": False}
+    assert not any(body.cart for body in picture(mbsym.loads(turning).system).bodies)
+    assert not strokes(drawn(turning), "ground")
+
+
+WHEEL = """mbsym: 1
+name: wheel
+parameters: {m: positive, l: positive, g: positive, J: positive}
+bodies:
+  - {name: wheel, attached to: 0, mass: 0, rotation: {axes: [3], angles: [a]}, inertia about: joint, inertia: [J, J, J]}
+  - {name: bob, attached to: wheel, mass: m, mass centre: [0, -l, 0]}
+loads: [{uniform gravity: {vector: [0, -g, 0]}}]
+values: {m: 1, l: 1, g: 10, J: 1}
+initial: {a: 1}
+"""
+
+
+def test_a_film_is_as_large_as_what_is_seen_in_it() -> None:
+    """The size of an ellipsoid that has only proportions is not one that could be seen."""
+    units = []
+    for inertia in ("1", "10000"):
+        system = mbsym.loads(WHEEL.replace("J: 1}", f"J: {inertia}}}")).system
+        film = Film(picture(system), system, [0.0, 1.0], {"a": [1.0, -1.0]})
+        units.append(film.unit)
+    assert units[0] == units[1]
 
 
 def test_a_spring_between_points_and_a_follower_force() -> None:

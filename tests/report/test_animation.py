@@ -27,10 +27,13 @@ from mbsym.picture.values import Picture
 from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
 from mbsym.report.figures.figures import figures
 from mbsym.report.figures.motion_figure import view
+from mbsym.report.html.report import asked_motion
+from mbsym.report.language import Language
 from mbsym.report.targets import TARGETS
 from mbsym.report.viewer.motion import Motion, motion_of, moving_picture, run_sentences
 from mbsym.report.viewer.page import animation_page
 from mbsym.simulation import Simulation
+from mbsym.studies.simulate.files import motion_files
 from tests.report.readers import unreadable
 
 
@@ -41,16 +44,12 @@ def run(name: str, time: float, samples: int = 201) -> Simulation:
 
 @cache
 def moving(name: str, time: float) -> tuple[Picture, Motion]:
-    found = moving_picture(run(name, time))
-    assert found is not None
-    return found
+    return moving_picture(run(name, time))
 
 
 @cache
 def page(name: str, time: float) -> str:
-    text = animation_page(run(name, time))
-    assert text is not None
-    return text
+    return animation_page(run(name, time))
 
 
 def data(text: str) -> dict:
@@ -200,6 +199,32 @@ def test_motion_waits_for_those_who_want_less_of_it(opened: Callable[..., Any]) 
     assert shown.evaluate("() => mbsymViewer.playing.t") == 0
 
 
+TURNTABLE = """mbsym: 1
+name: turntable
+parameters: {w: {sign: positive, value: 2, meaning: rate of the table}}
+bodies:
+  - {name: table, attached to: 0, mass: 0, rotation: {axes: [3], angles: [w*t]}}
+  - {name: arm, attached to: table, mass: 1, mass centre: [1, 0, 0], coordinates: [z], connection point: [0, 0, z]}
+loads: [{spring: {coordinate: z, stiffness: 3}}]
+initial: {z: 0}
+"""
+
+
+def test_the_page_tells_its_values_and_no_rest_of_what_turns(opened: Callable[..., Any]) -> None:
+    """Parameters and initial values stand there, and a table that turns as prescribed does not rest with its arm."""
+    shown = opened(animation_page(mbsym.simulate(mbsym.loads(TURNTABLE), 5.0)), reduced_motion="reduce")
+    said = shown.locator("#viewer").text_content()
+    assert "No coordinate changes in this motion." in said
+    assert "rests" not in said
+    shown.locator("summary", has_text="Values").click()
+    rows = shown.locator("details", has_text="Values").locator("tr")
+    assert [row.split() for row in rows.all_inner_texts()] == [
+        ["w", "2", "rate", "of", "the", "table"],
+        ["z", "0", "initial", "value"],
+        ["dz/dt", "0", "initial", "velocity"],
+    ]
+
+
 def test_the_policy_lets_the_page_run_as_it_is(opened: Callable[..., Any]) -> None:
     """With a hostile name, which stays a name."""
     attack = "</script><script>document.title='owned'</script>"
@@ -246,6 +271,26 @@ def test_figures_as_pdf_can_be_read(tmp_path: Path) -> None:
 
 
 # --- in report.html ---
+
+
+def test_where_nothing_is_seen_it_is_told_why() -> None:
+    """A bead at a pole of its force has a place, but its run ends there at once."""
+    text = """mbsym: 1
+name: at a pole
+bodies: [{name: bead, attached to: 0, mass: 1, coordinates: [x], connection point: [x, 0, 0]}]
+loads: [{force: {body: bead, point: [0, 0, 0], components: [1/(x - 1), 0, 0], axes: 0}}]
+initial: {x: 1}
+"""
+    analysis = mbsym.loads(text)
+    motion, why = asked_motion(analysis.system, 3.0, Language("en"))
+    assert motion is None
+    assert why == "the run ended where it began"
+    files = motion_files(mbsym.simulate(analysis, 3.0), None, ("html", "gif"))
+    assert not {"animation.html", "animation.gif"} & set(files.contents)
+    assert [note for note in files.notes if "animation" in note] == [
+        "no animation.html: the run ended where it began",
+        "no animation.gif: the run ended where it began",
+    ]
 
 
 def test_the_report_shows_the_motion_where_that_is_asked_for(opened: Callable[..., Any]) -> None:

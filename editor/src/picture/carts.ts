@@ -19,6 +19,9 @@ export type Ranges = Record<string, [number, number]>;
 /** How far a cart reaches from its middle. */
 export const REACH = CART.long + CART.wheel;
 
+/** Whether gravity acts: what only floats has no wheels and no ground. */
+export const isHeavy = (picture: Picture): boolean => picture.arrows.some((arrow) => arrow.of === "gravity");
+
 const place = (values: Float64Array, at: Triple): Vector3 => new Vector3(values[at[0]]!, values[at[1]]!, values[at[2]]!);
 
 /** A spring or a damper of a coordinate, from where that is zero, or from a wall, to the body. */
@@ -49,7 +52,7 @@ export class Carts {
     ranges: Ranges,
   ) {
     const e = picture.extent;
-    const heavy = picture.arrows.some((arrow) => arrow.of === "gravity");
+    const heavy = isHeavy(picture);
     for (const body of picture.bodies) {
       for (const hinge of body.joint.hinges) {
         const name = hinge.coordinates[0];

@@ -93,6 +93,19 @@ export function press(list: HTMLElement | null, chosen: number | null): void {
   list?.querySelectorAll("button").forEach((button, k) => button.setAttribute("aria-pressed", String(k === chosen)));
 }
 
+/** What the picture and a motion begin with: parameters, coordinates and their velocities. */
+export function valuesTable(picture: Picture): HTMLElement {
+  const time = picture.units.time;
+  const row = (label: string, value: number | null, unit: string, meaning: string) =>
+    make("tr", {}, make("th", { scope: "row" }, label), make("td", {}, `${told(value)}${unit ? ` ${unit}` : ""}`), make("td", {}, meaning));
+  const given = picture.parameters.map((one) => row(one.label, one.value, one.unit, one.given ? one.meaning : `stands in: no value is given. ${one.meaning}`));
+  const start = picture.coordinates.flatMap((one) => [
+    row(one.label, one.value, one.unit, picture.atZero.includes(one.name) ? "no initial value is given" : "initial value"),
+    row(`d${one.label}/dt`, one.velocity, time ? `${one.unit || "1"}/${time}` : "", "initial velocity"),
+  ]);
+  return make("div", { class: "viewer-words" }, make("table", {}, make("tbody", {}, ...given, ...start)));
+}
+
 /** Every body with its place as a table: what the picture shows, for those who do not see it. */
 export function inWords(picture: Picture, values: Float64Array): HTMLElement {
   const unit = picture.units.length ? ` [${picture.units.length}]` : "";

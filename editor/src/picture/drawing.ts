@@ -24,14 +24,14 @@ import {
   Vector3,
 } from "three";
 
-import { Carts, type Ranges } from "./carts.js";
+import { Carts, isHeavy, type Ranges } from "./carts.js";
 import { level } from "./directions.js";
 import { ball, coil, dashpot, globe, head, rod, shapeOf, tube } from "./forms.js";
 import type { State } from "./program.js";
 import type { Body, Line, Picture, Triple } from "./types.js";
 
 /** Told apart by those who see few colours, too (Okabe and Ito), on light and on dark. */
-export const COLOURS = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x8c6bb1, 0x999933];
+const COLOURS = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x8c6bb1, 0x999933];
 const ARROWS = { gravity: 0x8a8f98, force: 0xc62f2f, torque: 0x7b3fb5 };
 const AXES = [0xd0453e, 0x3f9b46, 0x3a6fd8];
 /** Ellipsoids that are not to scale are so large, as a part of the extent. */
@@ -327,7 +327,7 @@ export class Drawing {
   }
 
   /** A faint net that takes the shadows: a wall behind what is plane, else the ground, below the system or at the height
-   * on which it stands; its meshes are a power of ten or half of one. */
+   * on which it stands; its meshes are 1, 2 or 5 times a power of ten. */
   private ground(picture: Picture, values: Float64Array): Group {
     const { up, plane } = picture.view;
     const e = picture.extent;
@@ -342,7 +342,7 @@ export class Drawing {
     const normal = plane ? towards : above;
     const centre = new Vector3(...picture.middle);
     const heights = picture.bodies.flatMap((body) => [body.origin, body.centre]).map((at) => this.from.set(values[at[0]]!, values[at[1]]!, values[at[2]]!).dot(above));
-    const stands = picture.frame === "0" && Math.min(...heights) > -STANDS * e && centre.dot(above) > -0.2 * e && grounded(picture);
+    const stands = picture.frame === "0" && Math.min(...heights) > -STANDS * e && centre.dot(above) > -0.2 * e && isHeavy(picture);
     const height = plane ? centre.dot(normal) - BEHIND * e : stands ? 0 : centre.dot(above) - 1.08 * e;
     this.wall = plane && picture.frame === "0" ? normal.clone().multiplyScalar(-BEHIND * e) : null;
     const middle = centre.addScaledVector(normal, height - centre.dot(normal));
@@ -460,11 +460,6 @@ function isHeld(body: Body | undefined): boolean {
   if (!body) return false;
   const tied = [...body.joint.sprung, ...body.joint.damped];
   return body.cart || body.joint.hinges.some((hinge) => hinge.slides && hinge.coordinates.some((name) => tied.includes(name)));
-}
-
-/** Whether something is on the frame: what only floats has no ground. */
-function grounded(picture: Picture): boolean {
-  return picture.arrows.some((arrow) => arrow.of === "gravity");
 }
 
 /** The angles about which a joint turns; one that turns about a single axis is drawn as its hinge. */

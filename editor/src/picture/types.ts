@@ -23,6 +23,16 @@ export interface Coordinate {
   limited: boolean;
 }
 
+export interface Given {
+  name: string;
+  label: string;
+  value: number | null;
+  unit: string;
+  meaning: string;
+  /** Otherwise a number stands in for one that nobody gave. */
+  given: boolean;
+}
+
 export interface Shape {
   kind: "box" | "sphere" | "cylinder" | "capsule" | "ellipsoid";
   size: number[];
@@ -86,7 +96,7 @@ export interface Picture {
   frame: string;
   units: { length?: string; time?: string };
   coordinates: Coordinate[];
-  parameters: { name: string; label: string; value: number | null; unit: string; meaning: string }[];
+  parameters: Given[];
   program: Program;
   bodies: Body[];
   arrows: Arrow[];

@@ -3,7 +3,7 @@
 import { Vector3 } from "three";
 
 import { make } from "../elements.js";
-import { equilibriaList, inWords, modesList, press, Sliders } from "./controls.js";
+import { equilibriaList, inWords, modesList, press, Sliders, valuesTable } from "./controls.js";
 import { Journey } from "./journey.js";
 import { Swing, told, Track } from "./playing.js";
 import { begun, close, Poses, type State } from "./program.js";
@@ -47,7 +47,7 @@ export class Viewer {
   private readonly speed = make("select", { "aria-label": "Speed" });
   private readonly bar = make("div", { class: "viewer-bar", hidden: true }, this.play, this.scrub, this.clock, this.speed);
   private readonly said = make("p", { class: "viewer-said", "aria-live": "polite" });
-  private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "words", HTMLDetailsElement>;
+  private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "values" | "words", HTMLDetailsElement>;
 
   constructor(readonly host: HTMLElement) {
     this.stage = new Stage((seconds) => this.step(seconds));
@@ -58,6 +58,7 @@ export class Viewer {
       motion: section("Motion", true),
       modes: section("Linear modes", false),
       equilibria: section("Equilibria", false),
+      values: section("Values", false),
       words: section("In words", false),
     };
     for (const name of ["motion", "modes", "equilibria"] as const) this.sections[name].hidden = true;
@@ -92,6 +93,7 @@ export class Viewer {
     this.stop();
     this.forget();
     this.sliders.build(picture.coordinates);
+    this.sections.values.replaceChildren(this.sections.values.firstElementChild!, valuesTable(picture));
     this.stage.drawing.build(picture, Float64Array.from(this.poses.at(begun(picture))), begun(picture));
     this.stage.ink();
     const { values } = this.poses;
@@ -106,8 +108,10 @@ export class Viewer {
     this.traces.show(this.track);
     const { atZero = [] } = this.picture ?? {};
     const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
-    const stays = Object.values(motion.coordinates).every((column) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12));
-    if (stays) first.unshift("Nothing moves: it rests here. It would from elsewhere, or with a velocity.");
+    const stays = (column: (number | null)[]) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12);
+    if (this.track.times.length > 1 && Object.values(motion.coordinates).every(stays)) {
+      first.unshift("No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another.");
+    }
     const lines = (sentences: string[]) => sentences.map((text) => make("p", { class: "viewer-soft" }, text));
     const how = make("details", { class: "viewer-how" }, make("summary", {}, "How it was computed"), ...lines(motion.sentences));
     this.fill("motion", this.traces.element, ...lines([...first, ...motion.doubts]), how);

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from mbsym.algebra.failures import Failure
+from mbsym.expressions.message import Message
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.picture.sketch import Dot, Film, Ink, Mark, Place
 from mbsym.report.viewer.motion import moving_picture
@@ -27,18 +29,18 @@ PATHS = ((179, 55, 47), (46, 139, 87), (217, 130, 43), (142, 94, 162), (23, 162,
 THICK = {Ink.BODY: 4, Ink.GUIDE: 3, Ink.SOLID: 2, Ink.THIN: 1, Ink.HIDDEN: 1}
 
 
-def animation_gif(run: Simulation) -> bytes | None:
-    """The file; None where nothing can be drawn.  The same run gives the same bytes (with one version of Pillow)."""
-    found = moving_picture(run)
-    if found is None:
-        return None
-    picture, motion = found
+def animation_gif(run: Simulation) -> bytes:
+    """The file.  The same run gives the same bytes (with one version of Pillow).
+
+    Raises Failure as ``moving_picture`` does, and where nothing is drawn on paper.
+    """
+    picture, motion = moving_picture(run)
     film = Film(picture, run.system, motion.times, {**motion.coordinates, **motion.velocities})
     count = len(motion.times)
     chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
     drawn = _Picture(film, [int(k) for k in chosen], run)
     if not drawn.size > 0:
-        return None
+        raise Failure(Message("no body has a place that could be drawn"))
     frames = [drawn.frame(k) for k in drawn.marks]
     each = max(SHORTEST, round(100 * SECONDS / len(frames)))
     palette = frames[-1].quantize(64, Image.Quantize.MEDIANCUT)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.expressions.message import Message, counted
+from mbsym.expressions.message import counted
 from mbsym.expressions.tree import text
 from mbsym.formulas.mathml import mathml_names, spelled_name
 from mbsym.model.system import System
@@ -104,11 +104,9 @@ def asked_motion(system: System, time: float | None, language: Language) -> tupl
     from mbsym.simulation.request import COORDINATES
 
     try:
-        run = simulate(scenario(system), Request(time, variables=COORDINATES))
+        return run_data(simulate(scenario(system), Request(time, variables=COORDINATES))), ""
     except (Incomplete, Failure) as reason:
         return None, language.say(message_of(reason))
-    data = run_data(run)
-    return data, "" if data is not None else language.say(Message("no body has a place that could be drawn"))
 
 
 # The interconnection of the bodies as SVG, drawn from its layout; text of the page's own fonts and colours.

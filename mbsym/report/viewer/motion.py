@@ -67,14 +67,11 @@ def motion(
     return motion_of(simulate(scenario(system, overrides), replace(request, variables=COORDINATES), watch))
 
 
-def moving_picture(run: Simulation) -> tuple[Picture, Motion] | None:
-    """A run with the system that moves in it; None where there is nothing to draw, or too little to be seen."""
+def moving_picture(run: Simulation) -> tuple[Picture, Motion]:
+    """A run with the system that moves in it.  Raises Failure with why there is nothing to be seen."""
     if len(run.times) < 2:
-        return None
-    try:
-        return picture_at(Start(_drawn(run))), motion_of(run)
-    except Failure:
-        return None
+        raise Failure(Message("the run ended where it began"))
+    return picture_at(Start(_drawn(run))), motion_of(run)
 
 
 def _drawn(run: Simulation) -> Scenario:

@@ -105,19 +105,16 @@ def _page(system: System, data: Markup) -> str:
     )
 
 
-def animation_page(run: Simulation) -> str | None:
-    """``animation.html``: the page of a run; None where there is nothing to be seen."""
-    data = run_data(run)
-    return None if data is None else _page(run.system, data)
+def animation_page(run: Simulation) -> str:
+    """``animation.html``: the page of a run.  Raises Failure as ``moving_picture`` does."""
+    return _page(run.system, run_data(run))
 
 
-def run_data(run: Simulation) -> Markup | None:
-    """What the viewer reads of a run; None where there is nothing to be seen."""
-    found = moving_picture(run)
-    if found is None:
-        return None
-    picture = as_json(found[0])
-    return _data(picture, motion_json(found[1], picture["program"]["inputs"]))
+def run_data(run: Simulation) -> Markup:
+    """What the viewer reads of a run.  Raises Failure as ``moving_picture`` does."""
+    drawn, moving = moving_picture(run)
+    picture = as_json(drawn)
+    return _data(picture, motion_json(moving, picture["program"]["inputs"]))
 
 
 def _data(

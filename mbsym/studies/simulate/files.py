@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
+from mbsym.algebra.failures import Failure, message_of
 from mbsym.expressions.message import Message
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.report.language import Language
@@ -173,26 +174,29 @@ def _section(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     return section_figure(run.section, run.system, note(run.trajectory), kinds)
 
 
+def _animated_page(run: Simulation) -> bytes:
+    from mbsym.report.viewer.page import animation_page
+
+    return animation_page(run).encode()
+
+
+def _animated_gif(run: Simulation) -> bytes:
+    from mbsym.report.figures.animation_gif import animation_gif
+
+    return animation_gif(run)
+
+
 def _animation(run: Simulation, formats: Sequence[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
-    if not {"html", "gif"} & set(formats):
-        return {}, ()
-    files: dict[str, bytes | None] = {}
-    if "html" in formats:
-        from mbsym.report.viewer.page import animation_page
-
-        page = animation_page(run)
-        files["animation.html"] = None if page is None else page.encode()
-    if "gif" in formats:
-        from mbsym.report.figures.animation_gif import animation_gif
-
-        files["animation.gif"] = animation_gif(run)
-    none = tuple(
-        Message("no [[file]]: no body has a place that could be drawn", file=name)
-        for name, data in files.items()
-        if data is None
-    )
-    return {name: data for name, data in files.items() if data is not None}, none
+    made: dict[str, bytes] = {}
+    lacking = []
+    for kind, drawn in (("html", _animated_page), ("gif", _animated_gif)):
+        name = f"animation.{kind}"
+        try:
+            made |= {name: drawn(run)} if kind in formats else {}
+        except Failure as reason:
+            lacking.append(Message("no [[file]]: [[why]]", file=name, why=message_of(reason)))
+    return made, tuple(lacking)
 
 
 def _pictures(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
