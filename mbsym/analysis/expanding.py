@@ -351,12 +351,12 @@ def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...
 def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
     """The unperturbed motion, by variables in speeds, by generators in coordinates; why there is none otherwise."""
     if not analysis.system.motion:
-        return "no unperturbed motion is given"
+        return Message("no unperturbed motion is given")
     try:
         if analysis.speed_form is None:
             scene, equilibrium = analysis.parameters_scene, analysis.equilibrium
             if equilibrium.impossible:
-                return "the given motion does not exist"
+                return Message("the given motion does not exist")
             return unperturbed_with(scene, equilibrium.determined(scene))
         found = analysis.first_order
     except Unavailable as unavailable:

@@ -84,7 +84,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
     chosen, left = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
     if not chosen:
-        raise NoClosedForm("no integrals are known but those of geometry")
+        raise NoClosedForm("no polynomial integrals are known but those of geometry")
     signs = {one.name: one.sign for one in analysis.system.parameters}
     floating = len(field.relations) if lagrangian else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)

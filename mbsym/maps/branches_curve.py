@@ -47,6 +47,8 @@ REDUCTION = 400_000_000
 #: Why something at the ends of the space is left open.
 MASS_OPEN = "where the mass matrix is singular is not looked at"
 INFINITY_OPEN = "whether branches go to infinity is not looked at: roots beside lengths"
+INFINITY_UNDECIDED = "whether branches go to infinity is not decided"
+CONTINUUM_OPEN = "whether infinitely many equilibria at one value are real"
 
 
 class Varied:
@@ -299,7 +301,7 @@ class Curve(Varied):
                 if at is None or compare(p, at) == 0:
                     shown = self._shown_at(table, family, p)
                     continua += [p] if shown else []
-                    unfinished += [] if shown else ["whether infinitely many equilibria at one value are real"]
+                    unfinished += [] if shown else [CONTINUUM_OPEN]
         return CurvePoints(tuple(points), tuple(continua), throughout, tuple(dict.fromkeys(unfinished)))
 
     def _conjugates(self, table: Unknowns, family: Family) -> list[Number]:
@@ -376,7 +378,7 @@ class Curve(Varied):
             if self._constant_on(table, family):
                 numbers += self._conjugates(table, family)
             else:
-                unfinished.append("whether branches go to infinity is not decided")
+                unfinished.append(INFINITY_UNDECIDED)
         return CurvePoints((), tuple(x for x in numbers if x is not None), False, tuple(dict.fromkeys(unfinished)))
 
 

@@ -363,7 +363,7 @@ class Writer:
             if widths[k] <= least[k]:
                 break
             widths[k] -= 1
-        for group in self._groups(widths):
+        for group in self._groups(widths, _telling(texts[1:])):
             for number, row in enumerate(texts):
                 cells = {k: self._wrapped(row[k], widths[k]) if k in folded else [row[k]] for k in group}
                 styles = {k: TITLE if number == 0 else _first(rows[number - 1][k]) for k in group}
@@ -380,13 +380,16 @@ class Writer:
     def _wrapped(text: str, width: int) -> list[str]:
         return wrap(text, max(width, 1), break_long_words=False, break_on_hyphens=False) or [""]
 
-    def _groups(self, widths: Sequence[int]) -> Iterator[list[int]]:
-        """Columns that fit beside each other; the first one is in front of each group."""
-        group, taken = [0], widths[0] if widths else 0
-        for k, width in list(enumerate(widths))[1:]:
-            if len(group) > 1 and taken + 2 + width > self.width:
+    def _groups(self, widths: Sequence[int], front: int) -> Iterator[list[int]]:
+        """Columns that fit beside each other; the first ``front`` (one, if these are wide) begin each group."""
+        if sum(widths[:front]) + 2 * front > self.width // 2:
+            front = 1
+        before, taken_before = list(range(front)), sum(widths[:front]) + 2 * (front - 1)
+        group, taken = list(before), taken_before
+        for k, width in list(enumerate(widths))[front:]:
+            if len(group) > front and taken + 2 + width > self.width:
                 yield group
-                group, taken = [0], widths[0]
+                group, taken = list(before), taken_before
             group.append(k)
             taken += 2 + width
         yield group if widths else []
@@ -445,6 +448,12 @@ class Writer:
 
 def _plain(parts: Iterable[tuple[str, str]]) -> str:
     return "".join(text for text, _ in parts).replace(UNBROKEN, " ")
+
+
+def _telling(rows: Sequence[Sequence[str]]) -> int:
+    """How many of the first columns tell the rows apart; one, if not even all do."""
+    known = (k for k in range(1, len(rows[0])) if len({tuple(row[:k]) for row in rows}) == len(rows)) if rows else ()
+    return next(iter(known), 1)
 
 
 def _first(parts: Iterable[tuple[str, str]]) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import isfinite, log, sqrt
+from math import log, sqrt
 from typing import Any
 
 import numpy as np
@@ -96,9 +96,9 @@ def measured(
         eps = part * (Fraction(1) if system.small.powers else base.parameters[system.small.name])
         here = _Numbers(found, base.parameters, eps)
         flow, first = here.flow(), [start[name] for name in manifold.slow]
+        begun = start | dict(zip(manifold.fast, here.on_manifold(first), strict=True))
         if time is None:
             time = _span(flow, np.array(first, dtype=float))
-        begun = start | dict(zip(manifold.fast, here.on_manifold(first), strict=True))
         if system.speeds:
             own = replace(own, declared=tuple(begun[name] for name in names))
         else:
@@ -134,7 +134,7 @@ class _Numbers:
         if root is not None:
             square = rationals.fraction(root.square(*at))
             if square < 0:
-                raise NotMeasured("the manifold is not real there")
+                raise NotMeasured("the manifold is not real at the initial state")
             at[root.place] = rationals.exact(Fraction(sqrt(square)))
         return at
 
@@ -190,9 +190,12 @@ class _Numbers:
 def _span(flow: Flow, s: Floats) -> float:
     """How long: some multiple of 1/|df/ds| at the beginning, in two digits."""
     step = 1e-6 * (1 + np.abs(s))
-    slopes = [(flow(s + d) - flow(s - d)) / (2 * h) for d, h in zip(np.diag(step), step, strict=True)]
-    rate = float(np.linalg.norm(np.array(slopes), 2))
-    if not isfinite(rate) or rate < 1e-9:
+    with np.errstate(all="ignore"):
+        slopes = np.array([(flow(s + d) - flow(s - d)) / (2 * h) for d, h in zip(np.diag(step), step, strict=True)])
+    if not np.isfinite(slopes).all():
+        raise NotMeasured("the flow on the manifold has no derivatives at the initial state")
+    rate = float(np.linalg.norm(slopes, 2))
+    if rate < 1e-9:
         raise NotMeasured("the flow on the manifold does not change there; ask for a --time")
     return float(f"{SPAN / rate:.2g}")
 

@@ -39,6 +39,7 @@ def _methods() -> tuple[str, ...]:
 
 
 SETTINGS = Settings("NAME=VALUE", "Replace a value; repeatable.", "-s", "--set", declared=lambda texts: True)
+BEFORE = "measured by an earlier command, seconds too; --anew measures again"
 METHODS = Words(None, "Some of them, separated by commas.", "-m", choices=_methods, what="method", every="all")
 BUDGET = "Work worth so many seconds on a usual machine, counted, not timed; less than 30 may be too little."
 
@@ -147,7 +148,7 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     trade, models, target = found.trade, found.models, request.target
     truth = trade.reference
     if answered.before:
-        yield line("  ", say(Message("measured by an earlier command, seconds too; --anew measures again")))
+        yield line("  ", say(Message(BEFORE)))
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
     error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
@@ -229,13 +230,17 @@ def _without_reference(error: Breakdown, request: Request) -> Message:
 
 def together(found: Sequence[tuple[Asked, Request, Found]]) -> Iterator[Block]:
     """What the target costs, scene by scene: the setting of least time, or the most accurate one where none does."""
-    from mbsym.report.content import aligned, column
+    from mbsym.report.content import aligned, column, paragraph
     from mbsym.report.runs.tradeoff_table import compared
 
     names = ("scene", "method", "setting", "error", "evaluations", "steps", "time", "cost", "reached")
     columns = [column(Message(name), right=name not in ("scene", "method", "setting", "reached")) for name in names]
     rows = [(asked.system.name, one.measured.trade, request.target) for asked, request, one in found]
     yield aligned(columns, compared(rows))
+    before = [asked.system.name for asked, _, one in found if one.before]
+    if before:
+        told = Message(BEFORE)
+        yield paragraph(told if len(before) == len(found) else joined([", ".join(before), told], ": "))
 
 
 STUDY = Study(

@@ -125,6 +125,19 @@ def test_a_second_question_measures_nothing(cache: Path, tmp_path: Path, monkeyp
             assert len(measured) == before + 1, more
 
 
+def test_scenes_say_what_was_measured_before(cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Beside, "allowed", True)
+    told = "measured by an earlier command, seconds too; --anew measures again"
+    quick = (*QUICK, "--no-fidelity")
+    scenes = (PENDULUM, SHIPPED / "spring-pendulum.yaml")
+    mbsym("tradeoff", PENDULUM, *quick, "-o", tmp_path)
+    one_of_two = mbsym("tradeoff", *scenes, *quick, "-o", tmp_path)
+    assert " ".join(one_of_two.output.split()).endswith(f"Simple pendulum: {told}")
+    both = mbsym("tradeoff", *scenes, *quick, "--target", "1e-5", "-o", tmp_path)
+    assert told in both.output
+    assert f": {told}" not in both.output
+
+
 def test_several_scenes_are_compared_in_one_table(tmp_path: Path) -> None:
     done = mbsym("tradeoff", PENDULUM, SHIPPED / "spring-pendulum.yaml", *QUICK, "-o", tmp_path)
     assert done.exit_code == 0, done.output

@@ -128,6 +128,11 @@ def written(folder: Path) -> set[str]:
 FIGURES = ("histories", "phase-planes", "drift", "motion", "mass-centres")
 
 
+def test_help_names_every_method() -> None:
+    text = " ".join(CliRunner().invoke(main, ["simulate", "--help"]).output.split()).partition("Options:")[0]
+    assert not [name for name in METHODS if not any(f" {name}{sign}" in text for sign in " ,;")]
+
+
 def test_table_figures_and_summary(tmp_path: Path) -> None:
     done = mbsym(DOUBLE, "--time", 3, "--samples", 301, "--out", tmp_path)
     assert done.exit_code == 0, done.output

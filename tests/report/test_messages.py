@@ -23,6 +23,7 @@ from mbsym.algebra.failures import NoClosedForm, NoValue, message_of
 from mbsym.analysis.stages import NoResult
 from mbsym.batch import outcome
 from mbsym.expressions.message import GAP, Counted, Message
+from mbsym.maps import branches_curve
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
@@ -41,6 +42,7 @@ from mbsym.problems.stability.sentences import _SENTENCES as because
 from mbsym.problems.stability.word import Word
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.latex.writer import escaped
+from mbsym.report.maps.words import _DOUBTS
 from mbsym.report.messages import messages, plurals
 from mbsym.report.runs.plan_words import TITLES
 from mbsym.report.schemas import schema
@@ -237,6 +239,10 @@ def words_of_types() -> set[str]:
     found |= {one for one in because.values() if isinstance(one, str)}
     found |= {str(called(key)) for key in properties(schema("results"))}
     found |= {*Standing, *Doubt, *Measure, *Lacking, *Certainty, *TITLES.values(), *of_runs()}
+    found |= {
+        *_DOUBTS.values(),
+        *(x for name, x in vars(branches_curve).items() if name.endswith(("_OPEN", "_UNDECIDED"))),
+    }
     found |= {text(Remark(code, data)) for code in Said for data in DATA if _takes(code, data)}
     return {x for x in found - {"", Place.SUFFICIENT.value, Method.NONE.value} if said.has_words(x)}
 

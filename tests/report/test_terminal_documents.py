@@ -14,7 +14,19 @@ import mbsym
 from mbsym.expressions.safe import UNBROKEN
 from mbsym.formulas.names import greek
 from mbsym.problems.normal_forms.result import Theorem
-from mbsym.report.content import Display, Graded, Notation, Relation, Rows, Strong, Symbol, exact, paragraph
+from mbsym.report.content import (
+    Display,
+    Graded,
+    Notation,
+    Relation,
+    Rows,
+    Strong,
+    Symbol,
+    aligned,
+    column,
+    exact,
+    paragraph,
+)
 from mbsym.report.language import Language
 from mbsym.report.messages import messages
 from mbsym.report.plain_writer import STYLES, Writer
@@ -99,6 +111,27 @@ def test_lines_are_as_wide_as_the_terminal_and_nothing_is_cut(
     lines = [line for line in whole.splitlines() if not re.search(r"\[| = \(", line) and not re.search(r"\d s$", line)]
     assert len(lines) > 40
     assert not [line for line in lines if " ".join(line.split()) not in joined and str(tmp_path) not in line]
+
+
+def test_a_row_is_known_in_each_part_of_a_table_that_is_too_wide() -> None:
+    """Columns that tell the rows apart begin each part: the first alone where it does, or where they are wide."""
+    write = Writer(readable=True, width=24)
+
+    def drawn(*rows: tuple[str, ...]) -> list[list[str]]:
+        titles = ("name", "step", "error", "work", "cost")
+        return [x.text.split() for x in write.block(aligned([column(title) for title in titles], rows))]
+
+    first, second = ("rk4", "1/2", "1.0e-01", "12", "3"), ("rk4", "1/4", "2.0e-03", "24", "6")
+    begins = {0: "name", 1: "rk4", 2: "rk4"}
+    lines = drawn(first, second)
+    assert [line[0] for line in lines] == [*begins.values()] * (len(lines) // 3)
+    assert [line[1] for line in lines] == ["step", "1/2", "1/4"] * (len(lines) // 3)
+    assert len(lines) > 3
+    assert sorted(x for line in lines[1::3] for x in line[2:]) == sorted(first[2:])
+    apart = drawn(first, ("rk5", *second[1:]))
+    assert [line.count("step") for line in apart[::3]] == [1] + [0] * (len(apart) // 3 - 1)
+    wide = drawn(first, (first[0], "1/4096/4096", *second[2:]))
+    assert [line.count("step") for line in wide[::3]] == [1] + [0] * (len(wide) // 3 - 1)
 
 
 def test_matrices_are_drawn_where_they_fit() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
 from mbsym.expressions import message
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.maps.boundaries import Condition, Origin
 from mbsym.maps.boxes import BoxMap
 from mbsym.maps.branches_events import Event
@@ -246,7 +246,7 @@ def critical_words(found: Branches, at: Cell) -> str:
 def remark_words(one: Remark) -> Message:
     """A sentence of the terminal on what is not proved."""
     told = Message(_DOUBTS[one.doubt])
-    return Message("[[told]] ([[about]])", told=told, about=one.about) if one.about else told
+    return Message("[[told]] ([[about]])", told=told, about=worded(one.about)) if one.about else told
 
 
 def stable_words(verdicts: Iterable[Verdict | None]) -> str:

@@ -186,9 +186,9 @@ class Command(Request):
     velocity in its own axes, kinetic energy; T, U, T - U), figures as svg, png, pdf, and the moving system in three
     dimensions as html (one page with time controls, without network) and gif.
 
-    Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit); radau, lsoda, bdf (stiff
-    systems); taylor (very exact, needs heyoka); with a fixed step rk4 and, for conservative systems, midpoint,
-    midpoint4, midpoint6 (whose energy does not drift).
+    Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit); rodas5p (stiff systems,
+    compiled), radau, lsoda, bdf (stiff systems, of SciPy), scipy-rk45, scipy-dop853; taylor (very exact, needs heyoka);
+    with a fixed step rk4 and, for conservative systems, midpoint, midpoint4, midpoint6 (whose energy does not drift).
 
     --vary integrates many motions at once, on a grid or drawn at random; written are ensemble.csv (mean, standard
     deviation, extremes and quantiles at every time), members.csv (values and final state of each), fan charts and
