@@ -77,7 +77,8 @@ class Judge:
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        return not ignorable(self.analysis)[0] and higher.forces_bend(self.analysis)
+        known = higher.forces_bend(self.analysis) and installed("mbsym.problems.normal_forms")
+        return known and not ignorable(self.analysis)[0]
 
     def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
         """A verdict of step 1, with what the nonlinear system adds: steps 2 and 3.

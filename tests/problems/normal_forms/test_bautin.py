@@ -134,5 +134,5 @@ def test_problem_6_and_lists_of_equilibria_say_what_problem_11_does() -> None:
     """-x^4 x' takes energy wherever the oscillator is not at rest; without it "stable" is all."""
     lost = mbsym.loads(LINE.format(force="-x**4*x_dot", potential="0", a="0"))
     assert lost.stability.numerical.word == "asymptotically stable"
-    assert [one.verdict.word for one in mbsym.equilibria(lost).equilibria] == ["asymptotically stable"]
+    assert [*mbsym.equilibria(lost).table["verdict"]] == ["asymptotically stable"]
     assert mbsym.loads(LINE.format(force="0", potential="0", a="0")).stability.numerical.word == "stable"
