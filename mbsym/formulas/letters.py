@@ -34,8 +34,11 @@ from mbsym.expressions.tree import Call, Expression, names, substitute
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import angles_or
 
-#: Longer formulas stay as they are: nobody reads them, and it may take long.  Unasked for only short ones are tried.
-MOST_TERMS, MOST_UNASKED = 400, 60
+#: Formulas with more terms stay as they are: nobody reads them, and it may take long.
+MOST_TERMS = 1000
+#: Of formulas with more terms (letters asked for; unasked) a step is tried only where it leaves fewer terms by
+#: ``SHORTER``: to see how much there is to read takes far more time than to count terms.
+MOST_READ, MOST_READ_UNASKED = 400, 60
 #: Candidate terms of products that the steps of one formula may take, by each route.
 WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
@@ -186,7 +189,7 @@ class Rewriter:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
         self._equal: dict[tuple[int, ...], list[Polynomial]] = {}
         self.letters = letters
-        self.most_terms, self.work = (MOST_TERMS, WORK) if letters.asked else (MOST_UNASKED, WORK_UNASKED)
+        self.work, self.most_read = (WORK, MOST_READ) if letters.asked else (WORK_UNASKED, MOST_READ_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
         self.values = self._expanded(letters, held, ring)
         moving = [name for name, value in self.values.items() if not _constant(value, ring)]
@@ -308,7 +311,7 @@ class Rewriter:
         return known[1]
 
     def _written(self, polynomial: Polynomial) -> Written | None:
-        if not self.steps or len(polynomial) > self.most_terms or polynomial.is_constant():
+        if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
             return None
         try:
             with self.ring.whole.budget(self.work):
@@ -319,12 +322,12 @@ class Rewriter:
     def _shortest(self, polynomial: Polynomial) -> Written | None:
         ring, whole = self.ring, self.ring.whole
         found: _Fraction = ring.fraction(self._carry(polynomial))
-        if len(found[0]) > self.most_terms or not self._applicable(found, self.steps, True):
+        if len(found[0]) > MOST_TERMS or not self._applicable(found, self.steps, True):
             return None  # over one denominator it may be long
         routes = [self._improved(found)]
         with suppress(Failure, ZeroDivisionError), ring.budget(self.work):
             chain = self._chain(found)
-            if chain is not None:
+            if chain is not None and not (self._long(found) and _terms(chain) > _terms(found) * SHORTER):
                 routes.append(self._improved(chain))
         routes = [x for x in routes if x is not found]
         if not routes:
@@ -338,12 +341,23 @@ class Rewriter:
         return Written(ring, best, used)
 
     def _improved(self, found: _Fraction) -> _Fraction:
-        """What single steps make of it, each of which leaves less to read."""
-        least = self._read(found)
+        """What single steps make of it, each of which leaves less to read, or far fewer terms of many."""
         with suppress(Failure), self.ring.budget(self.work):  # what is found within the budget is as good
+            if self._long(found):
+                while (few := min(self._candidates(found), key=lambda x: x[0], default=None)) is not None:
+                    if few[0] > _terms(found) * SHORTER:
+                        break
+                    found = few[1]
+                if self._long(found):
+                    return found
+            least = self._read(found)
             while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
                 least, found = tried
         return found
+
+    def _long(self, found: _Fraction) -> bool:
+        """Whether to read it would take too long: its terms are counted in place of that."""
+        return len(found[0]) > self.most_read
 
     def _read(self, found: _Fraction) -> int:
         """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
@@ -392,19 +406,19 @@ class Rewriter:
 
     def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
         """(how much there is to read, what is left) by the step that leaves least."""
-        candidates: list[tuple[int, int, _Fraction]] = []
+        fewest = sorted(self._candidates(found), key=lambda x: x[0])[:WRITTEN]
+        return min(((self._read(x), x) for _, x in fewest), key=lambda x: x[0], default=None)
+
+    def _candidates(self, found: _Fraction) -> Iterator[tuple[int, _Fraction]]:
+        """(terms, what is left) by each step that leaves neither more terms nor more denominators."""
         most = _terms(found)
         for step in self._applicable(found, self.steps):
             try:
                 after = self._after(found, step)
             except (Failure, ZeroDivisionError):
                 continue
-            if after is not None and len(after[1]) <= len(found[1]):
-                terms = _terms(after)
-                if terms <= most:
-                    candidates.append((terms, len(candidates), after))
-        shown = [x for _, _, x in sorted(candidates, key=lambda x: x[:2])[:WRITTEN]]
-        return min(((self._read(x), x) for x in shown), key=lambda x: x[0], default=None)
+            if after is not None and len(after[1]) <= len(found[1]) and (terms := _terms(after)) <= most:
+                yield terms, after
 
     def _joined(self, found: _Fraction) -> Polynomial:
         ring, result = self.ring, found[0]
