@@ -4,7 +4,7 @@ A letter L that stands for N/D is the relation L D - N = 0.  Where that is A v^d
 v, v^d may be written as -B/A, which takes v out of a formula (d = 1) or its high powers; all that cancels is cancelled.
 What is left equals the formula by the relations alone: putting the definitions back gives it again, in the ring.
 Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
-(``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other
+(``size``: names, numbers, functions, signs, brackets, fractions) by a twentieth at least and brings in neither other
 symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
 wherever that leaves no denominator.
 
@@ -44,7 +44,7 @@ WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
 #: What is left to read at most, as a share of what there was: after one step, and after all of them.
-STEP, SHORTER = Fraction(9, 10), Fraction(4, 5)
+STEP, SHORTER = Fraction(19, 20), Fraction(4, 5)
 #: With more letters than this that hold declared symbols they are tried one by one only.
 MOST_CHAINED = 16
 #: Generators beside those of the ring, for what the definitions adjoin.
