@@ -30,7 +30,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import MOST_DEGREE, Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Tower
 from mbsym.expressions.rates import ENDINGS
-from mbsym.expressions.tree import Call, Expression, names, substitute
+from mbsym.expressions.tree import Call, Expression, names, sign_by_structure, substitute
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import angles_or
 
@@ -117,24 +117,30 @@ def lettered(ring: Ring, polynomial: Polynomial) -> tuple[Ring, Polynomial]:
 
 
 class LetterRing(Ring):
-    """The ring ``whole`` with letters besides: ``moving`` ones vary with the state, ``fixed`` ones do not."""
+    """The ring ``whole`` with letters besides: ``moving`` ones vary with the state, those in ``fixed`` do not.
+
+    Positive and nonnegative ones among these are known as such: sqrt(w**2) = w.
+    """
 
     shortest = True
 
-    def __init__(self, whole: Ring, moving: Sequence[str], fixed: Sequence[str]) -> None:
+    def __init__(self, whole: Ring, moving: Sequence[str], fixed: Mapping[str, Expression]) -> None:
         def of(kind: str) -> list[str]:
             return [g.name for g in whole.generators if g.kind == kind and g.argument is None and g.name != "pi"]
 
         def parameters(indices: Iterable[int]) -> list[str]:
             return [whole.generators[k].name for k in indices if whole.generators[k].kind == "parameter"]
 
+        signs = dict.fromkeys(parameters(whole._positive), "positive")
+        positive = [name for name, value in fixed.items() if sign_by_structure(value, signs) == "positive"]
+        roots = [name for name, value in fixed.items() if isinstance(value, Call) and value.function == "sqrt"]
         super().__init__(
             of("coordinate"),
             [*of("prescribed"), *moving],
             [*of("parameter"), *fixed],
             whole.angles,
-            positive=parameters(whole._positive),
-            nonnegative=parameters(whole._nonnegative),
+            positive=[*signs, *positive],
+            nonnegative=[*parameters(whole._nonnegative), *roots],
             spare=whole.spare + FURTHER,
             terms=whole.most_terms,
             typed=whole.typed,
@@ -194,7 +200,7 @@ class Rewriter:
         self.values = self._expanded(letters, held, ring)
         moving = [name for name, value in self.values.items() if not _constant(value, ring)]
         own = {g.name for g in ring.generators if g.kind == "parameter"}
-        fixed = [name for name in self.values if name not in moving and name not in own]
+        fixed = {name: value for name, value in self.values.items() if name not in moving and name not in own}
         self.ring = LetterRing(ring, moving, fixed)
         self.named = _named(self.ring)
         self.places = {name: next(iter(occurring([self.named[name]]))) for name in self.values}
