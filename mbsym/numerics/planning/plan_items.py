@@ -103,8 +103,11 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            arithmetic, way = np.minimum(DOUBLED * apart, measured), Certainty.MEASURED
-            measured = np.maximum(measured - arithmetic, DOUBLED * twin.errors)
+            rounding = np.minimum(DOUBLED * apart, measured)
+            method = np.maximum(measured - rounding, DOUBLED * twin.errors)
+            # Where the two cancel in part, what was measured is not more for being told apart: they share it.
+            arithmetic, way = rounding * (measured / np.where(measured > 0, rounding + method, 1.0)), Certainty.MEASURED
+            measured = measured - arithmetic
         except (Breakdown, Unusable):
             pass
     return (
