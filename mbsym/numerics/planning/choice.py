@@ -17,7 +17,7 @@ from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.prices import COMPILED, cost
+from mbsym.numerics.planning.prices import cost
 
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
@@ -93,7 +93,7 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
         found = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
         if found is not None and found < least:
             best, least = METHODS[name], found
-        if found is not None and name in COMPILED:
+        if found is not None and METHODS[name].traits.compiled:
             break  # what is not compiled costs more, its trial, too
     if best is explicit:
         text = "motions die out at rates up to [[rate]], yet explicit steps cost less here, by counted work"

@@ -19,7 +19,7 @@ import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
@@ -77,16 +77,6 @@ TRIES = 5
 
 #: Costs of runs that differ by less than this factor are alike: prices say no more.
 ALIKE = 1.1
-
-#: The finest tolerances that the compiled methods take: some roundings; and that SciPy's do.
-FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
-FINEST_OF_SCIPY = 2.5e-14
-
-
-def finest(method: Method, scalar: str) -> float:
-    """The least tolerance that is not silently taken for a larger one."""
-    own = method.traits.name in ("dop853", "rk45", "taylor")
-    return FINEST[scalar] if own else max(FINEST[scalar], FINEST_OF_SCIPY)
 
 
 @dataclass(frozen=True)
@@ -261,7 +251,7 @@ def _next(trial: Trial, goal: float, slope: float, spacing: float) -> Setting | 
     if trial.setting.step is not None:
         return replace(trial.setting, step=min(_round(trial.setting.step * factor), spacing))
     wanted = _round(min(trial.fineness * factor, 1e-2))
-    least = finest(trial.method, trial.scalar)
+    least = trial.method.traits.finest(trial.scalar)
     if wanted < least:
         return None if trial.fineness <= least else replace(trial.setting, tolerance=least)
     return replace(trial.setting, tolerance=wanted)
@@ -341,14 +331,14 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
     before = bench.run(method, scalar, Setting(tolerance, longest=longest))
     best = _taken(before, inf, tolerance)
     while True:
-        least = finest(method, scalar)
+        least = method.traits.finest(scalar)
         stalled = last < inf and gain > LEAST_GAIN and last * bench.finest_target < COARSE
         if stalled or tolerance <= 2 * least:
             if scalar == EXTENDED or not _extended(bench, method):
                 return best
             # Whatever of the last difference is rounding, grown along the motion, is smaller by the ratio of roundings.
             scalar, last, rounding = EXTENDED, inf, last * MORE_DIGITS if last < inf else inf
-            least = finest(method, scalar)
+            least = method.traits.finest(scalar)
         coarser, tolerance = tolerance, max(tolerance * APART, least)
         longest *= SHORTER
         now = bench.run(method, scalar, Setting(tolerance, longest=longest))

@@ -35,7 +35,6 @@ from mbsym.numerics.planning.pilot import (
     Bench,
     Trial,
     Yardstick,
-    finest,
     places,
     rows,
     searched,
@@ -120,7 +119,7 @@ def first_setting(contender: Contender, tolerance: float, best: Trial | None, en
     traits = contender.method.traits
     if not traits.fixed:
         found = best.setting.tolerance if best is not None and best.setting.tolerance else tolerance
-        return Setting(tolerance=min(max(found, finest(contender.method, contender.scalar)), 1e-3))
+        return Setting(tolerance=min(max(found, contender.method.traits.finest(contender.scalar)), 1e-3))
     evaluations = best.work.evaluations if best is not None else 4_000
     return Setting(step=min(float(f"{end / max(10, evaluations / 4):.1e}"), spacing))
 
@@ -188,7 +187,7 @@ def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, flo
         return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
     worse = max(worse, min(1.0, (found.fineness / COARSEST) ** USUAL_SLOPE))
     tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
-    if tolerance < finest(found.method, found.scalar):
+    if tolerance < found.method.traits.finest(found.scalar):
         return None
     growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
     return found.cost * growth, f"{traits.name} {tolerance:.0e}", tolerance
