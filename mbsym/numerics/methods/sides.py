@@ -380,14 +380,16 @@ class Leaving:
         known = series(shifted)
         if free_of_zeros(known) and shifted[0] > 0:
             return None
-        if not resolved(known, 1e-14 * size) and depth > 0:
+        # The places are times: what their rounding makes of the values is not to be resolved.
+        rounding = size * max(1e-14, 1e-15 * abs(float(end)) / (end - start))
+        if not resolved(known, rounding) and depth > 0:
             middle = 0.5 * (start + end)
             for a, b in ((start, middle), (middle, end)):
                 place = self._left(k, piece, a, b, along(self._values, piece, a, b)[k], depth - 1)
                 if place is not None:
                     return place
             return None
-        if not resolved(known, 1e-14 * size) and len(self._passed.unresolved) < MOST_KEPT:
+        if not resolved(known, rounding) and len(self._passed.unresolved) < MOST_KEPT:
             self._passed.unresolved.append(start)
         # Beside a switch that was just passed, what is within the tolerance of it is at it.
         near = 0.1 * self._tolerance if begins and abs(values[0]) < 1e-6 * (1 + size) else 0.0
