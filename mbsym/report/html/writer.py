@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import singledispatchmethod
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 from markupsafe import Markup, escape
 
@@ -323,8 +323,8 @@ class Writer:
         """Between these a line may end: those of each formula, with what stands beside."""
         pieces = [""]
         for part in parts:
-            breaks = isinstance(part, Formula) and not self._is_withheld(part)
-            first, *rest = formulas.pieces(part) if breaks else [self.math(part)]
+            whole = not isinstance(part, Formula) or self._is_withheld(part)
+            first, *rest = [self.math(part)] if whole else formulas.pieces(cast("Formula", part))
             pieces[-1] += first
             pieces += rest
         return pieces
