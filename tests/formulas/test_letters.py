@@ -19,9 +19,12 @@ import mbsym
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.elimination import eliminate
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.analysis.expanding import expansion
 from mbsym.formulas import letters as module
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.letters import Letters, Rewriter, letters_as, rewriter, size
+from mbsym.report.letters import in_letters, letters_of
+from mbsym.report.words.expansion_words import coefficients
 from mbsym_cli.main import main
 
 PARAMETERS = ("a", "b", "c", "k", "m", "l", "J")
@@ -210,10 +213,6 @@ def test_what_is_written_is_shorter_by_the_length_that_is_documented():
 
 def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
     """tests/references, satellite with a damper, 1.4: term by term, in lambda, G and kappa."""
-    from mbsym.analysis.expanding import expansion
-    from mbsym.report.letters import in_letters
-    from mbsym.report.words.expansion_words import coefficients
-
     analysis = mbsym.load(SHIPPED / "satellite-with-damper-slow.yaml")
     found = {(x.variable, x.rate, x.order): x.formula for x in coefficients(expansion(analysis, 2, {}))}
     with in_letters(analysis.system, None) as used:
@@ -224,6 +223,23 @@ def test_the_slow_flow_of_the_satellite_with_a_damper_is_the_paper_s():
     assert texts["r", True, 2] == "-(rho*(lam + r)*G + (lam - r)*(3*lam + r)*p)*q/(kappa*s)"
     assert used == {"lam", "G"}
     assert max(map(len, texts.values())) < 165  # 452 in raw parameters
+
+
+def test_the_third_order_of_that_flow_is_in_the_paper_s_letters_too():
+    """Up to 185 terms in parameters; the linear terms are those of number 11 in docs/papers/damper.md."""
+    analysis = mbsym.load(SHIPPED / "satellite-with-damper-slow.yaml")
+    flow = {x.variable: x.formula for x in coefficients(expansion(analysis, 3, {})) if x.rate and x.order == 3}
+    with in_letters(analysis.system, None):
+        texts = {key: str(value) for key, value in flow.items()}
+    assert "- lam**2*(lam + r)*(lam - r)**2*p - " in texts["q"]
+    assert texts["q"].endswith(" - lam*delta*(lam + r)*(lam - r)**2*q)/kappa**2")
+    for name in "pq":
+        assert not set(re.findall(r"\w+", texts[name])) & {"eta", "s"}
+        assert len(texts[name]) < 450, texts[name]  # 2,000 in parameters
+    system = analysis.system
+    assert not _differs(
+        flow["q"].ring, rewriter(flow["q"].ring, letters_of(system)), flow["q"].polynomial, random.Random(5)
+    )
 
 
 def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_path: Path) -> None:

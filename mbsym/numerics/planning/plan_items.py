@@ -103,11 +103,11 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            rounding = np.minimum(DOUBLED * apart, measured)
-            method = np.maximum(measured - rounding, DOUBLED * twin.errors)
-            # Where the two cancel in part, what was measured is not more for being told apart: they share it.
-            arithmetic, way = rounding * (measured / np.where(measured > 0, rounding + method, 1.0)), Certainty.MEASURED
-            measured = measured - arithmetic
+            # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
+            both = apart + twin.errors
+            counted = (both > 0) & np.isfinite(both)
+            arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
+            measured, way = measured - arithmetic, Certainty.MEASURED
         except (Breakdown, Unusable):
             pass
     return (
