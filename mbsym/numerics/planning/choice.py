@@ -37,7 +37,8 @@ class Choice:
     """A method and why.
 
     ``decay`` is the fastest rate at which a motion dies out and ``frequency`` the greatest angular frequency, both from
-    the Jacobian at the initial state; ``measured`` says what trials came to, if there were any.  They count work
+    the Jacobian at the initial state; ``turned`` where the motion is known to become stiff on the way: ``decay`` is
+    then the fastest one where it does.  ``measured`` says what trials came to, if there were any.  They count work
     (``mbsym.numerics.planning.prices``), so that neither the machine nor what else runs decides anything.
     """
 
@@ -46,6 +47,12 @@ class Choice:
     decay: float
     frequency: float
     measured: str = ""
+    turned: bool = False
+
+    @property
+    def stiff(self) -> bool:
+        """Whether stability rules explicit steps at first or on the way."""
+        return self.turned or self.method.traits.implicit
 
 
 def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLOAT64) -> Choice:

@@ -21,7 +21,7 @@ from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
 
 #: Where within a step, its end included, and how many places in all.
@@ -287,6 +287,9 @@ PARTS = 2_000
 #: The longest step falls, too: two runs whose steps it rules would else be one and the same.
 SHORTER = 0.7
 
+#: A finer run makes at most so many times the steps of the one before, of which so many are few.
+MORE_STEPS, FEW = 20, 1_000
+
 #: A run with fewer steps than so many times the least number is ruled by the longest step.
 MOSTLY = 1.2
 
@@ -319,16 +322,18 @@ class Yardstick:
     start: float
 
 
-def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Yardstick:
+def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most: int = 10_000_000) -> Yardstick:
     """A reference for settings that are to reach rho <= ``goal``; the finest that there is where none is good enough.
 
-    Raises Breakdown where a run does not come to the end.
+    Raises Breakdown where the first run does not come to the end in ``most`` steps.
     """
     longest = float(bench.times[-1]) / PARTS
     if bench.longest is not None:  # a longer one would be cut to it in every run, and two of them be one run
         longest = min(longest, bench.longest)
     scalar, last, gain, rounding = FLOAT64, inf, USUAL_GAIN, 0.0
-    before = bench.run(method, scalar, Setting(tolerance, longest=longest))
+    # An error is known by a finer run: the first one leaves room for that.
+    tolerance = max(tolerance, method.traits.finest(scalar) / APART**2)
+    before = bench.run(method, scalar, Setting(tolerance, None, most, longest))
     best = _taken(before, inf, tolerance)
     while True:
         least = method.traits.finest(scalar)
@@ -341,7 +346,13 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Ya
             least = method.traits.finest(scalar)
         coarser, tolerance = tolerance, max(tolerance * APART, least)
         longest *= SHORTER
-        now = bench.run(method, scalar, Setting(tolerance, longest=longest))
+        limit = min(most, MORE_STEPS * max(before.work.steps, FEW))
+        try:
+            now = bench.run(method, scalar, Setting(tolerance, None, limit, longest))
+        except Breakdown as ended:  # its steps fall below what rounding lets them be
+            if ended.kind != STEP_LIMIT:
+                raise
+            return best
         apart, _ = bench.compared(before.states, now.states)
         if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
             rounding = max(rounding, apart * MORE_DIGITS)
