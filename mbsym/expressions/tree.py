@@ -383,6 +383,42 @@ def substitute(expression: Expression, replacements: Mapping[str, Expression]) -
 _PRECEDENCE = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}
 
 
+def sign_by_structure(expression: Expression, signs: Mapping[str, str]) -> str | None:
+    """What the signs of its names force: ``positive``, ``negative`` (both strict), or None for not known."""
+    match expression:
+        case Number(value):
+            return "positive" if value > 0 else "negative" if value < 0 else None
+        case Name("pi"):
+            return "positive"
+        case Name(name):
+            return signs.get(name) if signs.get(name) in ("positive", "negative") else None
+        case Negative(operand):
+            return {"positive": "negative", "negative": "positive"}.get(sign_by_structure(operand, signs) or "")
+        case Operation("+", left, right):
+            return _common(sign_by_structure(left, signs), sign_by_structure(right, signs))
+        case Operation("-", left, right):
+            return _common(sign_by_structure(left, signs), sign_by_structure(Negative(right), signs))
+        case Operation("*" | "/", left, right):
+            first, second = sign_by_structure(left, signs), sign_by_structure(right, signs)
+            if first is None or second is None:
+                return None
+            return "positive" if first == second else "negative"
+        case Operation("**", base, Number(exponent)):
+            inner = sign_by_structure(base, signs)
+            if inner == "positive" or (inner == "negative" and exponent.denominator == 1 and exponent.numerator % 2):
+                return inner
+            return "positive" if inner == "negative" and exponent.denominator == 1 else None
+        case Call("exp" | "cosh", _):
+            return "positive"
+        case Call("sqrt", argument) if sign_by_structure(argument, signs) == "positive":
+            return "positive"
+    return None
+
+
+def _common(first: str | None, second: str | None) -> str | None:
+    return first if first == second else None
+
+
 def text(expression: Expression) -> str:
     """The expression in the syntax of descriptions; parsing it again gives an equal tree."""
     return _text(expression, 0)

@@ -4,9 +4,9 @@ A letter L that stands for N/D is the relation L D - N = 0.  Where that is A v^d
 v, v^d may be written as -B/A, which takes v out of a formula (d = 1) or its high powers; all that cancels is cancelled.
 What is left equals the formula by the relations alone: putting the definitions back gives it again, in the ring.
 Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
-(``size``: names, numbers, functions, signs, brackets, fractions) by a tenth at least and brings in neither other
-symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
-wherever that leaves no denominator.
+(``size``: names, numbers, functions, signs, brackets, fractions) by a twentieth at least and brings in neither other
+symbols nor denominators, and all of them together save a fifth, or a tenth where nothing is left in the formula of what
+the letters are made of.  Letters that were asked for take out a symbol wherever that leaves no denominator.
 
 Which letters there are is said once around all that is written (``letters_as``); printers ask ``lettered``.
 """
@@ -30,18 +30,22 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import MOST_DEGREE, Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Tower
 from mbsym.expressions.rates import ENDINGS
-from mbsym.expressions.tree import Call, Expression, names, substitute
+from mbsym.expressions.tree import Call, Expression, names, sign_by_structure, substitute
 from mbsym.formulas.shape import length, present
 from mbsym.formulas.tree import angles_or
 
-#: Longer formulas stay as they are: nobody reads them, and it may take long.  Unasked for only short ones are tried.
-MOST_TERMS, MOST_UNASKED = 400, 60
+#: Formulas with more terms stay as they are: nobody reads them, and it may take long.
+MOST_TERMS = 1000
+#: Of formulas with more terms (letters asked for; unasked) a step is tried only where it leaves fewer terms by
+#: ``SHORTER``: to see how much there is to read takes far more time than to count terms.
+MOST_READ, MOST_READ_UNASKED = 400, 60
 #: Candidate terms of products that the steps of one formula may take, by each route.
 WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
-#: What is left to read at most, as a share of what there was: after one step, and after all of them.
-STEP, SHORTER = Fraction(9, 10), Fraction(4, 5)
+#: What is left to read at most, as a share of what there was: after one step, and after all of them; after all of them
+#: where none of the symbols is left that the letters are made of.
+STEP, SHORTER, INSTEAD = Fraction(19, 20), Fraction(4, 5), Fraction(9, 10)
 #: With more letters than this that hold declared symbols they are tried one by one only.
 MOST_CHAINED = 16
 #: Generators beside those of the ring, for what the definitions adjoin.
@@ -114,24 +118,30 @@ def lettered(ring: Ring, polynomial: Polynomial) -> tuple[Ring, Polynomial]:
 
 
 class LetterRing(Ring):
-    """The ring ``whole`` with letters besides: ``moving`` ones vary with the state, ``fixed`` ones do not."""
+    """The ring ``whole`` with letters besides: ``moving`` ones vary with the state, those in ``fixed`` do not.
+
+    Positive and nonnegative ones among these are known as such: sqrt(w**2) = w.
+    """
 
     shortest = True
 
-    def __init__(self, whole: Ring, moving: Sequence[str], fixed: Sequence[str]) -> None:
+    def __init__(self, whole: Ring, moving: Sequence[str], fixed: Mapping[str, Expression]) -> None:
         def of(kind: str) -> list[str]:
             return [g.name for g in whole.generators if g.kind == kind and g.argument is None and g.name != "pi"]
 
         def parameters(indices: Iterable[int]) -> list[str]:
             return [whole.generators[k].name for k in indices if whole.generators[k].kind == "parameter"]
 
+        signs = dict.fromkeys(parameters(whole._positive), "positive")
+        positive = [name for name, value in fixed.items() if sign_by_structure(value, signs) == "positive"]
+        roots = [name for name, value in fixed.items() if isinstance(value, Call) and value.function == "sqrt"]
         super().__init__(
             of("coordinate"),
             [*of("prescribed"), *moving],
             [*of("parameter"), *fixed],
             whole.angles,
-            positive=parameters(whole._positive),
-            nonnegative=parameters(whole._nonnegative),
+            positive=[*signs, *positive],
+            nonnegative=[*parameters(whole._nonnegative), *roots],
             spare=whole.spare + FURTHER,
             terms=whole.most_terms,
             typed=whole.typed,
@@ -186,12 +196,12 @@ class Rewriter:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
         self._equal: dict[tuple[int, ...], list[Polynomial]] = {}
         self.letters = letters
-        self.most_terms, self.work = (MOST_TERMS, WORK) if letters.asked else (MOST_UNASKED, WORK_UNASKED)
+        self.work, self.most_read = (WORK, MOST_READ) if letters.asked else (WORK_UNASKED, MOST_READ_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
         self.values = self._expanded(letters, held, ring)
         moving = [name for name, value in self.values.items() if not _constant(value, ring)]
         own = {g.name for g in ring.generators if g.kind == "parameter"}
-        fixed = [name for name in self.values if name not in moving and name not in own]
+        fixed = {name: value for name, value in self.values.items() if name not in moving and name not in own}
         self.ring = LetterRing(ring, moving, fixed)
         self.named = _named(self.ring)
         self.places = {name: next(iter(occurring([self.named[name]]))) for name in self.values}
@@ -308,7 +318,7 @@ class Rewriter:
         return known[1]
 
     def _written(self, polynomial: Polynomial) -> Written | None:
-        if not self.steps or len(polynomial) > self.most_terms or polynomial.is_constant():
+        if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
             return None
         try:
             with self.ring.whole.budget(self.work):
@@ -319,31 +329,44 @@ class Rewriter:
     def _shortest(self, polynomial: Polynomial) -> Written | None:
         ring, whole = self.ring, self.ring.whole
         found: _Fraction = ring.fraction(self._carry(polynomial))
-        if len(found[0]) > self.most_terms or not self._applicable(found, self.steps, True):
+        if len(found[0]) > MOST_TERMS or not self._applicable(found, self.steps, True):
             return None  # over one denominator it may be long
         routes = [self._improved(found)]
         with suppress(Failure, ZeroDivisionError), ring.budget(self.work):
             chain = self._chain(found)
-            if chain is not None:
+            if chain is not None and not (self._long(found) and _terms(chain) > _terms(found) * SHORTER):
                 routes.append(self._improved(chain))
         routes = [x for x in routes if x is not found]
         if not routes:
             return None
         found = min(routes, key=self._read)
-        best = self._joined(found)
-        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * SHORTER:
-            return None
-        held = self._held(found)
+        best, held = self._joined(found), self._held(found)
         used = frozenset(name for name in self.values if self.places[name] in held)
+        left = {ring.generators[k].name for k in held}
+        instead = not any(ring.generators[k].name in left for name in used for k in self._symbols(name))
+        share = INSTEAD if instead else SHORTER
+        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * share:
+            return None
         return Written(ring, best, used)
 
     def _improved(self, found: _Fraction) -> _Fraction:
-        """What single steps make of it, each of which leaves less to read."""
-        least = self._read(found)
+        """What single steps make of it, each of which leaves less to read, or far fewer terms of many."""
         with suppress(Failure), self.ring.budget(self.work):  # what is found within the budget is as good
+            if self._long(found):
+                while (few := min(self._candidates(found), key=lambda x: x[0], default=None)) is not None:
+                    if few[0] > _terms(found) * SHORTER:
+                        break
+                    found = few[1]
+                if self._long(found):
+                    return found
+            least = self._read(found)
             while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
                 least, found = tried
         return found
+
+    def _long(self, found: _Fraction) -> bool:
+        """Whether to read it would take too long: its terms are counted in place of that."""
+        return len(found[0]) > self.most_read
 
     def _read(self, found: _Fraction) -> int:
         """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
@@ -392,19 +415,19 @@ class Rewriter:
 
     def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
         """(how much there is to read, what is left) by the step that leaves least."""
-        candidates: list[tuple[int, int, _Fraction]] = []
+        fewest = sorted(self._candidates(found), key=lambda x: x[0])[:WRITTEN]
+        return min(((self._read(x), x) for _, x in fewest), key=lambda x: x[0], default=None)
+
+    def _candidates(self, found: _Fraction) -> Iterator[tuple[int, _Fraction]]:
+        """(terms, what is left) by each step that leaves neither more terms nor more denominators."""
         most = _terms(found)
         for step in self._applicable(found, self.steps):
             try:
                 after = self._after(found, step)
             except (Failure, ZeroDivisionError):
                 continue
-            if after is not None and len(after[1]) <= len(found[1]):
-                terms = _terms(after)
-                if terms <= most:
-                    candidates.append((terms, len(candidates), after))
-        shown = [x for _, _, x in sorted(candidates, key=lambda x: x[:2])[:WRITTEN]]
-        return min(((self._read(x), x) for x in shown), key=lambda x: x[0], default=None)
+            if after is not None and len(after[1]) <= len(found[1]) and (terms := _terms(after)) <= most:
+                yield terms, after
 
     def _joined(self, found: _Fraction) -> Polynomial:
         ring, result = self.ring, found[0]

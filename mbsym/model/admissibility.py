@@ -11,7 +11,18 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, is_number, names, text
+from mbsym.expressions.tree import (
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    is_number,
+    names,
+    sign_by_structure,
+    text,
+)
 from mbsym.model.system import Body, System, Tensor
 
 Numbers = tuple[Fraction, Fraction, Fraction]
@@ -268,7 +279,7 @@ def impossible_alone(tensor: Tensor, signs: Mapping[str, str], values: Mapping[s
     if len(alone) != 1:
         return None
     moment = tensor[alone[0]][alone[0]]
-    return alone[0] if _sign(moment, signs) == "positive" or (number_of(moment, values) or 0) > 0 else None
+    return alone[0] if sign_by_structure(moment, signs) == "positive" or (number_of(moment, values) or 0) > 0 else None
 
 
 def _is_diagonal(tensor: NumberTensor) -> bool:
@@ -357,45 +368,6 @@ def _combine(operator: str, first: Fraction, second: Fraction) -> Fraction | Non
         return None
     size = first.numerator.bit_length() + first.denominator.bit_length()
     return first**second.numerator if size * abs(second.numerator) <= _MAX_BITS else None
-
-
-def surely_negative(expression: Expression, signs: Mapping[str, str]) -> bool:
-    """Whether the declared signs alone force a negative value."""
-    return _sign(expression, signs) == "negative"
-
-
-def _sign(expression: Expression, signs: Mapping[str, str]) -> str | None:
-    """``positive``, ``negative`` (both strict) or None for not known."""
-    match expression:
-        case Number(value):
-            return "positive" if value > 0 else "negative" if value < 0 else None
-        case Name("pi"):
-            return "positive"
-        case Name(name):
-            return signs.get(name) if signs.get(name) in ("positive", "negative") else None
-        case Negative(operand):
-            return {"positive": "negative", "negative": "positive"}.get(_sign(operand, signs) or "")
-        case Operation("+", left, right):
-            return _common(_sign(left, signs), _sign(right, signs))
-        case Operation("-", left, right):
-            return _common(_sign(left, signs), _sign(Negative(right), signs))
-        case Operation("*" | "/", left, right):
-            first, second = _sign(left, signs), _sign(right, signs)
-            if first is None or second is None:
-                return None
-            return "positive" if first == second else "negative"
-        case Operation("**", base, Number(exponent)):
-            inner = _sign(base, signs)
-            if inner == "positive" or (inner == "negative" and exponent.denominator == 1 and exponent.numerator % 2):
-                return inner
-            return "positive" if inner == "negative" and exponent.denominator == 1 else None
-        case Call("exp" | "cosh", _):
-            return "positive"
-    return None
-
-
-def _common(first: str | None, second: str | None) -> str | None:
-    return first if first == second else None
 
 
 def known_values(system: System) -> dict[str, Fraction]:

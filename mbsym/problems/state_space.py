@@ -184,7 +184,14 @@ def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
         own = [[mass[i][j] for j in block] for i in block]
         inverse = ring.reciprocal(determinant(ring, own))
         for i, row in zip(block, adjugate(own, partial(determinant, ring)), strict=True):
-            found[i] = [
-                ring.times(ring.dot(row, [right[j][column] for j in block]), inverse) for column in range(len(right[i]))
-            ]
+            entries = (ring.dot(row, [right[j][column] for j in block]) for column in range(len(right[i])))
+            found[i] = [_in_lowest_terms(ring, ring.times(x, inverse)) for x in entries]
     return found
+
+
+def _in_lowest_terms(ring: Ring, x: Polynomial) -> Polynomial:
+    """A numerator over one denominator, not term by term as the normal form has it: so it is shorter to read."""
+    numerator, denominators = ring.fraction(x)
+    for factor, exponent in denominators:
+        numerator = ring.times(numerator, ring.reciprocal(factor) ** exponent)
+    return numerator

@@ -21,6 +21,7 @@ from mbsym.expressions.tree import (
     differentiate,
     names,
     number,
+    sign_by_structure,
     subtract,
     text,
 )
@@ -35,7 +36,6 @@ from mbsym.model.admissibility import (
     numeric_tensor,
     numeric_vector,
     offset_violation,
-    surely_negative,
     symbolic_violation,
 )
 from mbsym.model.assumptions import broken, contradictory
@@ -136,7 +136,7 @@ def _rates(system: System) -> dict[str, Expression]:
 def _check_mass(system: System, body: Body, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
     value = number_of(body.mass, values)
-    if (value is not None and value < 0) or surely_negative(body.mass, signs):
+    if (value is not None and value < 0) or sign_by_structure(body.mass, signs) == "negative":
         reading.error("negative-mass", "this mass is negative", _place(draft, "mass"), _values_hint(body.mass))
 
 
@@ -155,7 +155,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
     entries = [entry for row in body.inertia.tensor for entry in row]
     for index in range(3):
-        if surely_negative(body.inertia.tensor[index][index], signs):
+        if sign_by_structure(body.inertia.tensor[index][index], signs) == "negative":
             message = Message("the moment of inertia about axis [[index]] is negative", index=index + 1)
             reading.error(
                 "bad-inertia",

@@ -36,6 +36,16 @@ def symbols(*found: Matrix) -> dict[str, sympy.Symbol]:
     return {str(x): x for matrix in found for x in matrix.to_sympy().free_symbols}
 
 
+def test_nothing_is_left_uncancelled_in_the_matrices_of_the_first_order_form() -> None:
+    """M of the satellite's second chain has the determinant l^2 D: what of l^2 the adjugate has, too, is cancelled."""
+    found = mbsym.load(POLE.with_name("satellite-controlled.yaml")).state_space
+    printed = [str(x) for matrix in (found.A, found.B) for row in matrix for x in row]
+    quotients = [x.split("/(", 1) for x in printed if "/(" in x]
+    assert len(quotients) >= 10
+    for top, bottom in quotients:
+        assert "l" not in {*top.partition("(")[0].split("*")} & {*bottom.partition("(")[0].split("*")}, (top, bottom)
+
+
 def test_the_cart_with_a_pole_is_that_of_the_book() -> None:
     # Astrom & Murray, example 5.4, with mu = Mt Jt - m^2 l^2, Mt = M + m, Jt = J + m l^2 (rows 3 and 4 by hand from
     # Mt p'' - m l th'' = F - c p', Jt th'' - m l p'' = m g l th - gamma th').

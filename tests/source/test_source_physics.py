@@ -12,7 +12,7 @@ from properties import settings
 import mbsym
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.expressions.tree import Expression
+from mbsym.expressions.tree import Expression, sign_by_structure
 from mbsym.model.admissibility import (
     NumberTensor,
     about_mass_centre,
@@ -20,7 +20,6 @@ from mbsym.model.admissibility import (
     inertia_violation,
     number_of,
     second_moments,
-    surely_negative,
 )
 from mbsym.source import read
 from mbsym.source.identity import vanishes
@@ -108,7 +107,8 @@ def test_numbers_where_there_are_numbers(text: str, value: Fraction | None) -> N
     [("-m", True), ("-m*l**2", True), ("n", True), ("n*n", False), ("-m - l", True), ("l - m", False), ("n**3", True)],
 )
 def test_signs_that_declarations_force(text: str, negative: bool) -> None:
-    assert surely_negative(expression(text), {"m": "positive", "l": "positive", "n": "negative"}) is negative
+    signs = {"m": "positive", "l": "positive", "n": "negative"}
+    assert (sign_by_structure(expression(text), signs) == "negative") is negative
 
 
 @pytest.mark.parametrize(

@@ -103,8 +103,11 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            arithmetic, way = np.minimum(DOUBLED * apart, measured), Certainty.MEASURED
-            measured = np.maximum(measured - arithmetic, DOUBLED * twin.errors)
+            # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
+            both = apart + twin.errors
+            counted = (both > 0) & np.isfinite(both)
+            arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
+            measured, way = measured - arithmetic, Certainty.MEASURED
         except (Breakdown, Unusable):
             pass
     return (
@@ -267,7 +270,7 @@ def _settings(settled: Settled) -> Iterator[Item]:
     why = Message("as asked for") if METHOD in pinned else chosen
     if FINENESS in pinned:
         why = _fitting(found)
-    if settled.choice.method.traits.implicit and METHOD not in pinned:
+    if settled.choice.stiff and METHOD not in pinned:
         why = joined(
             [why, Message("motions die out at rates up to [[rate]]", rate=f"{settled.choice.decay:.3g}")], "; "
         )

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
-from math import comb
+from math import comb, prod
 from typing import Any
 
 from mbsym.algebra.certainty import Certainty
@@ -184,10 +184,11 @@ def _locus(
         common = common.gcd(one)
     for factor in _open_factors(common, whole.known):
         lost.setdefault(str(factor), factor)
+    # What vanishes together, beside what is lost anyhow; numbers, powers and positive factors say nothing of where.
     left = [divmod(x, common)[0] for x in values]
-    together: tuple[Polynomial, ...] = ()
-    if not any(whole.known.never_zero(x) for x in left):
-        together = tuple(left)
+    open_ = [[one for one in _open_factors(x, whole.known) if str(one) not in lost] for x in left]
+    simple = [x if x == 0 else prod(factors, start=x * 0 + 1) for x, factors in zip(left, open_, strict=True)]
+    together = () if any(x == 1 for x in simple) else tuple({str(x): x for x in simple}.values())
     return Locus(
         tuple(whole.formula(x) for x in lost.values()),
         tuple(whole.formula(x) for x in together),
