@@ -310,10 +310,18 @@ class SearchInBoxes(Listing):
         return Square(tuple(chosen), self.occurring)
 
     def _with_multipliers(self) -> Square | None:
-        """f + J^T lambda = 0, phi = 0: no pivot is assumed, so these are all positions in which J has its rank."""
+        """f + J^T lambda = 0, phi = 0: no pivot is assumed, so these are all positions in which J has its rank.
+
+        None where some rows follow from others, so that nothing determines their multipliers.
+        """
         ring, found = self.ring, self.found
         moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-        if self.chart.restrictions or any(ring.dependencies(x, moving) for x in (*found.balanced, *found.kept)):
+        redundant = self.ranks[1] is not None and self.ranks[1] < len(found.rows)
+        if (
+            self.chart.restrictions
+            or redundant
+            or any(ring.dependencies(x, moving) for x in (*found.balanced, *found.kept))
+        ):
             return None
         forces, kept = (
             [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (found.balanced, found.kept)
