@@ -165,11 +165,12 @@ class SearchInBoxes(Listing):
         """Rests wherever the constraints have their rank, of this case or another; what was left open."""
         known, self.doubts = self.doubts, []
         square = self._with_multipliers() if self.case.nonzero else self._square_system()
-        if square is not None:
+        if square is not None and square.coordinates:
             self._search_square(square, bisect=True)
         else:
             self._search_numerically(bisect=False)
-            self._found_from_points()
+            if not self.doubts:
+                self._found_from_points()
         left_open, self.doubts = self.doubts, known
         return left_open
 
