@@ -5,8 +5,8 @@ v, v^d may be written as -B/A, which takes v out of a formula (d = 1) or its hig
 What is left equals the formula by the relations alone: putting the definitions back gives it again, in the ring.
 Such steps are taken one by one, the one that leaves least to read first, as long as each leaves less
 (``size``: names, numbers, functions, signs, brackets, fractions) by a twentieth at least and brings in neither other
-symbols nor denominators, and all of them together save a fifth.  Letters that were asked for take out a symbol
-wherever that leaves no denominator.
+symbols nor denominators, and all of them together save a fifth, or a tenth where nothing is left in the formula of what
+the letters are made of.  Letters that were asked for take out a symbol wherever that leaves no denominator.
 
 Which letters there are is said once around all that is written (``letters_as``); printers ask ``lettered``.
 """
@@ -43,8 +43,9 @@ MOST_READ, MOST_READ_UNASKED = 400, 60
 WORK, WORK_UNASKED = 20_000_000, 100_000
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
-#: What is left to read at most, as a share of what there was: after one step, and after all of them.
-STEP, SHORTER = Fraction(19, 20), Fraction(4, 5)
+#: What is left to read at most, as a share of what there was: after one step, and after all of them; after all of them
+#: where none of the symbols is left that the letters are made of.
+STEP, SHORTER, INSTEAD = Fraction(19, 20), Fraction(4, 5), Fraction(9, 10)
 #: With more letters than this that hold declared symbols they are tried one by one only.
 MOST_CHAINED = 16
 #: Generators beside those of the ring, for what the definitions adjoin.
@@ -339,11 +340,13 @@ class Rewriter:
         if not routes:
             return None
         found = min(routes, key=self._read)
-        best = self._joined(found)
-        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * SHORTER:
-            return None
-        held = self._held(found)
+        best, held = self._joined(found), self._held(found)
         used = frozenset(name for name in self.values if self.places[name] in held)
+        left = {ring.generators[k].name for k in held}
+        instead = not any(ring.generators[k].name in left for name in used for k in self._symbols(name))
+        share = INSTEAD if instead else SHORTER
+        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * share:
+            return None
         return Written(ring, best, used)
 
     def _improved(self, found: _Fraction) -> _Fraction:

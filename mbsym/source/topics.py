@@ -149,9 +149,9 @@ the definitions put back give the same formula.  What cancels is cancelled.  Aft
 its letters stand for.
 
 Without --in a letter is put in where that leaves less to read: names, numbers, functions, signs, brackets, fractions
-are counted, each step has to save a twentieth, all together a fifth, and no step brings in a symbol or denominator
-that was not there.  Of several letters in a row (A = a*C, B = b*C) only the end is counted.  Formulas of more than 1000
-terms stay as they are.
+are counted, each step has to save a twentieth, all together a fifth (a tenth where nothing of what the letters are made
+of is left in the formula), and no step brings in a symbol or denominator that was not there.  Of several letters in a
+row (A = a*C, B = b*C) only the end is counted.  Formulas of more than 1000 terms stay as they are.
 
     --in lam,G       these letters alone, also where nothing gets shorter
     --in lam,eta     and the parameter eta is not what is taken out

@@ -85,8 +85,8 @@ def test_under_constraints_equations_have_multipliers_and_the_constraints_beside
     lines = told(tmp_path, (SHIPPED / "chaplygin-sleigh.yaml").read_text(encoding="utf-8"), "--problems", "3")
     at = next(k for k, line in enumerate(lines) if line.startswith("Equations"))
     assert lines[at : at + 4] == [
-        "Equations  m (x'' - a theta'' sin(theta) - a theta'^2 cos(theta)) = sin(theta) lambda_1",
-        "m (y'' + a theta'' cos(theta) - a theta'^2 sin(theta)) = -cos(theta) lambda_1",
+        "Equations  m (x'' - a theta'' sin(theta) - a theta'^2 cos(theta)) = lambda_1 sin(theta)",
+        "m (y'' + a theta'' cos(theta) - a theta'^2 sin(theta)) = -lambda_1 cos(theta)",
         "m a y'' cos(theta) - m a x'' sin(theta) + (m a^2 + J) theta'' = 0",
         "x' sin(theta) - y' cos(theta) = 0",
     ]

@@ -59,6 +59,13 @@ def written(formula: str, asked: tuple[str, ...] | None = None, **given: str) ->
         ("(J + m*l**2)*x_ddot + m*l**2*(c + k)*x", {"d": "m*l**2", "f": "J + d"}, "f*x_ddot + d*(c + k)*x"),
         # a**2 + b**2 = G in even powers only
         ("(a**2 + b**2)**2*c + (a**2 + b**2)*x", {"G": "a**2 + b**2"}, "G*(G*c + x)"),
+        # a root of a square: sqrt(m k)/m = w, and no sqrt(w**2)
+        ("c*sqrt(m*k)/m + x*sqrt(m*k)/m", {"w": "sqrt(k/m)"}, "w*(x + c)"),
+        ("l*sqrt(b**2*k/m)", {"w": "sqrt(k/m)"}, "w*b*l"),
+        # a tenth is saved, and nothing is left of c and k
+        ("c**2*l**5*J**4*x*(25 - 4*x**2)/(256*k**2)", {"beta": "c/k"}, "beta**2*J**4*l**5*x*(5 - 2*x)*(2*x + 5)/256"),
+        # of c and k k is left: all the same it would save a tenth only
+        ("c*l**5*J**4*x*(k - 4*x**2)/(256*k)", {"beta": "c/k"}, "c*J**4*l**5*x*(k - 4*x**2)/(256*k)"),
         # a root: s = sqrt(a^2 - 4 b)
         ("c*sqrt(a**2 - 4*b) + k*x*sqrt(a**2 - 4*b)", {"s": "sqrt(a**2 - 4*b)"}, "s*(k*x + c)"),
         # 1 - 4 b/a^2 under a sine is nobody's business; c x stays as it is

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import UNSET, UnsetType
 
+from mbsym.algebra.factors import content as content_of
 from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import Expression, add, multiply, number, power
 from mbsym.expressions.tree import Name as Variable
@@ -250,19 +251,23 @@ def constraint_rows(tied: Constraints) -> Iterator[tuple[Symbol, Formula]]:
 
 
 def combination(terms: Sequence[tuple[Formula, Math]]) -> Iterator[Math | str]:
-    """The sum of these products, as the parts of a relation."""
+    """The sum of numbers times letters times formulas, as parts of a relation: sin(x) c would be read as sin(x c)."""
     if not terms:
         yield 0
     for k, (coefficient, letter) in enumerate(terms):
-        minus = all(x < 0 for x in coefficient.polynomial.coeffs())
-        factor = -coefficient if minus else coefficient
+        ring, polynomial = coefficient.ring, coefficient.polynomial
+        number = abs(content_of(polynomial))
+        minus = all(x < 0 for x in polynomial.coeffs())
+        factor = Formula(ring, polynomial / (-number if minus else number))
         if minus or k:
             yield "-" if minus else "+"
+        if number != 1:
+            yield Formula(ring, ring.one * number)
+        yield letter
         if factor.terms > 1:
             yield Listed((factor,), brackets=True)
         elif factor != 1:
             yield factor
-        yield letter
 
 
 def is_short(value: Formula) -> bool:
