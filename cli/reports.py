@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from mbsym.report.content import Facts
     from mbsym.report.figures.made_figures import MadeFigure
     from mbsym.report.plain_writer import Line, Writer
-    from mbsym.report.rendering import Rendered
     from mbsym.report.results import Results
+    from mbsym.report.whole_run import Rendered
 
 #: Columns of what is drawn where nobody says how many there are.
 WIDEST = 100

@@ -39,7 +39,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import System
 from mbsym.numerics.kernels.llvm import Library
-from mbsym.report import rendering
+from mbsym.report import whole_run
 
 T = TypeVar("T")
 
@@ -137,16 +137,16 @@ def _read_by_who_gets_it() -> Iterator[None]:
     """Every file of every report that a test renders would be taken by its language."""
     from tests.report.readers import unreadable
 
-    original = rendering._rendered
+    original = whole_run._rendered
 
-    def checked(*given: Any) -> rendering.Rendered:
+    def checked(*given: Any) -> whole_run.Rendered:
         found = original(*given)
         reason = "" if found.text is None else unreadable(found.filename, found.text)
         assert not reason, f"{found.filename}: {reason}"
         return found
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(rendering, "_rendered", checked)
+        patched.setattr(whole_run, "_rendered", checked)
         yield
 
 

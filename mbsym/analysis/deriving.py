@@ -141,7 +141,7 @@ def _judged(analysis: Analysis) -> Stability:
     divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)
     if divisor is not None:
         return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
-    if found.numerical is None or values is None or not found.numerical.word.open:
+    if found.numerical is None or values is None:
         return found
     judged = Judge(analysis).decided(found.numerical, values)
     before = found.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None

@@ -20,15 +20,6 @@ if TYPE_CHECKING:
 #: The problems that such a system has.
 PROBLEMS = (5, 6, 8)
 
-#: The stages that know such systems.
-KNOWN = frozenset(
-    (
-        *("scene", "parameters_scene", "held_scene", "signs", "equilibrium", "first_approximation", "linearisation"),
-        *("judgeable", "balance", "stability", "claims", "checks", "trials", "check: linearisation"),
-        *("stabilisation", "check: stabilisation", "small_parameters"),
-    )
-)
-
 
 def chosen(system: System, problems: tuple[int, ...]) -> tuple[int, ...]:
     """Of problems that nobody has named, those that the system has."""

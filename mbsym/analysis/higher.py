@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
+    from mbsym.algebra.ring import Polynomial
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
     from mbsym.problems.normal_forms import InSymbols, Judged, NormalForms
@@ -113,6 +114,20 @@ def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
     cyclic = [name for name in free if name in energies.cyclic]
     held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
     return conservative, frozenset(cyclic) - held
+
+
+def forces_bend(analysis: Analysis) -> bool:
+    """Whether applied forces have terms of higher order in q, q': dissipation may begin with one."""
+    ring, names = analysis.ring, analysis.system.coordinates
+
+    def slopes(x: Polynomial) -> Iterator[Polynomial]:
+        return (take(x, name) for take in (ring.derivative, ring.velocity_derivative) for name in names)
+
+    try:
+        applied = generalized_forces(analysis.held_scene).values()
+        return any(not ring.vanishes(bend) for x in applied for slope in slopes(x) for bend in slopes(slope))
+    except Failure:  # forces that jump have no such terms
+        return False
 
 
 #: What problem 6 and problem 11 cannot both say of one motion.

@@ -5,6 +5,9 @@ Asked in this order, each only where those before leave the nonlinear system ope
 1. the first approximation, with the energy and exactly linear equations (``stability.ExactVerdicts``);
 2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
 3. terms of higher order: normal forms, centre manifolds (problem 11).
+
+Step 3 is asked, too, where an energy that does not grow shows stability and dissipation of higher order may make it
+asymptotic.
 """
 
 from __future__ import annotations
@@ -60,17 +63,31 @@ class Judge:
         of = self.analysis
         return ExactVerdicts(of.parameters_scene, of.balance, of.judgeable, of.equilibrium, of.signs)
 
-    def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
-        """A verdict of step 1, decided by the nonlinear system where it is open: steps 2 and 3.
+    def may_add(self, verdict: Verdict) -> bool:
+        """Whether the nonlinear system may decide more: of an open verdict, or of stability by an energy that may fall.
 
-        What has constraints or speeds of its own is not judged further; by step 2 only rational values are.
+        What has constraints or speeds of its own is not judged further.
         """
-        system = self.analysis.system
-        if not verdict.word.open or verdict.coordinates_singular or any(map(verdict.because, _NO_MOTION)):
+        of = self.analysis
+        if of.system.linear is not None or of.system.constraints or of.system.speeds:
+            return False
+        if verdict.word is Word.STABLE:
+            return self._may_lose_energy
+        return verdict.word.open and not verdict.coordinates_singular and not any(map(verdict.because, _NO_MOTION))
+
+    @cached_property
+    def _may_lose_energy(self) -> bool:
+        known = higher.forces_bend(self.analysis) and installed("mbsym.problems.normal_forms")
+        return known and not ignorable(self.analysis)[0]
+
+    def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
+        """A verdict of step 1, with what the nonlinear system adds: steps 2 and 3.
+
+        By step 2 only rational values are judged.
+        """
+        if not self.may_add(verdict):
             return verdict
-        if system.linear is not None or system.constraints or system.speeds:
-            return verdict
-        if all(isinstance(x, Fraction) for x in values.values()):
+        if verdict.word.open and all(isinstance(x, Fraction) for x in values.values()):
             from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
 
             verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
@@ -79,7 +96,10 @@ class Judge:
         if not installed("mbsym.problems.normal_forms"):
             return verdict
         found = self._of_higher_order(values)
-        return verdict if found is None else self._in_words(found) or verdict
+        further = None if found is None else self._in_words(found)
+        if further is None or (verdict.stable and not further.word.asymptotic):
+            return verdict
+        return further
 
     @cached_property
     def _of_higher_order(self) -> Any:

@@ -24,8 +24,7 @@ from mbsym.analysis import (
     given,
     second_routes,
 )
-from mbsym.analysis.forms import FORMS
-from mbsym.analysis.stages import Derived, NoResult, Stage, Stages, Unavailable, later
+from mbsym.analysis.stages import Derived, Knows, NoResult, Stage, Stages, Unavailable, later
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression
 from mbsym.formulas.formula import Column
@@ -73,54 +72,12 @@ T = TypeVar("T")
 JUDGED = ("energy", "equilibrium", "linearisation", "perturbed motion")
 
 
-#: The stages that know constraints, or hold whether there are any or not.
-KNOW_CONSTRAINTS = frozenset(
-    (
-        *("scene", "held_scene", "parameters_scene", "signs", "kinematics", "energy", "equations", "constraints"),
-        *("tied_in_coordinates", "first_order", "small_parameters"),
-        *("claims", "checks", "reduced", "residuals", "equilibrium", "first_approximation", "linearisation"),
-        *("state_space", "judgeable", "balance", "stability", "trials", "integrals", "reactions", "stabilisation"),
-        *("equilibria", "polynomial_integrals", "invariant_sets", "check: polynomial integrals"),
-        *(f"check: {name}" for name in ("kinematics", "energy", "equations of motion", *constrained.CHECKS)),
-        f"check: {constrained.REACTIONS}",
-        *("check: equilibrium", "check: perturbed motion", "check: stabilisation"),
-    )
-)
+#: Stages of every system; those that the equations of motion decide; what is said of a motion and its stability.
+OF_ALL = Knows.CONSTRAINTS | Knows.SPEEDS | Knows.MATRICES
+OF_EQUATIONS = Knows.CONSTRAINTS | Knows.SPEEDS
+OF_MOTIONS = Knows.CONSTRAINTS | Knows.IN_COORDINATES | Knows.MATRICES
 
-#: The stages that know speeds, or hold whether there are any or not.
-KNOW_SPEEDS = frozenset(
-    (
-        "scene",
-        "parameters_scene",
-        "signs",
-        "kinematics",
-        "energy",
-        "equations",
-        "constraints",
-        "tied_in_coordinates",
-        "programs",
-        "integrals",
-        "first_order",
-        "invariant_sets",
-        "polynomial_integrals",
-        "further_integrals",
-        "small_parameters",
-        "claimed_oscillation",
-        "claimed_manifold",
-        "claims",
-        "checks",
-    )
-)
-
-#: What is told in generalised coordinates and velocities even where the equations are in speeds: the motion, deviations
-#: from it, their stability.
-IN_COORDINATES = frozenset(
-    (
-        *("residuals", "expanded", "equilibrium", "first_approximation", "linearisation", "judgeable", "balance"),
-        *("stability", "stabilisation", "normal_forms", "trials", "equilibria", *FORMS, forms.BRACKETS),
-    )
-)
-#: The checks of these, and the stage that each is about.
+#: The checks of what is told in coordinates, and the stage that each is about.
 CHECKED_IN_COORDINATES = {"equilibrium": "equilibrium", "linearisation": "linearisation"}
 CHECKED_IN_COORDINATES |= {"perturbed motion": "linearisation", "stabilisation": "stabilisation", **forms.CHECKED}
 
@@ -136,8 +93,9 @@ class Problem(Derived["Analysis", T]):
         derive: Callable[[Analysis], T],
         stands_on: Sequence[str],
         says: bool = False,
+        knows: Knows = Knows.NO_OTHERS,
     ) -> None:
-        super().__init__(derive, stands_on, says)
+        super().__init__(derive, stands_on, says, knows)
         self.number, self.title, self.module = number, title, module
 
     @property
@@ -218,15 +176,16 @@ class Analysis(Stages):
 
     def result(self, name: str, compute: Callable[[], Any]) -> Any:
         """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
-        if self.system.constraints and name not in KNOW_CONSTRAINTS:
+        knows = getattr(type(self), name).knows
+        if self.system.constraints and Knows.CONSTRAINTS not in knows:
             compute = self._without_constraints
-        elif self.system.speeds and name in IN_COORDINATES:
+        elif self.system.speeds and Knows.IN_COORDINATES in knows:
             from mbsym.analysis import deriving
 
             compute = lambda: deriving.result_in_coordinates(self, name)  # noqa: E731
-        elif self.system.speeds and name not in KNOW_SPEEDS:
+        elif self.system.speeds and Knows.SPEEDS not in knows:
             compute = _without_speeds
-        elif self.system.linear is not None and name not in given.KNOWN:
+        elif self.system.linear is not None and Knows.MATRICES not in knows:
             compute = given.refuse
         return super().result(name, compute)
 
@@ -244,13 +203,15 @@ class Analysis(Stages):
             write_as(ring, {one.name: one.latex for one in self.system.symbols})
         return ring
 
-    scene = Derived["Analysis", Scene](lambda a: a.over_ring())
-    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False, inputs=False))
+    scene = Derived["Analysis", Scene](lambda a: a.over_ring(), knows=OF_ALL)
+    parameters_scene = Derived["Analysis", Scene](lambda a: a.over_ring(bodies=False, inputs=False), knows=OF_ALL)
     #: The system whose inputs keep their values on the unperturbed motion.
-    held_scene = Derived["Analysis", Scene](lambda a: a.over_ring(inputs=False) if a.system.inputs else a.scene)
-    signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene))
-    programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring))
-    expanded = Derived["Analysis", Scene](approximation.expanded)
+    held_scene = Derived["Analysis", Scene](
+        lambda a: a.over_ring(inputs=False) if a.system.inputs else a.scene, knows=Knows.CONSTRAINTS | Knows.MATRICES
+    )
+    signs = Derived["Analysis", Signs](lambda a: knowledge.signs(a.parameters_scene), knows=OF_ALL)
+    programs = Derived["Analysis", Programs](lambda a: programs(a.system, a.ring), knows=Knows.SPEEDS)
+    expanded = Derived["Analysis", Scene](approximation.expanded, knows=Knows.IN_COORDINATES)
     told = Derived["Analysis", ToldSystem](deriving.told_of)
 
     @cached_property
@@ -293,22 +254,29 @@ class Analysis(Stages):
     # --- the numbered problems ---
 
     kinematics = Problem[Kinematics](
-        1, "kinematics", "kinematics", lambda a: kinematics.kinematics(a.scene), ("kinematics",)
+        1, "kinematics", "kinematics", lambda a: kinematics.kinematics(a.scene), ("kinematics",), knows=OF_EQUATIONS
     )
-    energy = Problem[Energy](2, "energy and force function", "energy", deriving.energy_of, ("energy",))
+    energy = Problem[Energy](
+        2, "energy and force function", "energy", deriving.energy_of, ("energy",), knows=OF_EQUATIONS
+    )
     equations = Problem[Equations](
         3,
         "nonlinear Lagrange equations",
         "equations",
         deriving.equations_of,
         ("equations of motion", "constraints", "constrained motion"),
+        knows=OF_EQUATIONS,
     )
-    constraints: Derived[Analysis, Constraints] = Derived(deriving.constraints_of, ("constraints",))
+    constraints: Derived[Analysis, Constraints] = Derived(deriving.constraints_of, ("constraints",), knows=OF_EQUATIONS)
     #: The same in generalised velocities, of a system in speeds.
-    tied_in_coordinates: Derived[Analysis, Constraints] = Derived(constrained.constraints_in_coordinates)
-    reactions = Derived["Analysis", tuple[Any, ...]](constrained.reactions_of, (constrained.REACTIONS,))
-    reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced)
-    residuals = Derived["Analysis", Column](approximation.residuals)
+    tied_in_coordinates: Derived[Analysis, Constraints] = Derived(
+        constrained.constraints_in_coordinates, knows=OF_EQUATIONS
+    )
+    reactions = Derived["Analysis", tuple[Any, ...]](
+        constrained.reactions_of, (constrained.REACTIONS,), knows=Knows.CONSTRAINTS
+    )
+    reduced: Derived[Analysis, Reduced] = Derived(approximation.reduced, knows=Knows.CONSTRAINTS)
+    residuals = Derived["Analysis", Column](approximation.residuals, knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES)
     equilibrium = Problem[Equilibrium](
         4,
         "equilibrium conditions",
@@ -316,18 +284,25 @@ class Analysis(Stages):
         deriving.equilibrium_of,
         ("equilibrium",),
         says=True,
+        knows=OF_MOTIONS,
     )
-    first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation)
+    first_approximation = Derived["Analysis", Linearisation](approximation.first_approximation, knows=OF_MOTIONS)
     linearisation = Problem[Linearisation](
-        5, "linearisation", "linearisation", approximation.autonomous, ("linearisation", "perturbed motion")
+        5,
+        "linearisation",
+        "linearisation",
+        approximation.autonomous,
+        ("linearisation", "perturbed motion"),
+        knows=OF_MOTIONS,
     )
     state_space: Derived[Analysis, StateSpace] = Derived(
-        deriving.state_space_of,
-        ("linearisation", "perturbed motion"),
+        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=Knows.CONSTRAINTS
     )
-    judgeable = Derived["Analysis", Linearisation](approximation.judgeable)
-    balance = Derived["Analysis", Balance](deriving.balance_of)
-    stability = Problem[Stability](6, "stability", "stability", deriving.stability_of, JUDGED, says=True)
+    judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=OF_MOTIONS)
+    balance = Derived["Analysis", Balance](deriving.balance_of, knows=OF_MOTIONS)
+    stability = Problem[Stability](
+        6, "stability", "stability", deriving.stability_of, JUDGED, says=True, knows=OF_MOTIONS
+    )
     integrals = Problem[tuple[Integral, ...]](
         7,
         "first integrals",
@@ -335,10 +310,17 @@ class Analysis(Stages):
         deriving.first_integrals,
         ("equations of motion", *constrained.CHECKS, "first integrals"),
         says=True,
+        knows=OF_EQUATIONS,
     )
 
     stabilisation: Problem[Stabilisation] = Problem(
-        8, "stabilisation", "stabilisation", deriving.stabilisation_of, (*JUDGED, "stabilisation"), says=True
+        8,
+        "stabilisation",
+        "stabilisation",
+        deriving.stabilisation_of,
+        (*JUDGED, "stabilisation"),
+        says=True,
+        knows=OF_MOTIONS,
     )
 
     polynomial_integrals: Problem[Polynomials] = Problem(
@@ -348,10 +330,14 @@ class Analysis(Stages):
         later("mbsym.analysis.polynomial", "polynomials_of"),
         ("equations of motion", "polynomial integrals"),
         says=True,
+        knows=OF_EQUATIONS,
     )
 
     further_integrals = Derived["Analysis", tuple[Integral, ...]](
-        later("mbsym.analysis.found", "beyond"), ("equations of motion", "polynomial integrals"), says=True
+        later("mbsym.analysis.found", "beyond"),
+        ("equations of motion", "polynomial integrals"),
+        says=True,
+        knows=Knows.SPEEDS,
     )
 
     invariant_sets: Problem[InvariantSets] = Problem(
@@ -361,6 +347,7 @@ class Analysis(Stages):
         later("mbsym.analysis.invariant", "invariant_sets_of"),
         ("equations of motion", "first integrals"),
         says=True,
+        knows=OF_EQUATIONS,
     )
 
     normal_forms: Problem[NormalForms] = Problem(
@@ -370,6 +357,7 @@ class Analysis(Stages):
         later("mbsym.analysis.higher", "normal_forms_of"),
         (*JUDGED, "normal forms"),
         says=True,
+        knows=Knows.IN_COORDINATES,
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
@@ -379,39 +367,47 @@ class Analysis(Stages):
         later("mbsym.analysis.small", "small_parameters_of"),
         ("equations of motion", "energy"),
         says=True,
+        knows=OF_ALL,
     )
 
     # --- problem 5 in speeds, of a system that has some ---
 
-    first_order: Derived[Analysis, FirstOrder] = Derived(deriving.first_order_of, ("first approximation in speeds",))
+    first_order: Derived[Analysis, FirstOrder] = Derived(
+        deriving.first_order_of, ("first approximation in speeds",), knows=OF_EQUATIONS
+    )
 
     # --- problem 3 in other forms, for whoever asks ---
 
-    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,))
-    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,))
+    hamilton: Derived[Analysis, Hamilton] = Derived(forms.hamilton, (forms.CANONICAL,), knows=Knows.IN_COORDINATES)
+    routh: Derived[Analysis, Routh] = Derived(forms.routh, (forms.REDUCED,), knows=Knows.IN_COORDINATES)
     brackets: Derived[Analysis, Brackets | None] = Derived(
-        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True
+        forms.brackets, (forms.CANONICAL, forms.INVOLUTION), says=True, knows=Knows.IN_COORDINATES
     )
 
     # --- at numbers ---
 
     equilibria: Derived[Analysis, Equilibria] = Derived(
-        deriving.equilibria_of, ("straight-line program", "constraints"), says=True
+        deriving.equilibria_of,
+        ("straight-line program", "constraints"),
+        says=True,
+        knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES,
     )
 
     # --- what stands beside the problems: claims, and the second routes of the self-check ---
 
     claims: Derived[Analysis, tuple[ClaimResult, ...]] = Derived(
-        lambda a: later("mbsym.analysis.judging", "judged_claims")(a) if a.system.claims else ()
+        lambda a: later("mbsym.analysis.judging", "judged_claims")(a) if a.system.claims else (), knows=OF_ALL
     )
-    trials: Derived[Analysis, Trials] = Derived(later("mbsym.analysis.judging", "trials"), JUDGED, says=True)
+    trials: Derived[Analysis, Trials] = Derived(
+        later("mbsym.analysis.judging", "trials"), JUDGED, says=True, knows=OF_MOTIONS
+    )
     claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
-        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True
+        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=Knows.SPEEDS
     )
     claimed_manifold: Derived[Analysis, Expansion] = Derived(
-        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True
+        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=Knows.SPEEDS
     )
-    checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks)
+    checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks, knows=OF_ALL)
 
     def broken(self, names: Sequence[str]) -> NoResult | None:
         """Why what stands on these checks is withdrawn: the first of them that fails; None where none does."""

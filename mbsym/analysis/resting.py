@@ -21,6 +21,7 @@ from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
 from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.word import Word
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:
@@ -36,18 +37,21 @@ def relative_equilibria(system: System, values: Mapping[str, Value], within: flo
 
 
 def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Equilibria:
-    """Open verdicts at isolated places, judged further."""
-    if not installed("mbsym.problems.normal_forms"):
+    """Verdicts at isolated places that are open, or rest on an energy that may fall, judged further."""
+    if not installed("mbsym.problems.normal_forms") or len(system.coordinates) > MOST_COORDINATES:
         return found
-    if len(system.coordinates) > MOST_COORDINATES or not any(x.verdict.word.open for x in found.equilibria):
-        return found
+    words = {one.verdict.word for one in found.equilibria}
     bare = at_numbers(system, values)
-    return replace(found, equilibria=tuple(_decided(bare, one) for one in found.equilibria))
+    further = {word for word in words if word.open}
+    if Word.STABLE in words and not system.constraints and higher.forces_bend(Analysis(bare, ())):
+        further.add(Word.STABLE)
+    listed = (_decided(bare, one) if one.verdict.word in further else one for one in found.equilibria)
+    return replace(found, equilibria=tuple(listed))
 
 
 def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
     """Coordinates without an exact text are parameters that are known by their enclosures."""
-    if not one.verdict.word.open or one.coordinates_of:
+    if one.coordinates_of:
         return one
     enclosed = {f"{_PLACE}{x.name}": one.enclosures[x.name] for x in one.values if not x.exact}
     places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in one.values}

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
+from enum import Flag, auto
 from importlib import import_module
 from typing import Any, Generic, Self, TypeVar, overload
 
@@ -219,15 +220,32 @@ def later(module: str, name: str) -> Callable[..., Any]:
     return call
 
 
+class Knows(Flag):
+    """Which systems a stage takes into account, besides those of bodies in coordinates without constraints.
+
+    ``IN_COORDINATES``: what it tells, it tells in generalised velocities, even where the equations are in speeds.
+    """
+
+    NO_OTHERS = 0
+    CONSTRAINTS, SPEEDS, IN_COORDINATES, MATRICES = auto(), auto(), auto(), auto()
+
+
 class Derived(Generic[Owner, T]):
     """An attribute of a pipeline that is derived when it is first asked for; its name is that of its stage.
 
-    ``stands_on`` names the checks with which it falls.  What ``says`` something (a verdict, that a motion is one, that
-    a quantity is conserved) is withdrawn then; formulas stay to be looked at, beside the failed check.
+    ``knows``: of which systems it may be asked for.  ``stands_on`` names the checks with which it falls.  What ``says``
+    something (a verdict, that a motion is one, that a quantity is conserved) is withdrawn then; formulas stay to be
+    looked at, beside the failed check.
     """
 
-    def __init__(self, derive: Callable[[Owner], T], stands_on: Sequence[str] = (), says: bool = False) -> None:
-        self.derive = derive
+    def __init__(
+        self,
+        derive: Callable[[Owner], T],
+        stands_on: Sequence[str] = (),
+        says: bool = False,
+        knows: Knows = Knows.NO_OTHERS,
+    ) -> None:
+        self.derive, self.knows = derive, knows
         self.stands_on, self.says = tuple(stands_on), says
         self.__doc__ = derive.__doc__
 

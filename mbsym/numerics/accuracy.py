@@ -80,10 +80,6 @@ LOOKS = 30
 #: A run with a limit is not given up before this part of it; then, if it would cost so many times as much.
 EARLY, FAR_TOO_LONG = 0.2, 1.5
 
-#: A relative tolerance below this many roundings is not taken by the methods themselves.
-LEAST_ROUNDINGS, LEAST_OF_SCIPY = 4.0, 2.3e-14  # in units of eps; rtol
-OWN = ("dop853", "rk45", "rodas5p", "taylor")
-
 
 class Lacking(StrEnum):
     """Why there is no estimate."""
@@ -355,16 +351,20 @@ def _candidates(
 ) -> Iterator[tuple[Method, str, Setting]]:
     """Runs that are better, the best of them first."""
     setting, end = found.setting, float(found.times[-1])
-    name, operations = method.traits.name, max(1, dynamics.right_hand_side.operations)
+    operations = max(1, dynamics.right_hand_side.operations)
     limit, longest = max(20_000, AFFORDABLE // (14 * operations)), end / PARTS
     if setting.longest is not None:  # where that rules the steps of both, they would be the same run
         longest = min(longest, SHORTER * setting.longest)
     explicit = completed(METHODS["dop853"])
     wanted = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
-    own = _taken(name, scalar, setting.tolerance or 0.0)
+    own = max(setting.tolerance or 0.0, method.traits.finest(scalar))
+
+    def finer(better: Method) -> bool:
+        return max(wanted, better.traits.finest(scalar)) <= LEAST_RATIO * own
+
     turned = any(METHODS[change.method].traits.implicit for change in found.work.changes)
     stiff = (method.traits.implicit or turned) and not method.traits.fixed and scalar == FLOAT64
-    if stiff and _taken(STIFF, scalar, wanted) <= LEAST_RATIO * own:  # explicit steps would be too many
+    if stiff and finer(METHODS[STIFF]):  # explicit steps would be too many
         yield completed(METHODS[STIFF]), scalar, Setting(wanted, None, setting.step_limit, longest)
     more = [kind for kind in (EXTENDED, FLOAT64) if available(kind) and _rounding(kind) < _rounding(scalar)]
     if more and operations <= LONG:
@@ -377,20 +377,14 @@ def _candidates(
             replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * found.work.steps)),
         )
         return
-    if _taken(name, scalar, wanted) <= LEAST_RATIO * own:
+    if finer(method):
         yield method, scalar, Setting(wanted, None, setting.step_limit, longest)
-    elif _taken("dop853", scalar, wanted) <= LEAST_RATIO * own:
+    elif finer(explicit):
         yield explicit, scalar, Setting(wanted, None, limit, longest)
 
 
 def _rounding(scalar: str) -> float:
     return float(np.finfo(SCALARS[scalar].dtype).eps) / 2
-
-
-def _taken(name: str, scalar: str, tolerance: float) -> float:
-    """The relative tolerance that a method takes where one is asked for."""
-    roundings = LEAST_ROUNDINGS * 2 * _rounding(scalar)
-    return max(tolerance, roundings if name in OWN else LEAST_OF_SCIPY)
 
 
 def contradicted(estimate: ErrorEstimate | NoEstimate, drift: float) -> bool:

@@ -130,6 +130,7 @@ def _traits(parts: Sequence[Part], methods: Sequence[Method]) -> Traits:
         scalars=scalars,
         implicit=any(method.traits.implicit for method in methods),
         conservative=any(method.traits.conservative for method in methods),
+        least=max(method.traits.least for method in methods),
     )
 
 

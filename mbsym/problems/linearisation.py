@@ -40,7 +40,7 @@ from mbsym.algebra.matrices import ScalarMatrix, skew, symmetric
 from mbsym.algebra.matrices import components as connected
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message, joined
-from mbsym.formulas.formula import Formula, Matrix, Shown
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -123,6 +123,20 @@ class Linearisation(Shown):
     def terms(self) -> int:
         """Terms of the matrices."""
         return sum(matrix.terms for matrix in self.matrices) + (0 if self.B is None else self.B.terms)
+
+    @property
+    def equalities(self) -> Column:
+        """(M q'' + (D + G) q' + (K + N) q - B v)_i, which vanish; deviations go by the names of what deviates."""
+        ring = self.M.rows[0][0].ring
+        rates = (("acceleration", (self.M,)), ("velocity", (self.D, self.G)), ("coordinate", (self.K, self.N)))
+        terms = [(matrix, self.coordinates, kind, 1) for kind, matrices in rates for matrix in matrices]
+        terms += [] if self.B is None else [(self.B, self.inputs, "prescribed", -1)]
+        found = [ring.zero for _ in self.coordinates]
+        for matrix, names, kind, sign in terms:
+            moving = [ring.generator(kind, name) * sign for name in names]
+            for i, row in enumerate(matrix):
+                found[i] += sum((ring.times(x.polynomial, y) for x, y in zip(row, moving, strict=True)), ring.zero)
+        return column(ring, list(map(ring.reduce, found)))
 
     @property
     def time_dependence(self) -> str:

@@ -101,13 +101,13 @@ class _Limited(Program):
 
     def _node(self, operation: str, operands: tuple[int, ...] = (), payload: str | Fraction | None = None) -> Node:
         if len(self.instructions) > MOST_DERIVED:
-            raise _too_many()
+            raise _too_many(MOST_DERIVED)
         return super()._node(operation, operands, payload)
 
 
-def _too_many() -> TooLargeError:
+def _too_many(most: int) -> TooLargeError:
     text = "more than [[most]] operations, too many to be told through intermediates"
-    return TooLargeError(Message(text, most=MOST_OPERATIONS))
+    return TooLargeError(Message(text, most=most))
 
 
 def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
@@ -119,7 +119,7 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     found = body_equations(system, ring, _Limited())
     outputs = _outputs(found)
     if len(found.program.live(outputs)) > MOST_OPERATIONS:
-        raise _too_many()
+        raise _too_many(MOST_OPERATIONS)
     numbers = {body.name: k for k, body in enumerate(system.bodies, start=1)}
     proposed = _names(ring, found, numbers)
     cosines = {name for k, name in proposed.items() if found.meanings[k].quantity is Quantity.DIRECTION_COSINE}

@@ -21,6 +21,7 @@ from mbsym.model.system import INERTIAL
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
 from mbsym.report.content import Number
+from mbsym.report.sections.equations import constraint_forces
 
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
@@ -83,11 +84,13 @@ def _lagrangian(analysis: Analysis) -> Iterator[Line]:
 
 def _equations(analysis: Analysis) -> Iterator[Line]:
     """M q'' - f = 0; under constraints M q'' - f = J^T lambda, and the constraints."""
+    if analysis.system.linear is not None:
+        yield from (Line("", x) for x in analysis.linearisation.equalities)
+        return
     found = analysis.equations
     tied = found.constraints
     for i, x in enumerate(found.equalities(analysis.system.coordinates)):
-        right = () if tied is None else tuple((row[i], f"lambda{k}") for k, row in enumerate(tied.jacobian, start=1))
-        yield Line("", x, right=tuple(one for one in right if not one[0].is_zero))
+        yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in constraint_forces(found, i)))
     if found.in_speeds:
         own = cast("SpeedEquations", found)
         yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)

@@ -211,7 +211,9 @@ class Writer:
             called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
             close = self.readable and (isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
             behind = UNBROKEN if close else " "
-            written += ("" if not written or called or piece[:1] in ":," or written == "-" else behind) + piece
+            written += (
+                "" if not written or called or piece[:1] in ":," or re.search("(^|=.)-$", written) else behind
+            ) + piece
             before = x
         return written
 

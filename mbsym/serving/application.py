@@ -67,7 +67,6 @@ class Editor:
         self.told = Events()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._slow = asyncio.Semaphore(1)
-        self._looks = asyncio.Semaphore(2)
         self._known = self._digest_now()
         self._system: Any = None
 

@@ -16,8 +16,8 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import count
 from multiprocessing.connection import Connection, wait
@@ -39,6 +39,25 @@ _ENDS = ("done", "failed", "cancelled")
 
 #: One thread of arithmetic for each process.
 _SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+
+
+_ENVIRONMENT = threading.Lock()
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """A process that starts meanwhile inherits ``_SINGLE``; one thread at a time, as the environment is everybody's."""
+    with _ENVIRONMENT:
+        before = {name: os.environ.get(name) for name in _SINGLE}
+        os.environ.update(_SINGLE)
+        try:
+            yield
+        finally:
+            for name, value in before.items():
+                if value is None:
+                    os.environ.pop(name, None)
+                else:
+                    os.environ[name] = value
 
 
 def _context() -> BaseContext:
@@ -264,14 +283,16 @@ class Jobs:
         connection = process.connection
         try:
             connection.send(task)
-            end = monotonic() + MOST_LOADING
+            seconds, words = MOST_LOADING, "its process was not ready after"
+            end = monotonic() + seconds
             while not job.over:
                 if not wait([connection], max(0.0, end - monotonic())):
-                    job.end(f"stopped after {self._seconds:g} s", "failed")
+                    job.end(f"{words} {seconds:g} s", "failed")
                     return
                 message = connection.recv()
                 if message["kind"] == "ready":
-                    end = monotonic() + self._seconds
+                    seconds, words = self._seconds, "stopped after"
+                    end = monotonic() + seconds
                 else:
                     job.say(message)
         except (EOFError, OSError):  # it has ended; its code says why
@@ -305,19 +326,13 @@ class Jobs:
     def _started(self, cold: bool = False) -> _Process:
         context = multiprocessing.get_context("spawn") if cold else self._context
         ours, theirs = multiprocessing.Pipe()
-        before = {name: os.environ.get(name) for name in _SINGLE}
-        os.environ.update(_SINGLE)
         try:
             process = context.Process(target=attend, args=(theirs, self._memory, cold), daemon=True)  # type: ignore[attr-defined]
-            process.start()
+            with _single_threaded():
+                process.start()
         except BaseException:
             ours.close()
             raise
         finally:
             theirs.close()
-            for name, value in before.items():
-                if value is None:
-                    os.environ.pop(name, None)
-                else:
-                    os.environ[name] = value
         return _Process(process, ours)

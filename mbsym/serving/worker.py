@@ -345,17 +345,19 @@ def _map(task: Task, system: System) -> Iterator[Message]:
     for key in ("x", "y"):
         if not task.get(key):
             continue
-        name, ends = str(task[key]["name"]), []
+        name, ends = str(task[key].get("name", "")), []
         if name not in usable(system):
             raise Refused(f"there is no parameter called {name}")
         for end in ("low", "high"):
             try:
-                ends.append(Fraction(str(task[key][end])))
+                ends.append(Fraction(str(task[key].get(end, ""))))
             except (ValueError, ZeroDivisionError) as error:
                 raise Refused(f"{name}: the ends of its range are rational numbers, as 2/5 or 0.4") from error
         if ends[0] >= ends[1]:
             raise Refused(f"{name}: the range from {ends[0]} to {ends[1]} is empty")
         axes.append(Axis(name, *ends))
+    if len(axes) == 2 and axes[0].name == axes[1].name:
+        raise Refused(f"{name} is on both axes")
     if not axes:
         raise Refused("a map has an axis or two")
     yield {"kind": "progress", "words": "the plane is divided" if len(axes) == 2 else "the line is divided"}

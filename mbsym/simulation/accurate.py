@@ -14,7 +14,6 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import rates
 from mbsym.numerics.planning.models import Model
-from mbsym.numerics.planning.pilot import finest
 from mbsym.numerics.planning.plan import ENERGY, INTEGRATION, Accuracy, Bound, Plan
 from mbsym.numerics.planning.plan_items import DOUBLED
 from mbsym.numerics.planning.planning import FREE, Pins, planned
@@ -191,7 +190,7 @@ def _finer(plan: Plan) -> Setting:
     if setting.step is not None:
         return replace(setting, step=setting.step * FINER["step"])
     assert setting.tolerance is not None
-    least = min(setting.tolerance, finest(METHODS[plan.method], plan.scalar))
+    least = min(setting.tolerance, METHODS[plan.method].traits.finest(plan.scalar))
     return replace(setting, tolerance=float(f"{max(setting.tolerance * FINER['tolerance'], least):.1e}"))
 
 

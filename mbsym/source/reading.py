@@ -348,10 +348,12 @@ class Fields:
         return None if entry is None else entry.value
 
     def require(self, key: str, hint: str | None = None) -> Node | None:
-        """The value of a key that must be there."""
+        """The value of a key that must be there; without a ``hint`` it is said what the key means."""
         node = self.get(key)
         if node is None and self.sound:
             label = (self.known[key].label if self.reading.labelled and key in self.known else "") or key
+            if hint is None and key in self.known:
+                hint = Message("[[key]]: [[meaning]]", key=ascii_safe(label), meaning=worded(self.known[key].meaning))
             self.reading.error(
                 "missing-key",
                 Message("[[what]] has no [[label]]", what=worded(self.what), label=ascii_safe(label)),

@@ -318,6 +318,8 @@ def _enumerated(words: list[str]) -> str:
 def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and allowed.what == "the rate of a prescribed motion":
         return "the rate alone, without t: psi: w where psi is w*t"
+    if kind == "time" and allowed.what == "an unperturbed motion":
+        return "what turns steadily has a rate: psi: {rate: w} where psi is w*t"
     if kind == "time" and "prescribed" in allowed.kinds:
         return "declare what changes with time under 'prescribed'"
     if kind == "table":

@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any
 
 from mbsym.expressions.message import Message, joined
-from mbsym.expressions.safe import safe
+from mbsym.expressions.safe import UNBROKEN, safe
 from mbsym.model.reducing import Reducing
 from mbsym.model.scaling import Scaling
 from mbsym.report.language import Language
@@ -144,9 +144,9 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
 def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
     """Raises Underived, NotFit for names that there are not."""
     from mbsym.algebra.failures import Failure
-    from mbsym.expressions.tree import text
     from mbsym.report.formulas_by_name import known_names, remarked, written
     from mbsym.report.letters import in_letters, letters_of
+    from mbsym.report.plain_writer import Writer
 
     source, language, say = _source(asked, request, watch), request.language, Language(asked.system.language).say
     known = known_names(source.analysis)
@@ -180,7 +180,9 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
     if used:
         texts.append(remarked(say("where"), language))
         definitions = letters_of(source.system).definitions(used)
-        texts += [remarked(f"{name} = {text(value)}", language) for name, value in definitions]
+        writer = Writer(readable=language == "text")
+        inline = (f"{name} = {writer.inline(value)}".replace(UNBROKEN, " ") for name, value in definitions)
+        texts += [remarked(one, language) for one in inline]
     return Shown(_joined(texts), tuple(failures))
 
 

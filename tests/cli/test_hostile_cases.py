@@ -24,9 +24,9 @@ from terminal import told
 from mbsym.analysis import Analysis
 from mbsym.analysis.soundness import complain
 from mbsym.model.system import System
-from mbsym.report.rendering import rendered
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS
+from mbsym.report.whole_run import rendered
 from mbsym.source import load, read, to_text, to_yaml
 from mbsym_cli.main import main
 

@@ -17,8 +17,8 @@ from test_reports import uncommented
 
 from mbsym.analysis import Analysis
 from mbsym.model.system import System
-from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
+from mbsym.report.whole_run import rendered
 from mbsym.source import read, render
 from tests.report.readers import unreadable
 

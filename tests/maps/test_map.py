@@ -238,18 +238,19 @@ def test_the_files_of_a_map(written: Path) -> None:
     assert content["values"] == {"p1": "2/5", "p2": "1/5"}
     text = (written / "map.tex").read_text()
     assert r"\includegraphics[width=\columnwidth]{map.pdf}" in text
-    assert r"13 \alpha + 17 \gamma - 4 = 0" in text
+    assert r"13 \alpha + 17 \gamma - 4 = 0$ \quad (zero root: constant term ($\psi$, $\varphi$, $\sigma$))" in text
     assert text.count("{") == text.count("}")
 
 
 @needs_pdflatex
 def test_the_tex_of_a_map_compiles(written: Path, tmp_path: Path) -> None:
-    """With graphicx alone, into somebody else's document."""
+    """With graphicx alone, into somebody else's document, which stands in another folder."""
     read_latex("fragments/map.tex", (written / "map.tex").read_text())
-    head = r"\documentclass[twocolumn]{article}\usepackage{graphicx}\begin{document}"
-    (tmp_path / "paper.tex").write_text(head + r"\input{map.tex}\end{document}")
+    head = r"\documentclass[twocolumn]{article}\usepackage{graphicx}\graphicspath{{maps/}}\begin{document}"
+    (tmp_path / "paper.tex").write_text(head + r"\input{maps/map.tex}\end{document}")
+    (tmp_path / "maps").mkdir()
     for name in ("map.tex", "map.pdf"):
-        (tmp_path / name).write_bytes((written / name).read_bytes())
+        (tmp_path / "maps" / name).write_bytes((written / name).read_bytes())
     words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 0, done.stdout[-2000:]

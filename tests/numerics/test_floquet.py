@@ -220,6 +220,27 @@ def test_the_command(tmp_path: Path) -> None:
     assert "constant" in done.output
 
 
+def test_constant_at_these_values_only(tmp_path: Path) -> None:
+    """Where q = 0 problem 6 knows the coefficients as varying in symbols; with the relation that is told it judges."""
+    path = tmp_path / "mathieu.yaml"
+    text = """mbsym: 1
+name: damped Mathieu
+parameters: {d: nonnegative, a: real, q: real}
+prescribed: {phi: 1}
+bodies:
+  - {name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}
+loads:
+  - generalized force: {x: "-(a + q*cos(2*phi))*x - d*x_dot"}
+motion: {x: 0}
+"""
+    path.write_text(f"{text}values: {{d: 0, a: 1, q: 0}}\n")
+    done = CliRunner().invoke(main, ["floquet", str(path)])
+    assert done.exit_code == 1
+    assert "with 'relations: {q: 0}' in place of these values" in " ".join(done.output.split())
+    path.write_text(f"{text}values: {{d: 0, a: 1}}\nrelations: {{q: 0}}\n")
+    assert mbsym.load(path).stability.numerical.word == "stable"
+
+
 def test_no_initial_state_is_asked_for(tmp_path: Path) -> None:
     """It is the unperturbed motion that is judged."""
     path = tmp_path / "mathieu.yaml"

@@ -286,3 +286,28 @@ def test_rows_between_a_switch_and_the_nearest_short_float_belong_to_the_step_th
     turns = [k * math.pi / 2 + np.linspace(-3e-7, 3e-7, 25) for k in range(1, 5)]
     times = np.unique(np.concatenate([np.linspace(0, 7.5, 300)[1:], *turns]))
     assert np.max(np.abs(run.fill(times)[0] - rubbed_spring(times))) < 3e-5
+
+
+def soft_and_hard(t: float) -> float:
+    """x'' = -x where x > 0, -10000 x where x < 0, from x = 1: half cosines of periods pi and pi/100 in turns."""
+    s = math.fmod(t, 1.01 * math.pi)
+    if s <= math.pi / 2:
+        return math.cos(s)
+    if s <= 0.51 * math.pi:
+        return -math.sin(100 * (s - math.pi / 2)) / 100
+    return math.cos(s - 1.01 * math.pi)
+
+
+@pytest.mark.parametrize("name", ["dop853", "rk45"])
+@pytest.mark.parametrize("size", [1, 10**6])
+def test_coarse_steps_beside_a_switch_pass_it(name: str, size: int) -> None:
+    """A coarse step ends beside the switch; the next one, made for the other side, is hardly longer than roundings."""
+    text = described("-x*(1 + 9999*(1 - sign(x))/2)", more="", start=f"position: {size}")
+    for tolerance in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+        run = METHODS[name].start(Dynamics(scenario(mbsym.loads(text).system)), Setting(tolerance))
+        worst = 0.0
+        while run.time < 10:
+            run.step(10)
+            worst = max(worst, abs(run.state[0] / size - soft_and_hard(run.time)))
+        assert worst <= 10 * tolerance
+        assert run.work.steps < 1000

@@ -283,10 +283,11 @@ def test_without_any_canvas_a_motion_is_told_all_the_same(browser: Any, tmp_path
     page.get_by_text("positions are told below in words").wait_for()
     page.locator(".viewer-reading").filter(has_text="energy").wait_for()
     page.get_by_text("In words", exact=True).click()
-    row = page.locator(".viewer-words tbody tr")
+    row = page.get_by_role("row", name="pendulum")
     row.wait_for()
     told = row.inner_text()
-    page.wait_for_function("told => document.querySelector('.viewer-words tbody tr').innerText !== told", arg=told)
+    last = "told => [...document.querySelectorAll('.viewer-words tbody tr')].at(-1).innerText !== told"
+    page.wait_for_function(last, arg=told)
     page.get_by_role("button", name="Pause").click()
     assert page.get_by_role("button", name="Closer").count() == 0
     page.close()

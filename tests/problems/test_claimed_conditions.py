@@ -308,10 +308,10 @@ def test_coinciding_frequencies_are_not_excluded() -> None:
 def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called_exact() -> None:
     """x'' = -a x - x^3 is stable at a = 0 (a strict minimum of x^4/4), the bead at g = R w^2 like it: V = m R^2 w^2
     (1 - cos th)^2/2.  Without forces on velocities or with them, the same words."""
-    for name, strict, weak in (
-        ("strict_border", "a > 0", "a >= 0"),
-        ("necessary-at-border", "g > R*w**2", "g >= R*w**2"),
-        ("soft", "mu < 0", "mu <= 0"),
+    for name, strict, weak, there in (
+        ("strict_border", "a > 0", "a >= 0", "stable"),
+        ("necessary-at-border", "g > R*w**2", "g >= R*w**2", "stable"),
+        ("soft", "mu < 0", "mu <= 0", "asymptotically stable"),  # -x^2 x' takes energy wherever x is not at rest
     ):
         found = outcomes(name)
         assert found[strict, "necessary"].outcome == BORDERS, name
@@ -319,7 +319,7 @@ def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called
         assert found[strict, "necessary"].counterexample.at_equality
         assert found[weak, "necessary"].outcome == EXACT, name
         assert found[weak, "sufficient"].outcome == UNDECIDED, name  # of all parameters of the border
-        assert "at the given values: there the motion is stable" in found[weak, "sufficient"].remark
+        assert f"at the given values: there the motion is {there} (" in found[weak, "sufficient"].remark
     assert outcomes("strict_border")["a != 0", "necessary"].outcome == FAILS
 
 
@@ -468,3 +468,25 @@ claims:
 """
     ).claims
     assert found.outcome == EXACT
+
+
+CART = """mbsym: 1
+name: a cart with friction, and a pendulum
+parameters: {g: real, d: nonnegative}
+bodies:
+  - {name: cart, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: 1}
+  - {name: bob, attached to: cart, rotation: {axes: [3], angles: [th]}, mass centre: [0, -1, 0], mass: 1}
+loads:
+  - uniform gravity: {vector: [0, -g, 0]}
+  - damper: {coordinate: x, coefficient: d}
+motion: {}
+values: {g: 1, d: 1}
+claims:
+  - {claim: condition, that: g > 0, as: sufficient}
+"""
+
+
+def test_what_is_stable_by_one_theorem_or_another_is_stable() -> None:
+    """With friction all roots but a zero one are to the left, without it Routh's theorem holds: g > 0 suffices."""
+    (claim,) = mbsym.loads(CART).claims
+    assert claim.outcome == EXACT

@@ -21,8 +21,8 @@ from mbsym.problems.stability.word import Word
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.messages import messages
-from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
+from mbsym.report.whole_run import rendered
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, needs_pdflatex
 from tests.report.said import has_words

@@ -20,8 +20,8 @@ from mbsym.report import conditions
 from mbsym.report.latex.appendix import joined
 from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
-from mbsym.report.rendering import rendered
 from mbsym.report.targets import TARGETS
+from mbsym.report.whole_run import rendered
 from mbsym.source.yaml_writer import meaning
 from mbsym_cli.main import main
 from tests.conftest import SHIPPED, TESTS, needs_pdflatex

@@ -276,7 +276,7 @@ def of_runs() -> Iterator[str]:
     yield from (one.title for one in vars(tableaux).values() if isinstance(one, tableaux.Tableau | tableaux.Rosenbrock))
 
 
-@pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "state_run_words", "events"])
+@pytest.mark.parametrize("name", ["summary", "plan_words", "constrained_run_words", "simulation_words", "events"])
 def test_titles_of_what_is_said_of_a_run_are_translated(name: str) -> None:
     """The first of every pair that is yielded."""
     tree = said.trees()[f"report/runs/{name}.py"]

@@ -15,9 +15,9 @@ from mbsym.formulas.latex import write_as
 from mbsym.formulas.tree import angles_as
 from mbsym.report.language import LANGUAGES
 from mbsym.report.latex.report import render
-from mbsym.report.rendering import rendered
 from mbsym.report.sections import section_of
 from mbsym.report.targets import TARGETS
+from mbsym.report.whole_run import rendered
 
 
 @pytest.mark.parametrize("problem", PROBLEMS.values(), ids=lambda problem: problem.attribute)

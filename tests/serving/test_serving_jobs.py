@@ -217,3 +217,38 @@ def test_what_fills_a_page_by_and_by_lets_the_picture_go_first(monkeypatch: pyte
         worker._step_back({"kind": kind})
     assert len(stepped) == 3
     assert min(stepped) > 0
+
+
+@pytest.mark.parametrize(
+    ("axes", "words"),
+    [
+        ({"x": {"low": "1", "high": "2"}}, "no parameter called"),
+        ({"x": {"name": "m", "high": "2"}}, "rational numbers"),
+        ({"x": {"name": "m", "low": "2", "high": "1"}}, "is empty"),
+        ({"x": {"name": "m", "low": "1", "high": "2"}, "y": {"name": "m", "low": "1", "high": "2"}}, "both axes"),
+        ({}, "an axis or two"),
+    ],
+)
+def test_a_map_with_wrong_axes_is_refused_in_words(axes: dict[str, Any], words: str) -> None:
+    """What a page may send: a missing key is no defect of the server."""
+    (*_, last) = of("map", **axes)
+    assert last["kind"] == "failed"
+    assert words in last["words"]
+
+
+def test_the_environment_is_left_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes may be started by several threads at once; none takes the other's setting for what was there before."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    from mbsym.serving.jobs import _single_threaded
+
+    monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
+
+    def briefly(k: int) -> None:
+        with _single_threaded():
+            assert os.environ["OMP_NUM_THREADS"] == "1"
+            time.sleep(0.002 * (k % 3))
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(briefly, range(40)))
+    assert "OMP_NUM_THREADS" not in os.environ

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import gamma, sqrt
+
 import pytest
 
 import mbsym
@@ -92,3 +94,24 @@ def test_an_energy_that_changes_for_an_instant_only_is_not_conserved(beside: str
     run = mbsym.simulate(found, 1, samples=701)
     assert run["y"].min() > -0.02
     assert run.conservation.standing is Standing.CHANGING
+
+
+@pytest.mark.parametrize("force", ["-sign(x)*sqrt(abs(x))", "-sqrt(abs(x))*x/abs(x)"])
+def test_roots_of_what_changes_its_sign_are_passed(force: str) -> None:
+    """x'' = -sign(x) sqrt|x| from rest at 1 is at -1 after half a period, 2 B(2/3, 1/2)/sqrt(3), and back after one."""
+    half = 2 * gamma(2 / 3) * gamma(1 / 2) / gamma(7 / 6) / sqrt(3)
+    text = PLANE + f"  - generalized force:\n      x: {force}\ninitial: {{x: 1, y: 0}}\n"
+    for time, place in ((half, -1), (2 * half, 1)):
+        assert mbsym.simulate(mbsym.loads(text), time)["x"][-1] == pytest.approx(place, abs=1e-8)
+
+
+def test_a_velocity_that_turns_under_a_root_turns_once() -> None:
+    """x'' = -x - sign(x') sqrt|x'|/10: near the turn x' = -x (t - t0), steps are short, and what rounding of the time
+    makes of x' is no second change."""
+    force = '"-x - sign(x_dot)*sqrt(abs(x_dot))/10"'
+    run = mbsym.simulate(
+        mbsym.loads(PLANE + f"  - generalized force:\n      x: {force}\ninitial: {{x: 1, y: 0}}\n"), 5.0
+    )
+    assert run.trajectory.passed is not None
+    assert not run.trajectory.passed.unresolved
+    assert len(run.trajectory.passed.switches) == 1

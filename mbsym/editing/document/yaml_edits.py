@@ -126,7 +126,7 @@ def _added(found: Written, path: Path, data: Data, source: str | None, after: st
     if found.style(holder) == "flow" or _in_flow(found, path[:-1]):
         return _added_in_flow(found, holder, path, data, source, after)
     if isinstance(holder, Sequence):
-        return _added_item(found, holder, path, data, source)
+        return _added_item(found, holder, path, data)
     if not isinstance(holder, Mapping) or not holder.entries:
         raise Refused("bad-path", "there is no mapping to add to")
     entries = holder.entries
@@ -162,7 +162,7 @@ def _added_in_flow(found: Written, holder: Node, path: Path, data: Data, source:
     return Edit(start + 1, start + 1, value)
 
 
-def _added_item(found: Written, holder: Sequence, path: Path, data: Data, source: str | None) -> Edit:
+def _added_item(found: Written, holder: Sequence, path: Path, data: Data) -> Edit:
     index, section = path[-1], str(path[0])
     assert isinstance(index, int)
     if not holder.items:

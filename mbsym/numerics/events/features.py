@@ -105,9 +105,14 @@ Standing = Mapping[int | tuple[int, Curve], Any]
 
 
 def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
-    """The outputs with what stands for sign(g) in its place, and g times that in place of |g|; a table's polynomial."""
+    """The outputs with what stands for sign(g) in its place, and g times that in place of |g|; a table's polynomial.
+
+    A square root of what g is in stands for that of its absolute value: the same on this side, and finite where a step
+    begins to pass over g = 0.
+    """
     program = code.program
     values: dict[int, Node] = {}
+    changed: set[int] = set()
 
     def standing(number: int, value: Node) -> Node:
         operation, operands, _ = program.instructions[number]
@@ -117,6 +122,13 @@ def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
         elif operation in ("abs", "sign") and operands[0] in standing_for:
             sign = standing_for[operands[0]]
             value = sign if operation == "sign" else program.product(sign, values[operands[0]])
+        elif not changed.isdisjoint(operands):
+            if operation == "sqrt":
+                value = program.square_root(program.function("abs", values[operands[0]]))
+        else:
+            values[number] = value
+            return value
+        changed.add(number)
         values[number] = value
         return value
 

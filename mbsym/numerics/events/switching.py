@@ -7,9 +7,9 @@ greatest decay -Re lambda is looked at.  Where
     h max(-Re lambda) > LIMITED    and    max(-Re lambda) > STIFF max |Im lambda|
 
 stability bounds the steps.  Then a few implicit steps are tried from there; where these are longer by more than they
-are dearer, the run goes on with them.  Of implicit steps h every tenth is followed by the question whether explicit
-ones of min(h, STABLE / -Re lambda) would lead further at equal cost, with a margin; if so the run goes back.  Compiled
-implicit steps are hardly dearer: once stability would not shorten explicit ones, some of these are tried, too.
+are dearer, the run goes on with them.  After as many implicit steps h the question is whether explicit ones of
+min(h, STABLE / -Re lambda) would lead further at equal cost, with a margin; if so the run goes back.  Once stability
+would not shorten explicit ones, some of these are tried, too: implicit steps are hardly dearer.
 
 How much dearer a step is, is a fixed estimate, not a measured time: equal runs change at equal times.  Where nothing is
 ever stiff, steps, rows and results are those of the explicit method to the last bit.
@@ -56,8 +56,8 @@ LIMITED = 1.5
 #: Only a decay so much faster than the oscillations makes a motion stiff.
 STIFF = 3.0
 
-#: So many explicit steps, and so many implicit ones, from one look at the eigenvalues to the next.
-WINDOW, IMPLICIT_WINDOW = 256, 10
+#: So many steps from one look at the eigenvalues to the next.
+WINDOW = 256
 
 #: Implicit steps of a trial; after one that did not pay, so many times as many explicit steps pass before the next.
 TRIAL, PATIENCE = 40, 4
@@ -65,10 +65,8 @@ TRIAL, PATIENCE = 40, 4
 #: Explicit steps must promise to be so much quicker before the run goes back to them.
 MARGIN = 3.0
 
-#: About what a step takes: seconds an operation of compiled code and a compiled step besides, and a step of SciPy's
-#: implicit methods by their names.
+#: About what a step takes: seconds an operation of compiled code, and a compiled step besides.
 OPERATION, STEP = 4e-10, 2e-7
-IMPLICIT_STEP = {"radau": 5e-4, "lsoda": 5e-5, "bdf": 3e-4}
 
 
 def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float, float]:
@@ -135,11 +133,9 @@ class SwitchingRun(Stepping):
         self._stiff = method.stiff
         self.work = Work()
         one, size, stages = dynamics.right_hand_side.operations, dynamics.dimension, len(RODAS5P.stages)
-        # Of the compiled one a Jacobian is about as many right-hand sides as the state has numbers.
-        compiled = OPERATION * ((stages + size) * one + size**3 / 3 + stages * size**2) + STEP
-        implicit = IMPLICIT_STEP.get(method.implicit.traits.name, compiled)
+        # A Jacobian is about as many right-hand sides as the state has numbers.
+        implicit = OPERATION * ((stages + size) * one + size**3 / 3 + stages * size**2) + STEP
         self._dearer = implicit / (12 * one * OPERATION + STEP)
-        self._compiled = implicit == compiled
         self._patience = 1
         self._turned(self._stiff, at, state)
         self.time, self.state = float(at), np.array(self.end)
@@ -219,14 +215,14 @@ class SwitchingRun(Stepping):
             steps = Message("[[count]] steps", count=self.work.steps)
             raise Breakdown(STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
         made = self.work.steps - self._since[0]
-        if made < (IMPLICIT_WINDOW if self._stiff and not self._compiled else WINDOW * self._patience):
+        if made < WINDOW * self._patience:
             return
         step = (self.reached - self._since[1]) / made
         decay, frequency = rates(self._dynamics, self.end, self.reached)
         if self._stiff:
             bound = STABLE / decay if decay > 0 else inf
-            untried = self._compiled and bound > step
-            if self._dearer * min(step, bound) > MARGIN * step or (untried and self._pays(False, step / self._dearer)):
+            surely = self._dearer * min(step, bound) > MARGIN * step
+            if surely or (bound > step and self._pays(False, step / self._dearer)):
                 text = "stiff no longer: motions die out at rates up to [[rate]]"
                 self._change(False, Message(text, rate=f"{decay:.3g}"))
                 return

@@ -17,9 +17,12 @@ import numpy as np
 from mbsym.expressions.message import Message, worded
 from mbsym.numerics.compensation import compensated_code
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.scenario import Scenario
+
+#: The finest tolerances that compiled methods take: some roundings.
+FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
 
 #: Where a step vanishes, rates beyond this mean a blow-up.
 LARGEST = 1e12
@@ -106,7 +109,8 @@ class Traits:
 
     ``order`` is its nominal order (None: variable); ``fixed`` means that it takes a step instead of a tolerance;
     ``scalars`` the arithmetic it runs in; ``conservative`` that it needs forces with a force function;
-    ``extra`` the optional package that it needs.
+    ``extra`` the optional package that it needs.  ``interpreted``: about the seconds of an evaluation with its share of
+    the linear algebra, of a method outside machine code; ``least`` the finest tolerance that such a one takes.
     """
 
     name: str
@@ -117,6 +121,17 @@ class Traits:
     implicit: bool = False
     conservative: bool = False
     extra: str | None = None
+    interpreted: float = 0.0
+    least: float = 0.0
+
+    @property
+    def compiled(self) -> bool:
+        """Whether its loop over steps runs in machine code."""
+        return not self.interpreted
+
+    def finest(self, scalar: str) -> float:
+        """The least tolerance that is not silently taken for a larger one."""
+        return max(FINEST[scalar], self.least)
 
 
 @dataclass(frozen=True)

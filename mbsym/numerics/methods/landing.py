@@ -501,11 +501,12 @@ class LandingRun:
             raise endless("a switch was missed", piece.end, state)
 
     def _check_landing(self, piece: Piece, state: Any, turned: tuple[int, ...]) -> None:
-        """A step to a switch has to end at it."""
+        """A step to a switch has to end at it, as far as its tolerance lets it."""
         state = np.array(state, dtype=float)
         sizes = np.max(np.abs(along(self._positive, piece, piece.start, piece.end)), axis=1)
         left = np.abs(self._positive(np.concatenate(([piece.end], state))[:, None])[:, 0])
-        if np.any(left[list(turned)] > (1e-5 * sizes + 1e-7)[list(turned)]):
+        part = max(1e-5, 10 * (self._setting.tolerance or 0.0))
+        if np.any(left[list(turned)] > (part * sizes + 1e-7)[list(turned)]):
             raise endless("a switch is not where it should be", piece.end, state)
 
     # --- narrow features ---

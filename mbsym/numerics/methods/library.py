@@ -184,12 +184,14 @@ class LibraryRun(Stepping):
 
 
 class Library:
-    """A method of ``scipy.integrate``, by the name of its class there."""
+    """A method of ``scipy.integrate``, by the name of its class there; an evaluation costs about ``seconds``."""
 
-    def __init__(self, name: str, solver: str, order: int | None, implicit: bool = False) -> None:
+    def __init__(self, name: str, solver: str, order: int | None, seconds: float, implicit: bool = False) -> None:
         self._solver = solver
         title = Message("SciPy's [[solver]], for stiff systems" if implicit else "SciPy's [[solver]]", solver=solver)
-        self.traits = Traits(name, title, order, fixed=False, implicit=implicit)
+        self.traits = Traits(
+            name, title, order, fixed=False, implicit=implicit, interpreted=seconds, least=LEAST_TOLERANCE
+        )
 
     @property
     def solver(self) -> Any:
@@ -209,9 +211,9 @@ class Library:
 
 
 METHODS = (
-    Library("scipy-rk45", "RK45", 5),
-    Library("scipy-dop853", "DOP853", 8),
-    Library("lsoda", "LSODA", None, implicit=True),
-    Library("radau", "Radau", 5, implicit=True),
-    Library("bdf", "BDF", None, implicit=True),
+    Library("scipy-rk45", "RK45", 5, 2e-5),
+    Library("scipy-dop853", "DOP853", 8, 2e-5),
+    Library("lsoda", "LSODA", None, 13e-6, implicit=True),
+    Library("radau", "Radau", 5, 5e-5, implicit=True),
+    Library("bdf", "BDF", None, 7e-5, implicit=True),
 )

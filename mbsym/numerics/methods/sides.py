@@ -361,7 +361,8 @@ class Leaving:
         found: list[tuple[float, int]] = []
         whole = along(self._values, piece, piece.start, piece.end)
         for k in self._looked_for:
-            place = self._left(k, piece, piece.start, piece.end, whole[k], DEPTH)
+            beside = min(float(whole[k][0]), 0.0)  # a step to a switch ends beside it, by its own error
+            place = self._left(k, piece, (piece.start, piece.end), whole[k], beside, DEPTH)
             if place is not None:
                 found.append((place, k))
         if not found:
@@ -370,24 +371,29 @@ class Leaving:
         together = TOGETHER * max(1.0, abs(first))
         return first, tuple(k for place, k in found if place <= first + together)
 
-    def _left(self, k: int, piece: Piece, start: float, end: float, values: Any, depth: int) -> float | None:
-        """Where a function that begins positive, or at 0, becomes negative."""
+    def _left(
+        self, k: int, piece: Piece, span: tuple[float, float], values: Any, beside: float, depth: int
+    ) -> float | None:
+        """Where a function becomes negative that begins positive, or at 0 but for so much ``beside`` it."""
         if not np.all(np.isfinite(values)):
             return None
+        start, end = span
         size = float(np.max(np.abs(values)))
         begins = start == piece.start
-        shifted = values - min(values[0], 0.0) if begins else values
+        shifted = values - beside
         known = series(shifted)
         if free_of_zeros(known) and shifted[0] > 0:
             return None
-        if not resolved(known, 1e-14 * size) and depth > 0:
+        # Of a step that is hardly longer than the rounding of its times no more can be resolved than these leave.
+        rounding = 1e-14 * size + np.ptp(values) * np.spacing(abs(end)) / (end - start)
+        if not resolved(known, rounding) and depth > 0:
             middle = 0.5 * (start + end)
-            for a, b in ((start, middle), (middle, end)):
-                place = self._left(k, piece, a, b, along(self._values, piece, a, b)[k], depth - 1)
+            for half in ((start, middle), (middle, end)):
+                place = self._left(k, piece, half, along(self._values, piece, *half)[k], beside, depth - 1)
                 if place is not None:
                     return place
             return None
-        if not resolved(known, 1e-14 * size) and len(self._passed.unresolved) < MOST_KEPT:
+        if not resolved(known, rounding) and len(self._passed.unresolved) < MOST_KEPT:
             self._passed.unresolved.append(start)
         # Beside a switch that was just passed, what is within the tolerance of it is at it.
         near = 0.1 * self._tolerance if begins and abs(values[0]) < 1e-6 * (1 + size) else 0.0

@@ -68,6 +68,10 @@ class NotPeriodic(Exception):
     """There is no periodic first approximation to judge; the message says why."""
 
 
+class ConstantCoefficients(NotPeriodic):
+    """The coefficients do not depend on the time, perhaps at these values only."""
+
+
 class Word(Enum):
     """What is proved of the motion."""
 
@@ -230,7 +234,7 @@ def _require_rest(code: Code, dynamics: Dynamics) -> None:
 def common_frequency(code: Code) -> Fraction:
     """2 pi/T: the greatest common divisor of the frequencies of all sines and cosines of the time.
 
-    Raises NotPeriodic where the outputs are constant, or where the time is elsewhere than in sines and cosines.
+    Raises ConstantCoefficients, and NotPeriodic where the time is elsewhere than in sines and cosines.
     """
     program = code.program
     slopes: dict[int, Fraction] = {}
@@ -260,7 +264,7 @@ def common_frequency(code: Code) -> Fraction:
     _require_no_time(any(slopes[node.number] for node in code.outputs))
     all_of_them = frozenset().union(*(frequencies[node.number] for node in code.outputs))
     if not all_of_them:
-        raise NotPeriodic("its coefficients are constant: problem 6 judges it (mbsym run)")
+        raise ConstantCoefficients("its coefficients are constant: problem 6 judges it (mbsym run)")
     bottom = lcm(*(one.denominator for one in all_of_them))
     return Fraction(gcd(*(int(one * bottom) for one in all_of_them)), bottom)
 

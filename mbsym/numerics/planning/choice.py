@@ -17,7 +17,7 @@ from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.prices import COMPILED, cost
+from mbsym.numerics.planning.prices import cost
 
 #: So many steps of a compiled explicit method are soon done: no need to look for anything better.
 FEW_STEPS = 100_000
@@ -37,7 +37,8 @@ class Choice:
     """A method and why.
 
     ``decay`` is the fastest rate at which a motion dies out and ``frequency`` the greatest angular frequency, both from
-    the Jacobian at the initial state; ``measured`` says what trials came to, if there were any.  They count work
+    the Jacobian at the initial state; ``turned`` where the motion is known to become stiff on the way: ``decay`` is
+    then the fastest one where it does.  ``measured`` says what trials came to, if there were any.  They count work
     (``mbsym.numerics.planning.prices``), so that neither the machine nor what else runs decides anything.
     """
 
@@ -46,6 +47,12 @@ class Choice:
     decay: float
     frequency: float
     measured: str = ""
+    turned: bool = False
+
+    @property
+    def stiff(self) -> bool:
+        """Whether stability rules explicit steps at first or on the way."""
+        return self.turned or self.method.traits.implicit
 
 
 def choose(dynamics: Dynamics, tolerance: float, time_: float, scalar: str = FLOAT64) -> Choice:
@@ -93,7 +100,7 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
         found = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
         if found is not None and found < least:
             best, least = METHODS[name], found
-        if found is not None and name in COMPILED:
+        if found is not None and METHODS[name].traits.compiled:
             break  # what is not compiled costs more, its trial, too
     if best is explicit:
         text = "motions die out at rates up to [[rate]], yet explicit steps cost less here, by counted work"

@@ -19,9 +19,9 @@ import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
+from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
 
 #: Where within a step, its end included, and how many places in all.
@@ -77,16 +77,6 @@ TRIES = 5
 
 #: Costs of runs that differ by less than this factor are alike: prices say no more.
 ALIKE = 1.1
-
-#: The finest tolerances that the compiled methods take: some roundings; and that SciPy's do.
-FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
-FINEST_OF_SCIPY = 2.5e-14
-
-
-def finest(method: Method, scalar: str) -> float:
-    """The least tolerance that is not silently taken for a larger one."""
-    own = method.traits.name in ("dop853", "rk45", "taylor")
-    return FINEST[scalar] if own else max(FINEST[scalar], FINEST_OF_SCIPY)
 
 
 @dataclass(frozen=True)
@@ -261,7 +251,7 @@ def _next(trial: Trial, goal: float, slope: float, spacing: float) -> Setting | 
     if trial.setting.step is not None:
         return replace(trial.setting, step=min(_round(trial.setting.step * factor), spacing))
     wanted = _round(min(trial.fineness * factor, 1e-2))
-    least = finest(trial.method, trial.scalar)
+    least = trial.method.traits.finest(trial.scalar)
     if wanted < least:
         return None if trial.fineness <= least else replace(trial.setting, tolerance=least)
     return replace(trial.setting, tolerance=wanted)
@@ -297,6 +287,9 @@ PARTS = 2_000
 #: The longest step falls, too: two runs whose steps it rules would else be one and the same.
 SHORTER = 0.7
 
+#: A finer run makes at most so many times the steps of the one before, of which so many are few.
+MORE_STEPS, FEW = 20, 1_000
+
 #: A run with fewer steps than so many times the least number is ruled by the longest step.
 MOSTLY = 1.2
 
@@ -329,29 +322,37 @@ class Yardstick:
     start: float
 
 
-def yardstick(bench: Bench, method: Method, tolerance: float, goal: float) -> Yardstick:
+def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most: int = 10_000_000) -> Yardstick:
     """A reference for settings that are to reach rho <= ``goal``; the finest that there is where none is good enough.
 
-    Raises Breakdown where a run does not come to the end.
+    Raises Breakdown where the first run does not come to the end in ``most`` steps.
     """
     longest = float(bench.times[-1]) / PARTS
     if bench.longest is not None:  # a longer one would be cut to it in every run, and two of them be one run
         longest = min(longest, bench.longest)
     scalar, last, gain, rounding = FLOAT64, inf, USUAL_GAIN, 0.0
-    before = bench.run(method, scalar, Setting(tolerance, longest=longest))
+    # An error is known by a finer run: the first one leaves room for that.
+    tolerance = max(tolerance, method.traits.finest(scalar) / APART**2)
+    before = bench.run(method, scalar, Setting(tolerance, None, most, longest))
     best = _taken(before, inf, tolerance)
     while True:
-        least = finest(method, scalar)
+        least = method.traits.finest(scalar)
         stalled = last < inf and gain > LEAST_GAIN and last * bench.finest_target < COARSE
         if stalled or tolerance <= 2 * least:
             if scalar == EXTENDED or not _extended(bench, method):
                 return best
             # Whatever of the last difference is rounding, grown along the motion, is smaller by the ratio of roundings.
             scalar, last, rounding = EXTENDED, inf, last * MORE_DIGITS if last < inf else inf
-            least = finest(method, scalar)
+            least = method.traits.finest(scalar)
         coarser, tolerance = tolerance, max(tolerance * APART, least)
         longest *= SHORTER
-        now = bench.run(method, scalar, Setting(tolerance, longest=longest))
+        limit = min(most, MORE_STEPS * max(before.work.steps, FEW))
+        try:
+            now = bench.run(method, scalar, Setting(tolerance, None, limit, longest))
+        except Breakdown as ended:  # its steps fall below what rounding lets them be
+            if ended.kind != STEP_LIMIT:
+                raise
+            return best
         apart, _ = bench.compared(before.states, now.states)
         if before.scalar != scalar:  # the initial state was rounded alike in all runs before: it shows here first
             rounding = max(rounding, apart * MORE_DIGITS)

@@ -270,7 +270,7 @@ def _settings(settled: Settled) -> Iterator[Item]:
     why = Message("as asked for") if METHOD in pinned else chosen
     if FINENESS in pinned:
         why = _fitting(found)
-    if settled.choice.method.traits.implicit and METHOD not in pinned:
+    if settled.choice.stiff and METHOD not in pinned:
         why = joined(
             [why, Message("motions die out at rates up to [[rate]]", rate=f"{settled.choice.decay:.3g}")], "; "
         )

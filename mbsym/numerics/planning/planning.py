@@ -18,12 +18,12 @@ import numpy as np
 from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.events.switching import STABLE
+from mbsym.numerics.events.switching import STABLE, rates
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.choice import Choice, choose
+from mbsym.numerics.planning.choice import ALONG, Choice, choose
 from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried, model_chosen, model_settled, richest
 from mbsym.numerics.planning.models import Model, described
@@ -35,7 +35,6 @@ from mbsym.numerics.planning.pilot import (
     Bench,
     Trial,
     Yardstick,
-    finest,
     places,
     rows,
     searched,
@@ -86,7 +85,7 @@ def contenders(
     names = ["dop853"]
     if stiff:
         names = [name for name, method in METHODS.items() if method.traits.implicit and not method.traits.fixed]
-        names.append("dop853")
+        names += ["dop853", "rk45"]
     else:
         names += ["rk45", "taylor", *(["rk4"] if rows_are_many else [])]
     for scalar in (FLOAT64, FLOAT32):
@@ -120,7 +119,7 @@ def first_setting(contender: Contender, tolerance: float, best: Trial | None, en
     traits = contender.method.traits
     if not traits.fixed:
         found = best.setting.tolerance if best is not None and best.setting.tolerance else tolerance
-        return Setting(tolerance=min(max(found, finest(contender.method, contender.scalar)), 1e-3))
+        return Setting(tolerance=min(max(found, contender.method.traits.finest(contender.scalar)), 1e-3))
     evaluations = best.work.evaluations if best is not None else 4_000
     return Setting(step=min(float(f"{end / max(10, evaluations / 4):.1e}"), spacing))
 
@@ -188,7 +187,7 @@ def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, flo
         return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
     worse = max(worse, min(1.0, (found.fineness / COARSEST) ** USUAL_SLOPE))
     tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
-    if tolerance < finest(found.method, found.scalar):
+    if tolerance < found.method.traits.finest(found.scalar):
         return None
     growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
     return found.cost * growth, f"{traits.name} {tolerance:.0e}", tolerance
@@ -335,6 +334,11 @@ def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene,
     targets = accuracy.targets(names)
     run = rows(choice.method, rich, Setting(COARSE), grid)
     states = run.states
+    stiff = [change.time for change in run.work.changes if METHODS[change.method].traits.implicit]
+    if stiff:
+        at = np.searchsorted(grid, stiff)
+        fastest = max(rates(rich, states[:, k], float(grid[k]))[0] for k in at[:REPEATS])
+        choice = replace(choice, turned=True, decay=max(choice.decay, fastest))
     kinetic = compiled_kernel(rich, "relative_energy")(np.vstack([grid, states]))[1]
     largest = float(np.max(np.abs(kinetic[np.isfinite(kinetic)]), initial=0.0))
     try:
@@ -375,12 +379,13 @@ def _completing(
 
 def _first_tolerance(scene: Scene) -> float:
     """About the tolerance of the run that is looked for."""
-    small = min(1.0, float(np.min(scene.scale[:-1])))
-    return float(f"{min(1e-4, max(0.1 * float(np.min(scene.targets)) * small, 1e-14)):.0e}")
+    return float(f"{min(1e-4, max(0.1 * float(np.min(scene.targets)), 1e-14)):.0e}")
 
 
 def _base(choice: Choice) -> Method:
-    return choice.method if choice.method.traits.implicit else METHODS[EXPLICIT]
+    if choice.method.traits.implicit:
+        return choice.method
+    return METHODS[ALONG if choice.turned else EXPLICIT]
 
 
 def _measured_by(bench: Bench, choice: Choice, first: float, goal: float) -> Yardstick:
@@ -390,14 +395,13 @@ def _measured_by(bench: Bench, choice: Choice, first: float, goal: float) -> Yar
     not to be held against the others.
     """
     found = yardstick(bench, _base(choice), first, goal)
-    if not choice.method.traits.implicit or found.known <= KNOWN * goal:
+    if not choice.stiff or found.known <= KNOWN * goal:
         return found
-    steps = int(choice.decay * float(bench.times[-1]) / STABLE)
-    work = Work(evaluations=DOP853_STAGES * steps, steps=steps)
-    if not cost(bench.dynamics, EXPLICIT, EXTENDED, work) < MOST_TO_MEASURE:
+    most = int(MOST_TO_MEASURE / cost(bench.dynamics, EXPLICIT, EXTENDED, Work(evaluations=DOP853_STAGES, steps=1)))
+    if not choice.turned and choice.decay * float(bench.times[-1]) / STABLE > most:
         return found
     try:
-        return min(found, yardstick(bench, METHODS[EXPLICIT], first, goal), key=lambda one: one.known)
+        return min(found, yardstick(bench, METHODS[EXPLICIT], first, goal, most), key=lambda one: one.known)
     except (Breakdown, Unusable):
         return found
 
@@ -427,7 +431,7 @@ def _settled(
         return bench.run(METHODS[name], pins.scalar or FLOAT64, pins.setting, often=True)
     found: Trial | None = None
     begun = len(bench.trials)
-    stiff = choice.method.traits.implicit
+    stiff = choice.stiff
     for one in _allowed(bench, model, pins, stiff, many):
         spent = sum(trial.cost for trial in bench.trials[begun:])
         if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):

@@ -15,6 +15,7 @@ from typing import Protocol
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.methods.interface import Work
+from mbsym.numerics.methods.table import METHODS
 
 #: A call of a compiled right-hand side, and one of its operations.
 CALL, OPERATION = 15e-9, 6e-10
@@ -29,15 +30,12 @@ STARTED, STARTED_EACH = 1e-3, ("taylor",)
 #: A coefficient of a Taylor series beside an operation of the right-hand side.
 COEFFICIENT = 6.0
 
-#: An evaluation, with its share of the linear algebra, by methods that are not compiled.
-INTERPRETED = {"lsoda": 13e-6, "radau": 5e-5, "bdf": 7e-5, "scipy-rk45": 2e-5, "scipy-dop853": 2e-5}
-
 #: A Jacobian of an implicit method of SciPy's, with all that is done between two of them, in a run that began with
 #: another.
 JACOBIAN = 1e-2
 
-#: Implicit methods with machine code of their own for Jacobians, and solutions with one matrix.
-COMPILED, SOLVED = ("midpoint", "midpoint4", "midpoint6", "rodas5p"), 8
+#: Solutions with one matrix by a compiled implicit method.
+SOLVED = 8
 
 #: A step that is made from outside of machine code, and looked at, as so many at most are (``trade.comparison``); one
 #: where switches or narrow loads are looked for.
@@ -64,11 +62,12 @@ def cost(dynamics: Dynamics, method: str, scalar: str, work: Work, looked_at: bo
     besides = LOOKED_AT * min(steps, FOLLOWED) if looked_at else 0.0
     if not dynamics.features.none:
         besides = max(besides, SEARCHED * steps)
-    if method in INTERPRETED:
-        return work.evaluations * (INTERPRETED[method] + _operations(dynamics) * OPERATION) + besides
+    traits = METHODS[method].traits if method in METHODS else None  # parts have methods of their own
+    if traits is not None and traits.interpreted:
+        return work.evaluations * (traits.interpreted + _operations(dynamics) * OPERATION) + besides
     operations = _operations(dynamics) * (COEFFICIENT if method == "taylor" else 1.0)
     whole = work.evaluations * (CALL + operations * OPERATION) * DEARER[scalar]
-    if method in COMPILED:  # a Jacobian is about as many right-hand sides as the state
+    if traits is not None and traits.implicit:  # a Jacobian is about as many right-hand sides as the state
         size = len(dynamics.scenario.state)
         linear = OPERATION * (size**3 / 3 + SOLVED * size**2)
         return whole * (1 + size * work.jacobians / max(1, work.evaluations)) + work.jacobians * linear + besides

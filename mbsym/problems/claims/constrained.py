@@ -111,6 +111,9 @@ def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
     ring, form, along = derived.ring, derived.form, _along(derived)
     claimed = _polynomial(derived, result)
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
+        moving = ring.dependencies(claimed, [x.name for x in form.positions])
+        if moving and along.vanishes(form.rate(claimed)):
+            return replace(result, remark=FROM_CONSTRAINTS)
         return of_positions(form, result, claimed)
     if all(
         form.vanishes(x) is True for x in along.along_speeds([ring.derivative(claimed, u.name) for u in form.speeds])

@@ -227,9 +227,9 @@ class Trials:
         return trial.verdict
 
     def looked_into(self, trial: Trial) -> Verdict:
-        """The same after a look at the nonlinear system, where the first approximation leaves it open."""
+        """The same after a look at the nonlinear system, where that may decide more."""
         verdict = self.verdict(trial)
-        if verdict.word.open and not trial.looked:
+        if (verdict.word.open or verdict.word is Word.STABLE) and not trial.looked:
             self.ring.spend(WORK_OF_A_LOOK)
             trial.verdict, trial.looked = self._decided_at(verdict, self._parameters(trial)), True
         return self.verdict(trial)

@@ -120,7 +120,7 @@ def along(
             there = {**values, name: value}
             if not conservative:
                 exact = isinstance(value, Fraction)
-                return judged_field(found, there, lambda: to(ORDER)) if exact else judged_on_border(found, there, zero)
+                return judged_field(to, there) if exact else judged_on_border(found, there, zero)
             if "product" in zero and not isinstance(value, Fraction):
                 return at_zero_root(to(ORDER), there)
             if "discriminant" in zero and not isinstance(value, Fraction):

@@ -48,14 +48,17 @@ def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tupl
     return [*velocities, *map(cut, rates)], positions
 
 
-def judged_field(found: Expansion, values: Mapping[str, Any], further: Callable[[], Expansion] | None = None) -> Judged:
-    """What is decided at exact values; ``further``: the expansion to order 6, where third order decides nothing."""
+def judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
+    """What is decided at exact values; the Lagrangian is expanded ``to`` a higher order only where that decides."""
     tower = Tower()
-    exact = exact_values(found, tower, values)
+    exact = exact_values(to(2), tower, values)
     if exact is None:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
-    field, positions = state_field(over_tower(found, tower, exact))
-    whole_ones = faddeev(matrix_of(field), tower.zero, tower.one)[1]
+
+    def field(order: int) -> tuple[list[Truncated], tuple[str, ...]]:
+        return state_field(over_tower(to(order + 1), tower, exact), order)
+
+    whole_ones = faddeev(matrix_of(field(1)[0]), tower.zero, tower.one)[1]
     coefficients = [x for one in whole_ones if (x := tower.rational(one)) is not None]
     if len(coefficients) < len(whole_ones):
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
@@ -70,10 +73,9 @@ def judged_field(found: Expansion, values: Mapping[str, Any], further: Callable[
     if not pairs and not zeros:
         return Judged(Outcome.ASYMPTOTIC, Theorem.FIRST)
     if pairs == 1 and not zeros:
-        longer = None if further is None else lambda: state_field(over_tower(further(), tower, exact), 5)[0]
-        return _pair(tower, field, positions, tower.element(square[0] / square[1]), longer)
+        return _pair(tower, field, tower.element(square[0] / square[1]))
     if zeros == 1 and not pairs:
-        return _zero(tower, field)
+        return _zero(tower, field(3)[0])
     why = Why.MIXED_ROOTS if pairs and zeros else Why.MORE_PAIRS if pairs else Why.TWO_ZERO_ROOTS
     return Judged(Outcome.UNDECIDED, Theorem.NONE, why)
 
@@ -110,17 +112,11 @@ def _size(x: Element) -> float:
     return float(not x.is_zero())
 
 
-def _pair(
-    tower: Tower,
-    field: Sequence[Truncated],
-    positions: Sequence[str],
-    square: Element,
-    further: Callable[[], Sequence[Truncated]] | None,
-) -> Judged:
-    coefficient, amplitude_of = _coefficient(tower, field, positions, square)
+def _pair(tower: Tower, field: Callable[[int], tuple[Sequence[Truncated], Sequence[str]]], square: Element) -> Judged:
+    coefficient, amplitude_of = _coefficient(tower, *field(3), square)
     degree = None
-    if coefficient.is_zero() and further is not None:  # Bautin's point
-        coefficient, amplitude_of = _coefficient(tower, further(), positions, square)
+    if coefficient.is_zero():  # Bautin's point
+        coefficient, amplitude_of = _coefficient(tower, *field(5), square)
         degree = 5
     number = tower.rational(coefficient)
     w = arb(tower.rational(square)).sqrt()

@@ -108,7 +108,7 @@ def normal_forms(
 def _judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
     """With applied forces, at numbers: undecided where coefficients are no exact numbers (sines, exponentials)."""
     try:
-        return judged_field(to(4), values, lambda: to(ORDER))
+        return judged_field(to, values)
     except SingularMass:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.SINGULAR_MASS)
     except (NoClosedForm, NoValue):  # the tower has square roots of numbers, but no pi

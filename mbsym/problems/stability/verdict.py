@@ -223,6 +223,11 @@ def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept}
     flaws = frozenset[Flaw]().union(*(one.flawed for one in verdicts))
     row = row_of(kept, flaws)
+    if not row.word.stable and all(one.stable for one in verdicts):
+        last = max(verdicts, key=lambda one: [*Word].index(one.word))
+        if last.flawed >= flaws - {Flaw.HERE}:  # stable everywhere, though no one theorem says so
+            names = tuple(sorted({name for one in verdicts for name in one.theorems}))
+            return replace(last, theorems=names, flaws=flaws)
     names = () if row.ground is None else grounds[row.ground]
     alike = [one for one in verdicts if one.word == row.word]
     if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):

@@ -105,10 +105,9 @@ def _joined(*parts: str) -> str:
 
 def line(left: str, value: Formula, right: str, sign: str, size: str, spelled: bool = False) -> Markup:
     """``left = value right`` as a line of its own; folded away behind its ``size`` where it is long."""
-    pieces = mathml_pieces(value.ring, value.polynomial)
-    first = _joined(left, mo(sign) if left else "", pieces[0])
-    written = whole([first, *pieces[1:]], right, spellings(value, spelled))
-    if _size(value) <= FOLDED:
+    first, *rest = pieces(value)
+    written = whole([_joined(left, mo(sign) if left else "", first), *rest], right, spellings(value, spelled))
+    if extent(value) <= FOLDED:
         return written
     head = math(left, mo(sign), "<mo>\u2026</mo>") if left else ""
     return Markup(f"<details><summary>{head} <small>{escape(size)}</small></summary>{written}</details>")
@@ -131,8 +130,14 @@ def zero(values: Column) -> bool:
 # --- vectors and matrices ---------------------------------------------------------------------------------------------
 
 
-def _size(value: Formula) -> int:
+def extent(value: Formula) -> int:
+    """How many letters and numbers it has."""
     return leaves(shape_of(value.shown.ring, value.shown.polynomial))
+
+
+def pieces(value: Formula) -> list[str]:
+    """Finished MathML between which a line may end."""
+    return mathml_pieces(value.ring, value.polynomial)
 
 
 def inline(value: Formula, spelled: bool = False) -> Markup:
@@ -143,7 +148,7 @@ def inline(value: Formula, spelled: bool = False) -> Markup:
 
 def components(values: Column, long: frozenset[int] = frozenset(), spelled: bool = False) -> Markup:
     """(a, b, c), or nothing if that would be too wide or holds one of the ``long`` formulas."""
-    if any(id(x) in long or x.terms > 30 for x in values) or sum(map(_size, values)) > WIDEST:
+    if any(id(x) in long or x.terms > 30 for x in values) or sum(map(extent, values)) > WIDEST:
         return Markup("")
     return Markup(row([inline(x, spelled) for x in values]))
 
@@ -155,7 +160,7 @@ def matrix(value: Matrix, long: frozenset[int] = frozenset(), spelled: bool = Fa
     number, attributes = _common_number(value), spellings(value, spelled)
     if number > 1:
         value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in line] for line in value.polynomials])
-    if sum(max(map(_size, column)) for column in zip(*value, strict=True)) > WIDEST:
+    if sum(max(map(extent, column)) for column in zip(*value, strict=True)) > WIDEST:
         return Markup("")
     written = table([[mathml_text(x.ring, x.polynomial) for x in line] for line in value])
     if number != 1:
@@ -220,4 +225,4 @@ def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Ca
 
 def is_readable(value: Formula) -> bool:
     """Whether anybody would read the polynomial."""
-    return value.terms <= LONGEST and _size(value) < LONGEST_CONDITION
+    return value.terms <= LONGEST and extent(value) < LONGEST_CONDITION

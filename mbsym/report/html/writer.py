@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import singledispatchmethod
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 from markupsafe import Markup, escape
 
@@ -44,6 +44,8 @@ from mbsym.report.plain_writer import Writer as PlainWriter
 from mbsym.report.unit_text import labelled
 from mbsym.report.words.passages import Passage
 
+#: A formula in the text of no more letters and numbers stands in one line.
+UNBROKEN = 10
 _DOTS = ("", "\u02d9", "\u00a8")
 _PLAIN = PlainWriter()
 _DIALECT = Dialect()
@@ -135,6 +137,13 @@ class Writer:
         if isinstance(value.parts[-1] if value.parts else "", content.Numbered):
             return Markup('<span class="together">{}</span>').format(joined)  # no line ends in front of the link
         return joined
+
+    @inline.register
+    def _(self, value: content.Relation) -> Markup:
+        """In one piece where it is short; a line ends between the pieces of a long one."""
+        if sum(formulas.extent(x) for x in value.parts if isinstance(x, Formula)) <= UNBROKEN:
+            return formulas.math(self.math(value))
+        return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
 
     @inline.register
     def _(self, value: content.Emphasis) -> Markup:
@@ -295,23 +304,30 @@ class Writer:
         return formulas.text_line(self.math(shown))
 
     def _relation(self, parts: Sequence[Math | str]) -> Markup:
-        """A line that breaks in the last long formula that it holds."""
+        """A line that breaks in the long formulas that it holds; one value on the left may be folded away."""
         parts = [x.value if isinstance(x, content.Readable) and formulas.is_readable(x.value) else x for x in parts]
-        place = max((k for k, x in enumerate(parts) if isinstance(x, Formula)), default=-1)
-        if place < 0:
-            *before, last = parts
-            if isinstance(last, content.Polynomial) and last.power == 1:
-                left = "".join(map(self.math, before))
+        match parts:
+            case [*before, content.Polynomial(power=1) as last]:
                 first, *rest = self._pieces(last)
-                return formulas.whole([left + first, *rest])
-            return formulas.text_line(*map(self.math, parts))
-        value = parts[place]
-        assert isinstance(value, Formula)
-        right = "".join(map(self.math, parts[place + 1 :]))
-        if place == 0:
-            return self._line("", value, right)
-        left = "".join(map(self.math, parts[: place - 1]))
-        return self._line(left, value, right, str(parts[place - 1]))
+                return formulas.whole(["".join(map(self.math, before)) + first, *rest])
+        places = [k for k, x in enumerate(parts) if isinstance(x, Formula)]
+        value = parts[places[-1]] if places else None
+        if isinstance(value, Formula) and (len(places) == 1 or formulas.extent(value) > formulas.FOLDED):
+            *before, sign = parts[: places[-1]] or ("",)
+            right = "".join(map(self.math, parts[places[-1] + 1 :]))
+            if isinstance(sign, str):
+                return self._line("".join(map(self.math, before)), value, right, sign)
+        return formulas.whole(self._relation_pieces(parts))
+
+    def _relation_pieces(self, parts: Sequence[Math | str]) -> list[str]:
+        """Between these a line may end: those of each formula, with what stands beside."""
+        pieces = [""]
+        for part in parts:
+            whole = not isinstance(part, Formula) or self._is_withheld(part)
+            first, *rest = [self.math(part)] if whole else formulas.pieces(cast("Formula", part))
+            pieces[-1] += first
+            pieces += rest
+        return pieces
 
     def _line(self, left: str, value: Formula, right: str = "", sign: str = "=") -> Markup:
         if self._is_withheld(value):

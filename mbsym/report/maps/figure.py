@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -51,6 +52,7 @@ from mbsym.report.maps.frame import (
     axis_label,
     equal,
     framed,
+    in_mathtext,
     legend,
     look_of_count,
     look_of_degree,
@@ -429,7 +431,7 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
-                words = language.say(border_words(found, k))
+                words = language.say(border_words(found, k, in_mathtext))
                 if isinstance(found.ground, Line):
                     words = f"{float_of(found.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)
@@ -451,8 +453,17 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
     for words, names in by_condition.items():
         handle = ", ".join(names)
         few = len(names) <= MOST_BESIDE  # more letters have no room beside the words
-        entries.append((handle if few else "", fill(words if few else f"{handle}: {words}", WIDEST)))
+        entries.append((handle if few else "", _filled(words if few else f"{handle}: {words}")))
     if dashed:
         line = Line2D([], [], color=DARK, linewidth=0.8, linestyle=_DASHES)
         entries.append((line, language.say("dashed: another verdict on the curve alone")))
     return entries
+
+
+def _filled(words: str) -> str:
+    """In lines; of a formula only what is seen of it has a width, and none is cut."""
+    formulas = iter(re.findall(_FORMULA, words))
+    return re.sub("\ue000", lambda _: next(formulas), fill(re.sub(_FORMULA, "\ue000", words), WIDEST))
+
+
+_FORMULA = r"\$[^$]*\$"

@@ -83,7 +83,12 @@ def framed(axes: Axes, size: float = SMALL) -> None:
 
 def axis_label(system: System, name: str) -> str:
     """The name as a formula, with its unit."""
-    return labelled(named(LatexNames([name]), name), unit_of(system, name))
+    return labelled(in_mathtext(name), unit_of(system, name))
+
+
+def in_mathtext(name: str) -> str:
+    """A name by itself."""
+    return named(LatexNames([name]), name)
 
 
 def named(names: LatexNames, name: str) -> str:

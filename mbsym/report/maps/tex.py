@@ -112,7 +112,7 @@ def caption_of(system: System, head: str, values: Mapping[str, Any], language: L
 def figure_lines(system: System, name: str, caption: str, command: str) -> list[str]:
     """A figure with a picture of the same folder, and a label like those of the system's equations."""
     return [
-        f"% needs \\usepackage{{graphicx}}; written by mbsym {command}",
+        rf"% Written by mbsym {command}.  Needs \usepackage{{graphicx}}; from another folder \graphicspath, too.",
         r"\begin{figure}",
         r"\centering",
         rf"\includegraphics[width=\columnwidth]{{{name}.pdf}}",
@@ -133,13 +133,22 @@ def _marks(found: Map, names: LatexNames, language: Language) -> Iterator[str]:
     file = f"{stem(found)}.json"
     for name, letter in lettered(found).items():
         plane, k = places[name]
-        words = escaped(language.say(border_words(plane, k)))
+        words = _with_formulas(language.say(border_words(plane, k, _in_dollars)))
         if isinstance(plane.ground, Line):
             equality = f"${names[plane.axes[0].name]} = {float_of(plane.corners[k].sample):.10g}$"
         else:
             own = k >= len(found.boundaries.factors)
             equality = equation((plane if own else found).boundaries.factors[k], names, language, file)
         yield rf"\item[\textit{{{letter}}}] {equality} \quad ({words})"
+
+
+def _in_dollars(name: str) -> str:
+    return f"${LatexNames([name])[name]}$"
+
+
+def _with_formulas(words: str) -> str:
+    """Words as LaTeX; what stands between dollars is LaTeX already."""
+    return "$".join(part if k % 2 else escaped(part) for k, part in enumerate(words.split("$")))
 
 
 def equation(p: Any, names: LatexNames, language: Language, file: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
@@ -80,17 +80,18 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
     return min(conditions, key=lambda one: order.index(one.origin))
 
 
-def condition_words(condition: Condition, found: Map) -> Message:
-    """``double root: discriminant (psi, phi, sigma)``."""
+def condition_words(condition: Condition, found: Map, named: Callable[[str], str] = str) -> Message:
+    """``double root: discriminant (psi, phi, sigma)``; ``named`` writes a coordinate."""
     words = Message(_CONDITIONS[condition.origin])
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
         return joined((words, condition.about), ": ") if condition.about else words
     if condition.part is None or found.section is None or len(found.section.parts) == 1:
         return words
-    return Message("[[words]] ([[names]])", words=words, names=", ".join(found.section.coordinates[condition.part]))
+    names = ", ".join(map(named, found.section.coordinates[condition.part]))
+    return Message("[[words]] ([[names]])", words=words, names=names)
 
 
-def border_words(found: Map, k: int) -> Message:
+def border_words(found: Map, k: int, named: Callable[[str], str] = str) -> Message:
     """What a letter of the picture stands for: curve ``k``, or point ``k`` of a line.
 
     Where drawn borders bound what is not judged it is what parameters have to keep.
@@ -98,7 +99,7 @@ def border_words(found: Map, k: int) -> Message:
     borders, conditions = marked(found, k)
     sides = [x for one in borders if found.drawn(one) for x in found.beside(one) if x is not None]
     condition = telling(conditions, outside=any(x.lack is not None for x in sides))
-    return joined((condition_words(condition, found), *onset_words(borders)), ", ")
+    return joined((condition_words(condition, found, named), *onset_words(borders)), ", ")
 
 
 def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:

@@ -24,8 +24,7 @@ from mbsym.report.runs.certificate import certificate_json
 from mbsym.report.runs.constrained_run_words import constraints_json
 from mbsym.report.runs.events import events_json
 from mbsym.report.runs.plan_words import model_json, plan_json
-from mbsym.report.runs.simulation_words import between_steps_json, conservation_json, error_json, laws_json
-from mbsym.report.runs.state_run_words import states_json
+from mbsym.report.runs.simulation_words import between_steps_json, conservation_json, error_json, laws_json, states_json
 from mbsym.simulation import Simulation
 from mbsym.simulation.sampling import may_change
 from mbsym.source.yaml_writer import meaning

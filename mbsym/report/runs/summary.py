@@ -23,9 +23,9 @@ from mbsym.report.runs.simulation_words import (
     passed_over,
     quality,
     setting_words,
+    state_lines,
     switch_line,
 )
-from mbsym.report.runs.state_run_words import state_lines
 from mbsym.report.unit_text import pretty
 
 if TYPE_CHECKING:

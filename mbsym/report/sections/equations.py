@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 from msgspec import UNSET, UnsetType
 
+from mbsym.algebra.factors import content as content_of
 from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import Expression, add, multiply, number, power
 from mbsym.expressions.tree import Name as Variable
-from mbsym.formulas.formula import Column, Formula
+from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
 from mbsym.report.code.programs import programs_of
@@ -21,6 +22,8 @@ from mbsym.report.content import (
     Display,
     Folded,
     Heading,
+    Listed,
+    Math,
     Matrices,
     Name,
     Relation,
@@ -189,7 +192,7 @@ def content(results: Results) -> Iterator[Block]:
         if written:
             yield paragraph(Said("The equations of motion:"))
         for k, one in enumerate(written, start=1):
-            yield Display(Relation(one, "=", 0), f"equation:{k}")
+            yield Display(one, f"equation:{k}")
         yield paragraph(equations)
         yield from _closed(found)
     else:
@@ -203,20 +206,68 @@ def content(results: Results) -> Iterator[Block]:
     yield from _of_reactions(results)
 
 
-#: Longer formulas (in characters), and more equations, are left to the report.
-LONGEST, MOST_EQUATIONS = 220, 3
+#: Longer formulas (in characters), and more equations, are left to the report; of all of them, what fills a page.
+LONGEST, MOST_EQUATIONS, LONGEST_TOGETHER = 220, 6, 660
 #: Formulas with more terms are not even written to be measured.
 MOST_TERMS = 24
 
 
-def short_equations(found: Equations, system: System) -> Column:
-    """M q'' - f, where all equations are short enough to be read at a glance; constraints would add multipliers."""
-    many = len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS
-    if many or found.constraints is not None:
+def short_equations(found: Equations, system: System) -> tuple[Relation, ...]:
+    """M q'' - f = 0, under constraints J^T lambda on the right; none where they are too long to be read at a glance."""
+    if len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS:
         return ()
-    written = found.equalities(system.coordinates)
-    rates = [rate for _, rate in getattr(found, "kinematic", ())]
-    return written if len(rates) <= MOST_EQUATIONS and all(map(is_short, (*written, *rates))) else ()
+    left = found.equalities(system.coordinates)
+    forces = [constraint_forces(found, i) for i in range(len(left))]
+    beside = [x for relation in ties(found) for x in relation.parts if isinstance(x, Formula)]
+    if not are_short([*left, *beside, *(x for row in forces for x, _ in row)]):
+        return ()
+    right = [[(x, Symbol("lambda", str(k))) for x, k in row] for row in forces]
+    return tuple(Relation(x, "=", *combination(row)) for x, row in zip(left, right, strict=True))
+
+
+def ties(found: Equations) -> tuple[Relation, ...]:
+    """What stands beside these: kinematic equations of speeds, and constraints."""
+    kinematic = (Relation(Name(x, 1), "=", rate) for x, rate in getattr(found, "kinematic", ()))
+    rows = () if found.constraints is None else constraint_rows(found.constraints)
+    return (*kinematic, *(Relation(value, "=", 0) for _, value in rows))
+
+
+def are_short(values: Sequence[Formula]) -> bool:
+    """Whether all of them together are read at a glance."""
+    return all(map(is_short, values)) and sum(len(x.readable()) for x in values) <= LONGEST_TOGETHER
+
+
+def constraint_forces(found: Equations, i: int) -> tuple[tuple[Formula, int], ...]:
+    """(J^T lambda)_i: what is not zero before the multipliers of independent constraints, and their numbers from 1."""
+    tied = found.constraints
+    entries = () if tied is None else ((tied.jacobian.rows[k][i], k + 1) for k in tied.independent)
+    return tuple((x, k) for x, k in entries if not x.is_zero)
+
+
+def constraint_rows(tied: Constraints) -> Iterator[tuple[Symbol, Formula]]:
+    """Each in positions, or in velocities where it has no other form, with its letter."""
+    for k, (position, velocity) in enumerate(zip(tied.position, tied.velocity, strict=True), start=1):
+        yield (Symbol("chi", str(k)), velocity) if position is None else (Symbol("phi", str(k)), position)
+
+
+def combination(terms: Sequence[tuple[Formula, Math]]) -> Iterator[Math | str]:
+    """The sum of numbers times letters times formulas, as parts of a relation: sin(x) c would be read as sin(x c)."""
+    if not terms:
+        yield 0
+    for k, (coefficient, letter) in enumerate(terms):
+        ring, polynomial = coefficient.ring, coefficient.polynomial
+        number = abs(content_of(polynomial))
+        minus = all(x < 0 for x in polynomial.coeffs())
+        factor = Formula(ring, polynomial / (-number if minus else number))
+        if minus or k:
+            yield "-" if minus else "+"
+        if number != 1:
+            yield Formula(ring, ring.one * number)
+        yield letter
+        if factor.terms > 1:
+            yield Listed((factor,), brackets=True)
+        elif factor != 1:
+            yield factor
 
 
 def is_short(value: Formula) -> bool:
@@ -291,9 +342,8 @@ def _of_constraints(found: Equations, tied: Constraints) -> Iterator[Block]:
     free = speeds(tied.free) if tied.in_speeds else named(tied.free)
     yield Subheading((Said("Constraints"),))
     yield paragraph(joined(sentences(tied), " "))
-    for k, (name, position, velocity) in enumerate(zip(tied.names, tied.position, tied.velocity, strict=True), start=1):
-        letter, value = ("chi", velocity) if position is None else ("phi", position)
-        yield Display(Relation(Symbol(letter, str(k)), "=", value, "=", 0), f"phi:{k}", (label(name),))
+    for k, (name, (letter, value)) in enumerate(zip(tied.names, constraint_rows(tied), strict=True), start=1):
+        yield Display(Relation(letter, "=", value, "=", 0), f"phi:{k}", (label(name),))
     yield paragraph(
         Said(
             r"$J = \partial (\dot\varphi, \chi)/\partial u$, a row for each of these, and $\gamma$, their second rates "

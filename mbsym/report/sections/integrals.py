@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.message import worded
+from mbsym.expressions.message import Message, worded
 from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY, Integral
-from mbsym.report.content import Block, Display, Folded, Heading, Notation, Relation, Said, paragraph, say
+from mbsym.report.content import Block, Display, Folded, Heading, Inline, Name, Notation, Relation, Said, paragraph, say
 from mbsym.report.documents import results as doc
 from mbsym.report.plain import Write
 
@@ -29,6 +29,13 @@ _ENERGY = (
 CONSTANT = Notation(r"\mathrm{const}")
 
 
+def title(item: Integral) -> Inline:
+    """What it is called; a coordinate in it as a letter."""
+    if isinstance(item.name, Message) and "name" in item.name.gaps and item.of:
+        return say(item.name.text, name=Name(item.of))
+    return worded(item.name)
+
+
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("integrals", Said("Problem 7. First integrals"))
@@ -37,7 +44,7 @@ def content(results: Results) -> Iterator[Block]:
         return
     found: tuple[Integral, ...] = results.found[7]
     for number, item in enumerate(found, start=1):
-        yield paragraph(worded(item.name), " (", worded(item.status), "):")
+        yield paragraph(title(item), " (", worded(item.status), "):")
         written = Display(Relation(item.formula, "=", CONSTANT), f"integral:{number}")
         if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
             yield Display(Relation(Notation("T_2 - T_0 - U"), "=", CONSTANT), f"integral:{number}")

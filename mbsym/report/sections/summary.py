@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import occurring, rational_ratio
-from mbsym.expressions.message import worded
+from mbsym.expressions.message import Counted, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import rate_unit
@@ -51,9 +51,9 @@ from mbsym.report.content import (
 from mbsym.report.letters import letters_of
 from mbsym.report.sections.canonical import TITLES
 from mbsym.report.sections.energy import is_felt
-from mbsym.report.sections.equations import is_short, short_equations
+from mbsym.report.sections.equations import are_short, is_short, short_equations, ties
 from mbsym.report.sections.equilibrium import exists_if
-from mbsym.report.sections.integrals import CONSTANT
+from mbsym.report.sections.integrals import CONSTANT, title
 from mbsym.report.sections.stability import condition_keys, label_of
 from mbsym.report.sections.system import unperturbed_motion
 from mbsym.report.words.claims import HELD, OPEN, REFUTED, claim_line, decided, grade, names_in, titles, verdict, where
@@ -62,6 +62,7 @@ from mbsym.report.words.stabilisation_words import controllability
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.equations import Equations
     from mbsym.report.results import Results
 
 #: More conditions of a case, cases of a subsystem, coordinates of a motion are left to the problems.
@@ -120,14 +121,12 @@ def finding(results: Results) -> Facts:
 def _facts(results: Results) -> Iterator[Fact]:
     system, found = results.system, results.found
     yield _size(system, found)
-    if 3 in found and (equations := short_equations(found[3], system)):
-        written = [Relation(one, "=", 0) for one in equations]
-        written += [Relation(Name(x, 1), "=", rate) for x, rate in getattr(found[3], "kinematic", ())]
-        yield Fact(Said("Equations"), tuple(written))
+    if equations := tuple(_equations(found, system)):
+        yield Fact(Said("Equations"), equations)
     if 4 in found:
         yield Fact(Said("Motion"), tuple(_motion(found[4], system)))
     if 6 in found:
-        if found[6].numerical is not None:
+        if found[6].numerical is not None and not _is_everywhere(found[6]):
             yield Fact(Said("At given values"), (_at_values(found[6], system),))
         lines = tuple(_stability(found[6], results))
         yield Fact(Said("Stability"), (*lines, *_meanings(lines, system)))
@@ -162,7 +161,27 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     if cyclic:
         said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
     said += ["; ", say("bodies and frames: [[count]]", count=str(len(system.bodies)))]
+    if system.inputs:
+        said += ["; ", say("inputs: $[[names]]$", names=named(x.name for x in system.inputs))]
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
+
+
+def _equations(found: dict[int, Any], system: System) -> Iterator[Inline]:
+    """The equations of motion with the constraints; where they are long, how long, and where they stand."""
+    if 3 in found:
+        equations: Equations = found[3]
+        rows, shown, number = equations.equalities(system.coordinates), short_equations(equations, system), 3
+        yield from (*shown, *ties(equations)) if shown else ()
+    elif system.linear is not None and 5 in found:
+        rows, number = found[5].equalities, 5
+        shown = tuple(Relation(x, "=", 0) for x in rows) if are_short(rows) else ()
+        yield from shown
+    else:
+        return
+    if not shown:
+        text = "[[count]], the longest with [[terms]] (problem [[number]])"
+        terms = Counted(max(x.terms for x in rows), "term")
+        yield Link(say(text, count=str(len(rows)), terms=terms, number=str(number)), f"problem-{number}")
 
 
 def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
@@ -181,9 +200,19 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
 
 
 def _integral(found: Integral) -> Inline:
-    """Its name, how surely it is one, and what it is where that is short."""
-    shown = (": ", Relation(found.formula, "=", CONSTANT)) if is_short(found.formula) else ()
-    return Phrase((worded(found.name), " (", worded(found.status), ")", *shown))
+    """Its name, how surely it is one, and what it is where that is short, else how long it is."""
+    named_surely = (title(found), " (", worded(found.status), ")")
+    if is_short(found.formula):
+        return Phrase((*named_surely, ": ", Relation(found.formula, "=", CONSTANT)))
+    length = say("[[terms]] (problem [[number]])", terms=Counted(found.formula.terms, "term"), number="7")
+    return Link(Phrase((*named_surely, ", ", length)), "problem-7")
+
+
+def _is_everywhere(found: Stability) -> bool:
+    """Whether the verdict at the given values is that for all values, and no number stands beside it."""
+    alike = [found.verdict, found.numerical, *(part.theory.verdict for part in found.subsystems)]
+    words = {(one.word, one.theorems) for one in alike if one is not None}
+    return len(words) == len(found.subsystems) == 1 and found.verdict.word.stable
 
 
 def _at_values(found: Stability, system: System) -> Inline:
@@ -202,13 +231,13 @@ def _at_values(found: Stability, system: System) -> Inline:
 
 def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     """The verdicts for all values of the parameters: that on the whole, then those on subsystems, with their cases."""
-    several, presumed = len(found.subsystems) > 1, results.presumed
-    if presumed:
-        yield Phrase((*presumed[1:], ":"))
-    if not several:
-        yield from _part(found.subsystems[0], 1, "verdict")
+    presumed = (*results.presumed[1:], ": ") if results.presumed else ()
+    if len(found.subsystems) == 1:
+        first, *further = _part(found.subsystems[0], 1, "verdict")
+        yield Phrase((*presumed, first))
+        yield from further
         return
-    yield Phrase((Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
+    yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
     word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in found.subsystems)
     if alike and (word.stable or word is Word.UNSTABLE) and all(len(lines) == 1 for lines in told):
@@ -296,11 +325,11 @@ def _counted(case: CaseStatement) -> Inline:
     count = len(case.all_of) + len(case.any_of)
     if count == 1:
         return Link(say("[[verdict]], if one condition holds", verdict=verdict), "problem-6")
-    text = "[[verdict]], if conditions hold; their number: [[count]]"
+    text = "[[verdict]], if all [[count]] conditions of problem 6 hold"
     if case.theorems:
-        text = "[[verdict]] if conditions hold; their number: [[count]]"
+        text = "[[verdict]] if all [[count]] conditions of problem 6 hold"
     if not case.all_of:
-        text = "[[verdict]] if at least one of several conditions holds; their number: [[count]]"
+        text = "[[verdict]] if one or more of [[count]] conditions of problem 6 hold"
     return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
 
 

@@ -67,7 +67,7 @@ def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Se
     from mbsym.report.runs.certificate import enclosure_csv
     from mbsym.report.runs.constrained_run_words import drift_columns
     from mbsym.report.runs.simulation_json import simulation_json
-    from mbsym.report.runs.state_run_words import norm_columns
+    from mbsym.report.runs.simulation_words import norm_columns
     from mbsym.report.runs.trajectory_csv import bodies_parts, trajectory_parts
 
     mark = "" if run.whole else "-partial"

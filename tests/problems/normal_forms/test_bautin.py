@@ -128,3 +128,11 @@ def test_it_does_not_depend_on_the_coordinates():
     )  # fmt: skip
     other = mbsym.loads(mixed).normal_forms.at_values
     assert (other.degree, other.coefficient) == (5, there.coefficient)
+
+
+def test_problem_6_and_lists_of_equilibria_say_what_problem_11_does() -> None:
+    """-x^4 x' takes energy wherever the oscillator is not at rest; without it "stable" is all."""
+    lost = mbsym.loads(LINE.format(force="-x**4*x_dot", potential="0", a="0"))
+    assert lost.stability.numerical.word == "asymptotically stable"
+    assert [*mbsym.equilibria(lost).table["verdict"]] == ["asymptotically stable"]
+    assert mbsym.loads(LINE.format(force="0", potential="0", a="0")).stability.numerical.word == "stable"
