@@ -227,7 +227,7 @@ def pivot_rows(rows: Sequence[Sequence[float]]) -> list[int]:
     left = {i: list(row) for i, row in enumerate(rows)}
     chosen: list[int] = []
     columns = set(range(len(rows[0])))
-    while columns:
+    while columns and left:
         size, i, k = max((abs(row[k]), i, k) for i, row in left.items() for k in columns)
         if not 0 < size < math.inf:
             break

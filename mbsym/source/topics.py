@@ -5,11 +5,13 @@ Everything comes from the table that the reader itself goes by, so that nothing 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from textwrap import wrap
 
 from mbsym.expressions.tree import SMOOTH
 from mbsym.model.claims import CLAIMS, EXPRESSION, ClaimKind
+from mbsym.source.examples import example_names, example_text
 from mbsym.source.grammar import Ends, Flag, Key, Kind, Named, Record, Type, plain
 from mbsym.source.keys import CLAIM, CONSTRAINTS, DESCRIPTION, LOADS
 
@@ -115,12 +117,22 @@ def meanings(word: str) -> list[str]:
         if word in kinds:
             kind = kinds[word]
             keys = f"\n\n{_listed(kind.keys)}" if kind.keys else ""
-            found.append(f"A kind of {what}: {kind.meaning}{keys}")
+            found.append(f"A kind of {what}: {kind.meaning}{keys}{_shipped(what, word)}")
         for name, kind in kinds.items():
             found += [f"A {what}, {name}\n\n{_listed({word: kind.keys[word]})}"] if word in kind.keys else []
     if word in CLAIMS:
         found.append(f"A kind of claim: {CLAIMS[word].meaning}{_keys(CLAIMS[word])}")
     return found
+
+
+def _shipped(what: str, kind: str) -> str:
+    """One of this kind as it stands in a shipped system, the shortest that stands in one line; "" where none does."""
+    item = re.compile(rf"^ *- ({re.escape(kind)}: .*[^\s:>|-])$", re.MULTILINE)
+    found = [(len(line), line, name) for name in example_names() for line in item.findall(example_text(name))]
+    if not found:
+        return ""
+    _, line, name = min(found)
+    return f"\n\nAs in {name}.yaml (mbsym examples {name}):\n\n    {what}s:\n      - {line}"
 
 
 def words() -> list[str]:

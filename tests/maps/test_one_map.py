@@ -30,7 +30,7 @@ from mbsym.report.maps.figure import map_figure
 from mbsym.report.maps.frame import values_lines
 from mbsym.report.maps.json import map_json
 from mbsym.report.maps.tex import map_tex
-from mbsym.report.maps.words import share, stem
+from mbsym.report.maps.words import rational_text, share, stem
 from mbsym.report.schemas import schema
 from mbsym.studies.map.answer import remarks
 from mbsym_cli.main import main
@@ -118,6 +118,22 @@ def test_the_same_writers_write_every_map(made: tuple[mbsym.Analysis, Map]) -> N
     tex = map_tex(analysis.system, found, Language("es"))
     assert f"{stem(found)}.pdf" in tex
     assert f"fig:{stem(found)}}}" in tex, "a label of its own"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (fmpq(981, 100), "9.81"),
+        (fmpq(2, 5), "2/5"),  # as long as 0.4: as it is
+        (fmpq(-1, 100), "-0.01"),
+        (fmpq(1, 3), "1/3"),  # no decimal is equal
+        (fmpq(10**30 + 1, 10**30), f"{10**30 + 1}/{10**30}"),  # nor is 1
+        (fmpq(7), "7"),
+    ],
+)
+def test_numbers_stand_as_people_write_them_and_stay_exact(value: fmpq, text: str) -> None:
+    assert rational_text(value) == text
+    assert Fraction(text) == Fraction(int(value.p), int(value.q))
 
 
 def test_points_of_numbers_of_equilibria(tmp_path: Path) -> None:

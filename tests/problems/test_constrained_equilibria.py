@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise, product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -500,3 +501,35 @@ def test_a_wheel_with_an_eccentric_mass_on_a_slope_is_held_by_a_spring() -> None
     assert searched(potential, lambda q: [q[0] + q[1]], (8, 8), 100) == {
         tuple(round(x.value, 4) for x in one.values) for one in found.equilibria
     }
+
+
+def test_rests_of_a_linkage_with_more_rows_than_angles() -> None:
+    """Bennett's linkage, five rows on three angles, of which two are independent: q3 = -q1, tan(q1/2) tan(q2/2) = 5.
+
+    Heights of its bars along that branch are extreme where they are listed.
+    """
+    text = (Path(__file__).parents[1] / "cases" / "constraints" / "bennett-no.yaml").read_text(encoding="utf-8")
+    found = listed(text.replace("b: {value: 5", "b: {value: 4").replace("q2: 1, q3: -1", "q2: 2.9, q3: -1"))
+
+    def turned(angle: float, axis: int) -> Any:
+        c, s = math.cos(angle), math.sin(angle)
+        return np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if axis == 0 else [[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+    def height(q: float) -> float:
+        first = turned(q, 2)
+        second = first @ turned(math.atan(3 / 4), 0) @ turned(2 * math.atan2(5 * math.cos(q / 2), math.sin(q / 2)), 2)
+        third = second @ turned(math.atan(4 / 3), 0) @ turned(-q, 2)
+        return float(((1.5 + 3 + 3) * first[:, 0] + (2 + 4) * second[:, 0] + 1.5 * third[:, 0])[2])
+
+    grid = np.linspace(-math.pi, math.pi, 4001)
+    slopes = np.diff([height(q) for q in grid])
+    extreme = {
+        (round(float(grid[k + 1]), 2), "stable" if slopes[k] < 0 else "unstable")
+        for k in range(len(slopes) - 1)
+        if slopes[k] * slopes[k + 1] < 0
+    }
+    assert {(round(one.values[0].value, 2), str(one.verdict.word)) for one in found.equilibria} == extreme
+    for one in found.equilibria:
+        q1, q2, q3 = (x.value for x in one.values)
+        assert math.tan(q1 / 2) * math.tan(q2 / 2) == pytest.approx(5)
+        assert q3 == pytest.approx(-q1)

@@ -9,6 +9,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+import yaml
 
 from mbsym.editing import explanation, suggestions
 from mbsym.editing.document.changing import changes
@@ -17,6 +18,7 @@ from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression, Name, Number
 from mbsym.model.loads import Acting
 from mbsym.source import json_schema, read, to_text, to_yaml, topics
+from mbsym.source.examples import example_text
 from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Record, Type, Vector, Way, plain
 from mbsym.source.keys import AXIS, CONSTRAINTS, DESCRIPTION, LOADS
 from mbsym.source.scope import Allowed
@@ -278,3 +280,18 @@ def test_texts_for_people_come_back_from_the_editors_text(words: str) -> None:
     assert system is not None, list(complaints)
     again, complaints = read(to_text(system), "x.txt")
     assert again == system, list(complaints)
+
+
+def test_a_kind_is_shown_as_it_stands_in_a_shipped_system() -> None:
+    """Whole, where the description has it: what is copied from there into a list of the same name is read."""
+    shown = set()
+    for section, kinds in (("loads", LOADS), ("constraints", CONSTRAINTS)):
+        for kind in kinds:
+            told = re.search(rf"As in (\S+)\.yaml .*\n\n    {section}:\n      - (.+)$", topics.meanings(kind)[0])
+            if told:
+                shown.add(kind)
+                text = example_text(told[1])
+                assert f"- {told[2]}\n" in text
+                (item,) = yaml.safe_load(f"- {told[2]}")
+                assert item in yaml.safe_load(text)[section]
+    assert {"spring", "damper", "uniform gravity", "rolling", "distance", "coincide"} <= shown

@@ -34,6 +34,7 @@ from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restric
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
 
+TOO_FEW_STATES = "there are too few states at which it could be tried"
 #: c x' = -k (x - y), c y' = k (x - y): x + y is one.
 WITHOUT_INERTIA = "it contains no velocity; whether it is constant where coordinates carry no inertia is not decided"
 
@@ -87,7 +88,11 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
     timely = ["t", *(item.name for item in derived.system.prescribed)]
     if any(ring.dependencies(x, timely) for x in parts):
         used.add("t")
+    if difference is not None and difference.is_zero:
+        return replace(result, outcome=outcome)
     example = against_constancy(derived.system, ring, derived.programs, rate, used)
+    if example is None:
+        return replace(result, outcome=UNDECIDED, difference=difference, remark=TOO_FEW_STATES)
     remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
     return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
 

@@ -243,6 +243,9 @@ def _search_whole(searches: Sequence[_ChartSearch]) -> None:
     for search in searches:
         search.doubts, search.unfinished = search.doubts * bool(left_open), False
     searches[0].doubts += left_open
+    if not left_open:
+        text = "bisection went through all positions that the constraints allow and left none undecided"
+        searches[0].remarks.append(Message(text))
 
 
 def _counted_once(searches: Sequence[_ChartSearch]) -> None:

@@ -165,11 +165,12 @@ class SearchInBoxes(Listing):
         """Rests wherever the constraints have their rank, of this case or another; what was left open."""
         known, self.doubts = self.doubts, []
         square = self._with_multipliers() if self.case.nonzero else self._square_system()
-        if square is not None:
+        if square is not None and square.coordinates:
             self._search_square(square, bisect=True)
         else:
             self._search_numerically(bisect=False)
-            self._found_from_points()
+            if not self.doubts:
+                self._found_from_points()
         left_open, self.doubts = self.doubts, known
         return left_open
 
@@ -310,10 +311,18 @@ class SearchInBoxes(Listing):
         return Square(tuple(chosen), self.occurring)
 
     def _with_multipliers(self) -> Square | None:
-        """f + J^T lambda = 0, phi = 0: no pivot is assumed, so these are all positions in which J has its rank."""
+        """f + J^T lambda = 0, phi = 0: no pivot is assumed, so these are all positions in which J has its rank.
+
+        None where some rows follow from others, so that nothing determines their multipliers.
+        """
         ring, found = self.ring, self.found
         moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-        if self.chart.restrictions or any(ring.dependencies(x, moving) for x in (*found.balanced, *found.kept)):
+        redundant = self.ranks[1] is not None and self.ranks[1] < len(found.rows)
+        if (
+            self.chart.restrictions
+            or redundant
+            or any(ring.dependencies(x, moving) for x in (*found.balanced, *found.kept))
+        ):
             return None
         forces, kept = (
             [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (found.balanced, found.kept)

@@ -17,6 +17,7 @@ from mbsym.maps.mapping import float_of
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.problems.stability.word import Word
+from mbsym.report.maps.words import rational_text
 from mbsym.report.unit_text import labelled
 
 #: Inches: the width of a column, a line of the legend.
@@ -60,7 +61,7 @@ def values_lines(values: Mapping[str, Any]) -> list[str]:
 
 def number(x: Any) -> str:
     """A rational number as it is where it is short, the first digits of another."""
-    return str(x) if _short(x) else f"{float_of(x):.{DIGITS}g}"
+    return rational_text(x) if _short(x) else f"{float_of(x):.{DIGITS}g}"
 
 
 def equal(x: Any) -> str:
@@ -69,7 +70,7 @@ def equal(x: Any) -> str:
 
 
 def _short(x: Any) -> bool:
-    return not hasattr(x, "polynomial") and len(str(x)) <= LONGEST
+    return not hasattr(x, "polynomial") and len(rational_text(x)) <= LONGEST
 
 
 def framed(axes: Axes, size: float = SMALL) -> None:

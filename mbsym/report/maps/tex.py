@@ -19,7 +19,7 @@ from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.latex.labels import prefix_of
 from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
-from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, stem
+from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, rational_text, stem
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
@@ -87,7 +87,7 @@ def _branches(system: System, found: Branches, language: Language) -> str:
 def number_tex(x: Any) -> str:
     """A rational number, a square root, or digits that end in dots."""
     if isinstance(x, fmpq):
-        return str(x)
+        return rational_text(x)
     c = x.polynomial.coeffs()
     if len(c) == 3 and c[1] == 0 and c[2] == 1:
         return ("-" if float(x) < 0 else "") + rf"\sqrt{{{-c[0]}}}"
@@ -105,8 +105,12 @@ def _plane(found: Map, names: LatexNames) -> str:
 def caption_of(system: System, head: str, values: Mapping[str, Any], language: Language, plane: str = "") -> str:
     """What is shown, over which axes, and what has a number; fractions with a stroke need no package."""
     fixed = LatexNames(list(values))
-    told = "; " + ", ".join(f"${fixed[name]} = {value}$" for name, value in values.items()) if values else ""
-    return f"{language.say(head)} {escaped(system.name)}" + (f": {plane}" if plane else "") + f"{told}."
+    told = ", ".join(f"${fixed[name]} = {rational_text(value)}$" for name, value in values.items())
+    return (
+        f"{language.say(head)} {escaped(system.name)}"
+        + (f": {plane}" if plane else "")
+        + (f"; {told}." if told else ".")
+    )
 
 
 def figure_lines(system: System, name: str, caption: str, command: str) -> list[str]:

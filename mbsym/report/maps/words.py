@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from typing import Any
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.plane.line import Line
@@ -17,6 +20,7 @@ from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
+from mbsym.report.content import exact
 
 #: Of several conditions that vanish on one curve, the first says most about it.
 _TELLING = (
@@ -71,6 +75,16 @@ LACKS = {
 def stem(found: Map) -> str:
     """What the files of a map are called, without their endings."""
     return "branches" if isinstance(found, Branches) else "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
+
+
+def rational_text(x: Any) -> str:
+    """A rational number, or what is written instead of one: ``2/5``, but ``9.81`` where the decimal is shorter."""
+    fraction = str(x)
+    decimal = exact(Fraction(fraction)).text if _RATIONAL.fullmatch(fraction) else fraction
+    return decimal if len(decimal) < len(fraction) and "e" not in decimal else fraction
+
+
+_RATIONAL = re.compile(r"-?\d{1,99}/\d{1,99}")
 
 
 def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.expressions.message import Message, worded
+from mbsym.expressions.message import worded
 from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY, Integral
 from mbsym.report.content import Block, Display, Folded, Heading, Inline, Name, Notation, Relation, Said, paragraph, say
@@ -30,10 +30,9 @@ CONSTANT = Notation(r"\mathrm{const}")
 
 
 def title(item: Integral) -> Inline:
-    """What it is called; a coordinate in it as a letter."""
-    if isinstance(item.name, Message) and "name" in item.name.gaps and item.of:
-        return say(item.name.text, name=Name(item.of))
-    return worded(item.name)
+    """What it is called; the coordinate that it is of as a letter."""
+    name = worded(item.name)
+    return say(name.text, **{gap: Name(item.of) if x == item.of else x for gap, x in name.gaps.items()})
 
 
 def content(results: Results) -> Iterator[Block]:
