@@ -800,6 +800,17 @@ class Ring(Algebra[Polynomial]):
             return self.derivative(x, velocity_name(name))
         return x.derivative(self._index["velocity", name])
 
+    def held(self, polynomials: Iterable[Polynomial]) -> set[int]:
+        """The generators of polynomials, and those in what the adjoined ones among them hold."""
+        pending, found = list(occurring(polynomials)), set[int]()
+        while pending:
+            index = pending.pop()
+            if index not in found:
+                found.add(index)
+                argument = self.generators[index].argument
+                pending += [] if argument is None else occurring([argument])
+        return found
+
     def depends_on(self, x: Polynomial, name: str) -> bool:
         """Whether a coordinate, a prescribed quantity or t occurs (plainly, under sin and cos, or adjoined)."""
         return bool(self.dependencies(x, (name,)))

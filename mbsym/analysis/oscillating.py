@@ -132,8 +132,13 @@ class Oscillating:
             return whole
         plain = self.wave(one, self.told_ring)
         reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
-        with letters_as(None):  # to write each in letters would cost more than all that is told
-            return min((plain, reduced, whole), key=lambda x: len(x.text()))
+        with letters_as(None):  # to write each in letters would take long
+            named = min((plain, reduced), key=lambda x: len(x.text()))
+            raw, most = len(named.text()), len(whole.text())
+        told = len(whole.text())
+        if told < min(raw, most):
+            return whole  # the author's letters make it shorter than ours
+        return min((named, whole), key=lambda x: len(x.text()))
 
     def written(self, one: Harmonics) -> str:
         """The same, harmonic by harmonic, in Python syntax."""

@@ -20,6 +20,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
+from math import prod
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -39,8 +40,9 @@ MOST_TERMS = 1000
 #: Of formulas with more terms (letters asked for; unasked) a step is tried only where it leaves fewer terms by
 #: ``SHORTER``: to see how much there is to read takes far more time than to count terms.
 MOST_READ, MOST_READ_UNASKED = 400, 60
-#: Candidate terms of products that the steps of one formula may take, by each route.
-WORK, WORK_UNASKED = 20_000_000, 100_000
+#: Candidate terms of products that the steps of one formula may take, by each route; unasked for; and of a formula of
+#: so many terms at most.
+WORK, WORK_UNASKED, WORK_SHORT, SHORT = 20_000_000, 100_000, 300_000, 12
 #: So many of the candidates with the fewest terms are written out, to see which is the shortest to read.
 WRITTEN = 8
 #: What is left to read at most, as a share of what there was: after one step, and after all of them; after all of them
@@ -320,6 +322,8 @@ class Rewriter:
     def _written(self, polynomial: Polynomial) -> Written | None:
         if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
             return None
+        if not self.letters.asked:
+            self.work = WORK_SHORT if len(polynomial) <= SHORT else WORK_UNASKED
         try:
             with self.ring.whole.budget(self.work):
                 return self._shortest(polynomial)
@@ -328,7 +332,52 @@ class Rewriter:
 
     def _shortest(self, polynomial: Polynomial) -> Written | None:
         ring, whole = self.ring, self.ring.whole
-        found: _Fraction = ring.fraction(self._carry(polynomial))
+        carried = self._carry(polynomial)
+        candidates = []
+        with suppress(Failure, ZeroDivisionError):
+            candidates.append(self._as_one(carried))
+        waves = self._waves(carried)
+        if len(waves) > 1:
+            with suppress(Failure, ZeroDivisionError), ring.budget(self.work):
+                coefficients = [(self._as_one(x), x, wave) for wave, x in waves]
+                if any(best is not None for best, _, _ in coefficients):
+                    terms = (ring.times(x if best is None else best, wave) for best, x, wave in coefficients)
+                    candidates.append(sum(terms, start=ring.zero))
+        best = min((x for x in candidates if x is not None), key=lambda x: size(ring, x), default=None)
+        if best is None:
+            return None
+        held = ring.held([best])
+        used = frozenset(name for name in self.values if self.places[name] in held)
+        left = {ring.generators[k].name for k in held}
+        instead = not any(ring.generators[k].name in left for name in used for k in self._symbols(name))
+        share = INSTEAD if instead else SHORTER
+        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * share:
+            return None
+        return Written(ring, best, used)
+
+    def _waves(self, polynomial: Polynomial) -> list[tuple[Polynomial, Polynomial]]:
+        """Of a series in the sine and cosine of one angle the products of these, with the quotients before them."""
+        ring, found = self.ring, dict[tuple[int, ...], dict[tuple[int, ...], Any]]()
+        held = {k: ring.generators[k] for k in occurring([polynomial])}
+        waves = [k for k, g in held.items() if g.kind in ("sine", "cosine")]
+        if len({held[k].name for k in waves}) != 1 or all(g.kind != "reciprocal" for g in held.values()):
+            return []
+        for monomial, coefficient in polynomial.terms():
+            key = tuple(int(monomial[k]) for k in waves)
+            rest = list(monomial)
+            for k in waves:
+                rest[k] = 0
+            found.setdefault(key, {})[tuple(rest)] = coefficient
+        gens = [ring.context.gen(k) for k in waves]
+        return [
+            (prod((g**n for g, n in zip(gens, key, strict=True)), start=ring.one), ring.context.from_dict(terms))
+            for key, terms in found.items()
+        ]
+
+    def _as_one(self, polynomial: Polynomial) -> Polynomial | None:
+        """Over one denominator, by steps that each leave less to read, from the start or from the end of a chain."""
+        ring = self.ring
+        found: _Fraction = ring.fraction(polynomial)
         if len(found[0]) > MOST_TERMS or not self._applicable(found, self.steps, True):
             return None  # over one denominator it may be long
         routes = [self._improved(found)]
@@ -337,17 +386,7 @@ class Rewriter:
             if chain is not None and not (self._long(found) and _terms(chain) > _terms(found) * SHORTER):
                 routes.append(self._improved(chain))
         routes = [x for x in routes if x is not found]
-        if not routes:
-            return None
-        found = min(routes, key=self._read)
-        best, held = self._joined(found), self._held(found)
-        used = frozenset(name for name in self.values if self.places[name] in held)
-        left = {ring.generators[k].name for k in held}
-        instead = not any(ring.generators[k].name in left for name in used for k in self._symbols(name))
-        share = INSTEAD if instead else SHORTER
-        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * share:
-            return None
-        return Written(ring, best, used)
+        return self._joined(min(routes, key=self._read)) if routes else None
 
     def _improved(self, found: _Fraction) -> _Fraction:
         """What single steps make of it, each of which leaves less to read, or far fewer terms of many."""
@@ -406,7 +445,7 @@ class Rewriter:
 
     def _held(self, found: _Fraction) -> set[int]:
         """The generators of a fraction, and those in what is adjoined."""
-        return _held(self.ring, [found[0], *(x for x, _ in found[1])])
+        return self.ring.held([found[0], *(x for x, _ in found[1])])
 
     def _applicable(self, found: _Fraction, steps: Iterable[_Step], forced: bool = False) -> list[_Step]:
         """Those that have something to do and, unless ``forced``, bring in no other symbol than their letter."""
@@ -432,7 +471,7 @@ class Rewriter:
     def _joined(self, found: _Fraction) -> Polynomial:
         ring, result = self.ring, found[0]
         for factor, exponent in found[1]:
-            result = ring.reduce(ring.times(result, ring.reciprocal(factor) ** exponent))
+            result = ring.times(result, ring.reciprocal(factor) ** exponent)
         return result
 
     def _after(self, found: _Fraction, step: _Step) -> _Fraction | None:
@@ -506,7 +545,7 @@ class Rewriter:
 def size(ring: Ring, polynomial: Polynomial) -> int:
     """How much of a formula there is to read (``shape.length``), what stands under roots and in functions with it."""
     angles = angles_or("shorter")
-    held = (ring.generators[k] for k in _held(ring, [polynomial]))
+    held = (ring.generators[k] for k in ring.held([polynomial]))
     inside = [g.argument for g in held if g.argument is not None and g.kind != "reciprocal"]
     return sum(length(ring, present(ring, x, angles)) for x in (polynomial, *inside))
 
@@ -515,18 +554,6 @@ def _terms(found: _Fraction) -> int:
     """What is counted to see which of several fractions may be the shortest to read: terms and generators."""
     polynomials = [found[0], *(x for x, _ in found[1])]
     return sum(map(len, polynomials)) + len(occurring(polynomials))
-
-
-def _held(ring: Ring, polynomials: Iterable[Polynomial]) -> set[int]:
-    """The generators of polynomials, and those in what is adjoined."""
-    pending, held = list(occurring(polynomials)), set[int]()
-    while pending:
-        index = pending.pop()
-        if index not in held:
-            held.add(index)
-            argument = ring.generators[index].argument
-            pending += [] if argument is None else occurring([argument])
-    return held
 
 
 def _constant(value: Expression, ring: Ring) -> bool:

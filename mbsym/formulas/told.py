@@ -64,7 +64,7 @@ class Told(Generic[M]):
         """The definitions that some formulas need, in order, besides those of names ``known`` before."""
         by_index = {self.index(x.name): x for x in self.definitions}
         needed: set[str] = set()
-        pending = [occurring_in([x.polynomial for x in formulas], self.ring)]
+        pending = [self.ring.held([x.polynomial for x in formulas])]
         while pending:
             for index in pending.pop():
                 found = by_index.get(index)
@@ -77,7 +77,7 @@ class Told(Generic[M]):
     @cached_property
     def held_by(self) -> dict[str, set[int]]:
         """By name, the generators that each definition holds."""
-        return {x.name: occurring_in([x.formula.polynomial], self.ring) for x in self.definitions}
+        return {x.name: self.ring.held([x.formula.polynomial]) for x in self.definitions}
 
     def index(self, name: str) -> int:
         """The generator of an intermediate."""
@@ -110,20 +110,6 @@ class Told(Generic[M]):
 
 def _index(ring: Ring, name: str) -> int:
     return ring.index("prescribed" if ring.has("prescribed", name) else "parameter", name)
-
-
-def occurring_in(polynomials: Sequence[Polynomial], ring: Ring) -> set[int]:
-    """The generators in some polynomials, and in what the adjoined ones among them hold."""
-    found: set[int] = set()
-    pending = list(occurring(polynomials))
-    while pending:
-        index = pending.pop()
-        if index not in found:
-            found.add(index)
-            argument = ring.generators[index].argument
-            if argument is not None:
-                pending += occurring([argument])
-    return found
 
 
 #: Makes the ring from the names of the intermediates that vary and of those that are made of constants alone.
@@ -293,7 +279,7 @@ class _Teller(Generic[M]):
     def worth_naming(self) -> set[int]:
         """The nodes whose names save something; the others are written where they are used."""
         ring = self.ring
-        bound = occurring_in([g.argument for g in ring.generators if g.argument is not None], ring)
+        bound = ring.held([g.argument for g in ring.generators if g.argument is not None])
         left = {index: _Counted(value) for index, (_, value) in self.definitions.items()}
         formulas = [_Counted(x) for x in self.formulas]
         while True:

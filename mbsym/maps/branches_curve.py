@@ -80,7 +80,7 @@ class Varied:
         used = [*search.equations, *self._rows]
         self.names = tuple(x for x in self.found.constant if any(self.ring.depends_on(y, x) for y in used))
         many = self.regular and len([x for x in self._rows if not x.is_zero()]) > len(self.names)
-        if many or search.remarks:
+        if many or search.remarks or search.doubts:
             raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
 
     @cached_property

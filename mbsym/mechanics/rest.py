@@ -97,6 +97,14 @@ def _folded(expression: Expression) -> Expression:
     return expression if value is None else number(value)
 
 
+#: How names of multipliers begin; no description can use these.
+_MULTIPLIER = "multiplier_dot_"
+#: Stands for 1/q where q is large.
+FARNESS = "farness_dot_"
+#: Rows that one constraint has at most.
+MOST_ROWS = 3
+
+
 @dataclass(frozen=True)
 class Rest:
     """A system at numbers, in its ring: f(q, q', t) and M(q), and f on the steady motions.
@@ -118,6 +126,21 @@ class Rest:
         """What constraints demand of a steady motion: phi(q, t) = 0, J q' + j = 0."""
         demanded = [y for row in self.rows for y in (row.position, row.velocity) if y is not None]
         return [self.ring.reduce(self.ring.substitute(x, dict(self.rates))) for x in demanded]
+
+    @property
+    def multipliers(self) -> tuple[str, ...]:
+        """The names of the multipliers in ``balanced``, one for each row."""
+        return tuple(f"{_MULTIPLIER}{k}" for k in range(len(self.rows)))
+
+    @property
+    def balanced(self) -> list[Polynomial]:
+        """f + J^T lambda, with multipliers by their names."""
+        ring, still = self.ring, dict(self.rates)
+        found = list(self.at_rest)
+        for row, name in zip(self.rows, self.multipliers, strict=True):
+            for i, x in enumerate(row.partials):
+                found[i] = found[i] + ring.times(ring.substitute(x, still), ring.generator("prescribed", name))
+        return found
 
     @property
     def tied_in_motion(self) -> tuple[str, ...]:
@@ -162,7 +185,9 @@ def rest(system: System) -> Rest:
 
     Raises NoClosedForm or SingularPoint.
     """
-    ring = ring_of(system)
+    multipliers = tuple(f"{_MULTIPLIER}{k}" for k in range(MOST_ROWS * len(system.constraints)))
+    multipliers += (FARNESS,) * bool(multipliers)
+    ring = ring_of(system, moving=multipliers)
     environment = ring_environment(system, ring)
     for name in system.coordinates:
         environment[acceleration_name(name)] = ring.zero

@@ -17,6 +17,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +83,139 @@ def by_one_angle(number: int, end: float) -> tuple[float, float]:
     return float(np.sin(run.y[0, -1])), float(np.cos(run.y[0, -1]))
 
 
+#: Bennett's linkage with sin(alpha)/3 = sin(beta)/4 = 1/5, as q3 = -q1 and tan(q1/2) tan(q2/2) = 5 want it.
+BENNETT = (
+    (TESTS / "cases" / "constraints" / "bennett-no.yaml")
+    .read_text(encoding="utf-8")
+    .replace("b: {value: 5", "b: {value: 4")
+    .replace("q2: 1", "q2: 2*atan(5*cos(1/2)/sin(1/2))")
+)
+
+
+@cache
+def by_bennett(end: float) -> float:
+    """q1 at ``end``: J q1'' + J' q1'^2/2 + V' = 0, J and V of the places of the bars at q1, all by hand.
+
+    q2 and q3 by the closed formulas of the linkage; derivatives of places by a complex step, of J and V by differences
+    of the eighth order.
+    """
+    from scipy.integrate import solve_ivp
+
+    def turned(angle: Any, axis: int) -> Any:
+        c, s, one = np.cos(angle), np.sin(angle), 1 + 0 * angle
+        rows = {0: [[one, 0, 0], [0, c, -s], [0, s, c]], 2: [[c, -s, 0], [s, c, 0], [0, 0, one]]}
+        return np.array(rows[axis])
+
+    def bars(q: complex) -> list[tuple[Any, Any]]:
+        """Mass centres and axes of the three bars that move."""
+        alpha, beta = np.arctan2(3, 4), np.arctan2(4, 3)
+        first = turned(q, 2)
+        # q2 = 2 atan2(5 cos(q/2), sin(q/2)), whose cosine and sine are rational in those of q/2
+        c, s = 5 * np.cos(q / 2), np.sin(q / 2)
+        cosine, sine = (s * s - c * c) / (c * c + s * s), 2 * c * s / (c * c + s * s)
+        middle = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])
+        second = first @ turned(alpha, 0) @ middle
+        third = second @ turned(beta, 0) @ turned(-q, 2)
+        joint = 3 * first[:, 0]
+        return [
+            (1.5 * first[:, 0], first),
+            (joint + 2 * second[:, 0], second),
+            (joint + 4 * second[:, 0] + 1.5 * third[:, 0], third),
+        ]
+
+    def inertia(q: float) -> float:
+        total = 0.0
+        for here, moved in zip(bars(complex(q)), bars(q + 1e-30j), strict=True):
+            speed, rates = np.imag(moved[0]) / 1e-30, np.real(here[1]).T @ np.imag(moved[1]) / 1e-30
+            spin = np.array([rates[2, 1], rates[0, 2], rates[1, 0]])
+            total += speed @ speed + spin @ (np.array([0.1, 1, 1]) * spin)
+        return total
+
+    def potential(q: float) -> float:
+        return 9.81 * sum(float(np.real(place[2])) for place, _ in bars(complex(q)))
+
+    def slope(of: Callable[[float], float], q: float, h: float = 0.01) -> float:
+        weights = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
+        return sum(w * (of(q + k * h) - of(q - k * h)) for k, w in enumerate(weights, 1)) / h
+
+    def rates(_: float, x: Any) -> list[float]:
+        return [x[1], -(slope(inertia, x[0]) * x[1] ** 2 / 2 + slope(potential, x[0])) / inertia(x[0])]
+
+    run = solve_ivp(rates, (0, end), [1, 0], "DOP853", rtol=3e-14, atol=1e-15)
+    return float(run.y[0, -1])
+
+
+#: Bars 2, 3 and 2, 3 over a ground of 3: two degrees of freedom.
+FIVE_BAR = """mbsym: 1
+name: five-bar
+bodies:
+  - {name: a, attached to: 0, rotation: {axes: [3], angles: [p]}, mass centre: [1, 0, 0], mass: 1,
+     inertia about: mass centre, inertia: [0, 1/3, 1/3]}
+  - {name: b, attached to: a, connection point: [2, 0, 0], rotation: {axes: [3], angles: [q]}, mass centre: [3/2, 0, 0],
+     mass: 1, inertia about: mass centre, inertia: [0, 3/4, 3/4]}
+  - {name: c, attached to: 0, connection point: [3, 0, 0], rotation: {axes: [3], angles: [s]}, mass centre: [1, 0, 0],
+     mass: 1, inertia about: mass centre, inertia: [0, 1/3, 1/3]}
+  - {name: e, attached to: c, connection point: [2, 0, 0], rotation: {axes: [3], angles: [w]}, mass centre: [3/2, 0, 0],
+     mass: 1, inertia about: mass centre, inertia: [0, 3/4, 3/4]}
+loads: [{uniform gravity: {vector: [0, -10, 0]}}]
+constraints: [{coincide: [{body: b, point: [3, 0, 0]}, {body: e, point: [3, 0, 0]}]}]
+initial: {p: 2, s: 1, q: START1, w: START2}
+"""
+
+
+def five_bar_start() -> tuple[float, float, float, float]:
+    """Directions of the bars at p = 2, s = 1, the joint of the long ones above."""
+    left, right = 2 * np.exp(2j), 3 + 2 * np.exp(1j)
+    across = (right - left) / 2
+    top = left + across + 1j * across / abs(across) * np.sqrt(9 - abs(across) ** 2)
+    return 2.0, float(np.angle(top - left)), 1.0, float(np.angle(top - right))
+
+
+def five_bar() -> str:
+    p, q, s, w = five_bar_start()
+    return FIVE_BAR.replace("START1", f"{q - p:.17f}").replace("START2", f"{w - s:.17f}")
+
+
+@cache
+def by_directions(end: float) -> tuple[float, float]:
+    """p and s of the five-bar at ``end``: two double pendulums in directions x of their bars by hand, tied at the ends.
+
+    M x'' + c(x, x') = J^T lambda,  J x'' = -J' x'
+    """
+    from scipy.integrate import solve_ivp
+
+    signs, lengths = (1, 1, -1, -1), (2.0, 3.0, 2.0, 3.0)
+
+    def rates(_: float, z: Any) -> Any:
+        x, v = z[:4], z[4:]
+        table, right = np.zeros((6, 6)), np.zeros(6)
+        for i in (0, 2):  # the bars i and i + 1 are a double pendulum
+            long, end_bar = lengths[i], lengths[i + 1]
+            apart, coupled = x[i] - x[i + 1], long * end_bar / 2
+            table[i, i], table[i + 1, i + 1] = long**2 / 3 + long**2, end_bar**2 / 3
+            table[i, i + 1] = table[i + 1, i] = coupled * np.cos(apart)
+            right[i] = -coupled * np.sin(apart) * v[i + 1] ** 2 - 10 * 1.5 * long * np.cos(x[i])
+            right[i + 1] = coupled * np.sin(apart) * v[i] ** 2 - 10 * end_bar / 2 * np.cos(x[i + 1])
+        for i in range(4):
+            column = signs[i] * lengths[i] * np.array([-np.sin(x[i]), np.cos(x[i])])
+            table[4:, i] = table[i, 4:] = column
+            right[4:] += signs[i] * lengths[i] * np.array([np.cos(x[i]), np.sin(x[i])]) * v[i] ** 2
+        return np.concatenate([v, np.linalg.solve(table, right)[:4]])
+
+    run = solve_ivp(rates, (0, end), [*five_bar_start(), 0, 0, 0, 0], "DOP853", rtol=3e-14, atol=1e-15)
+    return float(run.y[0, -1]), float(run.y[2, -1])
+
+
+def directions(**truth: float) -> Callable[[Dynamics, Any], float]:
+    """How far unit vectors at angles are from those at true ones."""
+
+    def wrong(dynamics: Dynamics, state: Any) -> float:
+        places = ((state[dynamics.system.coordinates.index(name)], angle) for name, angle in truth.items())
+        return max(float(abs(np.exp(1j * x) - np.exp(1j * angle))) for x, angle in places)
+
+    return wrong
+
+
 def on_the_axis(dynamics: Dynamics, state: Any) -> float:
     return float(np.max(np.abs(state - [float(x) for x in reference("ivp_caraxis")["reference"]["y"][:8]])))
 
@@ -100,6 +234,13 @@ def problems(large: bool) -> Iterator[Problem]:
         wrong = first_bar(by_one_angle(number, 10.0))
         yield Problem(f"A02 {name}", lambda number=number: described(four_bars(number)), 10.0, 1e-6, wrong)  # type: ignore[misc]
     yield Problem("car axis", lambda: shipped("car-axis"), 3.0, 1e-8, on_the_axis)
+    left, right = by_directions(3.0)
+    yield Problem(
+        "five-bar, bars 2, 3, 2, 3 over 3", lambda: described(five_bar()), 3.0, 1e-8, directions(p=left, s=right)
+    )
+    yield Problem(
+        "Bennett's linkage, a = 3, b = 4", lambda: described(BENNETT), 5.0, 1e-8, directions(q1=by_bennett(5.0))
+    )
     if large:
         wrong = first_bar(by_one_angle(40, 20.0))
         yield Problem("A02 forty four-bars", lambda: described(four_bars(40)), 20.0, 1e-3, wrong)

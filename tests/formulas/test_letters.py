@@ -204,6 +204,32 @@ def test_an_error_in_a_step_is_caught(monkeypatch):
     assert any(_trials(10))
 
 
+def _series(source: random.Random) -> str:
+    """Of one angle, each harmonic over a denominator of its own in I = m l^2 + J and n = k/m."""
+    below = ("(m*l**2 + J + c)", "(m*l**2 + J - a)", "(k/m + b)", "(k/m - a)")
+    waves = ("1", "sin(x)", "cos(x)", "sin(x)*cos(x)", "sin(x)**2")
+    above = ("(m*l**2 + J)*a", "k**2/m**2*b", "c*k/m", "(m*l**2 + J)**2 + k/m")
+    return " + ".join(f"({source.choice(above)})/{source.choice(below)}*{wave}" for wave in source.sample(waves, 3))
+
+
+def _series_trials(count: int) -> list[bool]:
+    source, found = random.Random(11), []
+    while len(found) < count:
+        ring = ring_of("x")
+        polynomial = lowered(ring, _series(source))
+        made = rewriter(ring, letters(I="m*l**2 + J", n="k/m"))
+        if made(polynomial) is not None:
+            found.append(_differs(ring, made, polynomial, source))
+    return found
+
+
+def test_series_of_an_angle_are_written_harmonic_by_harmonic(monkeypatch):
+    assert not any(_series_trials(8))
+    whole = Rewriter._as_one
+    monkeypatch.setattr(Rewriter, "_as_one", lambda self, x: None if (y := whole(self, x)) is None else 2 * y)
+    assert any(_series_trials(4))
+
+
 def test_what_is_written_is_shorter_by_the_length_that_is_documented():
     source = random.Random(3)
     compared = 0

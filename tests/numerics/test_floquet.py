@@ -45,6 +45,19 @@ motion: {x: 0}
 values: {a: 1, q: 0.2, d: 0}
 initial: {x: 1}
 """
+TRAP = """
+mbsym: 1
+name: Ion in a quadrupole trap
+parameters: {V: positive, nu: positive}
+prescribed: {tau: {rate: nu}}
+bodies:
+  - {name: ion, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}
+loads:
+  - potential: V*cos(tau)*(x**2 + y**2 - 2*z**2)/2
+motion: {x: 0, y: 0, z: 0}
+values: {V: VOLTAGE, nu: 40}
+initial: {x: 0, y: 0, z: 0}
+"""
 MATHIEU = FORCED.replace("FORCE", "-(a - 2*q*cos(2*t))*x - d*x_dot")
 SHAKEN = SHIPPED / "shaken-pendulum.yaml"
 
@@ -73,6 +86,21 @@ def test_the_borders_of_ince_and_strutt(border: float, below: Word, above: Word)
     """x'' + (a - 2 q cos 2t) x = 0 changes its stability at Mathieu's characteristic values, at q = 0.2 to 1e-8."""
     assert verdict(MATHIEU, a=border - 1e-8, q=0.2) is below
     assert verdict(MATHIEU, a=border + 1e-8, q=0.2) is above
+
+
+@pytest.mark.parametrize(("voltage", "word"), [("363.2", Word.STABLE), ("363.3", Word.UNSTABLE)])
+def test_a_quadrupole_trap_has_the_border_of_mathieu_s_equation(voltage: str, word: Word) -> None:
+    """Paul's trap without direct voltage: along the axis q = 4 V/(m nu^2), held for q < 0.90805 (a_0(q) = 0).
+
+    The two radial coordinates have equal multipliers; nothing couples them, so that is no resonance.
+    """
+    assert verdict(TRAP.replace("VOLTAGE", voltage)) is word
+
+
+def test_equal_multipliers_of_coordinates_that_are_coupled_decide_nothing() -> None:
+    """y'' + f(t) y = -x with x'' + f(t) x = 0: driven at its own frequency y grows like t, which is not stable."""
+    driven = TRAP.replace("VOLTAGE", "60").replace("motion:", "  - generalized force: {y: -x}\nmotion:")
+    assert verdict(driven) is Word.UNDECIDED
 
 
 def test_nothing_is_left_open_where_there_are_no_terms_of_higher_order() -> None:
@@ -142,7 +170,7 @@ def test_multipliers_that_are_not_isolated_are_bounded() -> None:
     into = arb_mat(3, 3, [1, 1, 0, 1, 2, 1, 3, 0, 1])
     with ctx.workprec(floquet.BITS):
         matrix = into * arb_mat(3, 3, [2, 1, 0, 0, 2, 0, 0, 0, 0.5]) * into.inv()
-        found, simple = floquet._multipliers(matrix, True)
+        found, simple = floquet._multipliers(matrix, True, lambda part: True)
     assert not simple
     for exact in (2, 2, 0.5):
         assert any(one.ball.contains(exact) for one in found)

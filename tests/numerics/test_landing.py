@@ -311,3 +311,16 @@ def test_coarse_steps_beside_a_switch_pass_it(name: str, size: int) -> None:
             worst = max(worst, abs(run.state[0] / size - soft_and_hard(run.time)))
         assert worst <= 10 * tolerance
         assert run.work.steps < 1000
+
+
+@pytest.mark.parametrize("length", [-12, -9, 6])
+@pytest.mark.parametrize("frequency", [-6, 0, 6])
+def test_dry_friction_and_contact_do_not_depend_on_units(length: int, frequency: int) -> None:
+    """Powers of ten: runs over nanometres, or years, passed switches by, and told nothing of it."""
+    unit, square, w = f"10**({length})", f"10**({2 * frequency})", 10.0**frequency
+    rub = f"-{square}*{unit}*3/10*sign(x_dot)", rubbed, 2, f"{square}*x**2/2"
+    wall = f"-{square}*x*(1 + 9999*(1 - sign(x))/2)", np.vectorize(soft_and_hard), 1, "0*x"
+    for force, truth, start, potential in (rub, wall):
+        text = described(force, f"  - potential: {potential}\n", f"position: {start}*{unit}")
+        found = mbsym.simulate(mbsym.loads(text), 12 / w, samples=61, estimate=False)
+        assert np.max(np.abs(found["x"] / 10.0**length - truth(found.times * w))) < 1e-8

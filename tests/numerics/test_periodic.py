@@ -331,3 +331,32 @@ def test_a_period_that_is_none_of_the_equations_is_refused() -> None:
         assert np.hypot(x, rate / 1.2) == pytest.approx(0.3 / np.hypot(1 - 1.44, 0.24), rel=1e-9)
     with pytest.raises(NotFound, match="no period of theirs is known"):
         orbit(DRIVEN.replace("FORCE", "exp(-t) + 0*phi"), 5)
+
+
+QUARTIC = """
+mbsym: 1
+name: two oscillators, one drawn by the other
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+parameters: {k: positive}
+loads:
+  - potential: x**2/2 + k*x**4/4 + 2*y**2 + k*x**2*y**2
+"""
+
+
+@pytest.mark.parametrize(("size", "unit"), [("10**-12", 1e-12), ("10**-9", 1e-9), ("1", 1.0), ("10**6", 1e6)])
+def test_an_orbit_does_not_depend_on_the_unit_of_length(size: str, unit: float) -> None:
+    """x'' = -x - x^3 along y = 0, in units in which its amplitude is ``size``; its period by the energy integral.
+
+    T = 4 K(m)/w, w^2 = 1 + A^2, m = A^2/(2 w^2) (Byrd & Friedman, 1971); A by x and x' where the search ends.
+    """
+    text = f"{QUARTIC}values: {{k: 1/({size})**2}}\ninitial: {{x: {size}, y: {size}/50}}\n"
+    found = mbsym.orbit(mbsym.loads(text), 4.9)
+    found = getattr(found, "orbit", found)
+    x, y, v, _ = found.state / unit
+    assert abs(y) < 1e-12
+    square = np.sqrt(1 + 4 * (v**2 / 2 + x**2 / 2 + x**4 / 4)) - 1  # A^2
+    w = np.sqrt(1 + square)
+    assert found.period == pytest.approx(4 * ellipk(square / (2 * w**2)) / w, rel=1e-11)
+    assert found.trivial == 2
+    assert found.verified < 1e-10

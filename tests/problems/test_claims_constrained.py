@@ -179,3 +179,37 @@ def test_a_number_of_the_pendulum_by_hand() -> None:
     state = "x: 0.6, y: -0.8, x_dot: 0.8, y_dot: 0.6, L: 1, m: 1, g: 10"
     (result,) = judged("cartesian-pendulum", f"value, of: x_ddot, state: {{{state}}}, equals: -5.4")
     assert result.outcome == DIGITS
+
+
+WHEEL = """mbsym: 1
+name: a wheel on a line
+parameters: {r: positive, J: positive}
+bodies:
+  - {name: w, attached to: 0, connection point: [x, r, 0], rotation: {axes: [3], angles: [f]}, coordinates: [x, f],
+     mass: 1, inertia about: mass centre, inertia: [J, J, J]}
+constraints:
+  - velocity: x_dot + r*f_dot = 0
+claims:
+  - {claim: first integral, equals: x + r*f}
+  - {claim: first integral, equals: x + 2*r*f}
+"""
+
+LIGHT = """mbsym: 1
+name: two sledges without mass, each on a damper, joined by a spring
+parameters: {c: positive, k: positive}
+bodies:
+  - {name: p, attached to: 0, mass: 0, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: q, attached to: 0, mass: 0, connection point: [y, 0, 0], coordinates: [y]}
+loads:
+  - damper: {coordinate: x, coefficient: c}
+  - damper: {coordinate: y, coefficient: c}
+  - potential: k*(x - y)**2/2
+claims:
+  - {claim: first integral, equals: x + y}
+"""
+
+
+def test_integrals_without_velocities() -> None:
+    """x + r f of a wheel that rolls on a line, and x + y of c x' = -k (x - y), c y' = k (x - y), are constant."""
+    assert [one.outcome for one in mbsym.loads(WHEEL).claims] == [EXACT, FAILS]
+    assert [one.outcome for one in mbsym.loads(LIGHT).claims] == [UNDECIDED]

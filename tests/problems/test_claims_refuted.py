@@ -508,3 +508,17 @@ def test_a_factor_may_hold_velocities() -> None:
     """An equation times theta' sin(theta) says the same wherever that is not zero."""
     result = judged(EQUATION + "(theta_ddot + w2*sin(theta))*sin(theta)*theta_dot")
     assert (result.outcome, result.remark) == (FACTOR, "where sin(theta) and theta_dot are not 0")
+
+
+def test_an_integral_that_is_huge_at_some_states_is_not_refuted_by_them() -> None:
+    """z'' = -g - c z'/m: (z' + m g/c) exp(c t/m) is constant, at whatever size; with exp(2 c t/m) it is not."""
+    lines = "".join(f"  - {{claim: first integral, equals: (z_dot + m*g/c)*exp({n}*c*t/m)}}\n" for n in (1, 2))
+    found = mbsym.loads(
+        "mbsym: 1\nname: fall in a turning frame\n"
+        "parameters: {m: positive, g: positive, c: nonnegative, W: real}\nprescribed: {chi: {rate: W}}\nbodies:\n"
+        "  - {name: f, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}\n"
+        "  - {name: p, attached to: f, mass: m, connection point: [x, y, z], coordinates: [x, y, z]}\n"
+        "loads:\n  - uniform gravity: {vector: [0, 0, -g]}\n  - damper: {coordinate: z, coefficient: c}\n"
+        f"claims:\n{lines}"
+    ).claims
+    assert [one.outcome for one in found] == [EXACT, FAILS]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import pairwise, product
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -240,12 +242,13 @@ def test_a_slider_crank_with_a_spring() -> None:
     assert told == expected
 
 
-def test_angles_outside_sines_are_searched_and_the_list_says_so() -> None:
+def test_angles_outside_sines_are_searched_wherever_the_spring_may_be_wound() -> None:
     """A torsional spring in the crank: 10 cos a + 5 a = 0 has one root, -1.0299; two branches of the rod."""
     spring = "  - spring: {coordinate: a, stiffness: k}\n"
     text = "".join(spring if "between" in line else line for line in SLIDER_CRANK.splitlines(keepends=True))
     found = listed(text)
-    assert not found.complete
+    assert found.complete  # the crank goes round: 10 cos a = -5 a beyond 2 has no root
+    assert any("none lies farther out" in remark for remark in found.remarks)
     assert sorted(round(one.values[0].value, 4) for one in found.equilibria) == [-1.0299, -1.0299]
     assert {one.verdict.word for one in found.equilibria} == {"stable"}
 
@@ -338,3 +341,195 @@ def test_a_rest_that_needs_unbounded_reactions_is_told_not_to_be_counted(relatio
     found = listed(text)
     assert found.complete
     assert any("unbounded reactions" in remark for remark in found.remarks) is singular
+
+
+# --- rests that no exact solution lists ---
+
+
+def searched(
+    potential: Callable[[Any], Any], tied: Callable[[Any], list[Any]], bounds: Sequence[float], starts: int = 400
+) -> set[tuple[float, ...]]:
+    """Where grad V + lambda grad phi = 0, phi = 0 within ``bounds``: Newton's method from many points, nothing else.
+
+    Derivatives by a complex step, and those of the gradients by differences.
+    """
+    n, m = len(bounds), len(tied(np.zeros(len(bounds))))
+
+    def slope(of: Callable[[Any], Any], q: Any) -> Any:
+        return np.array([np.imag(of(q + 1e-30j * e)) / 1e-30 for e in np.eye(n)])
+
+    def residual(z: Any) -> Any:
+        q, held = z[:n].astype(complex), z[n:]
+        rows = np.array([slope(lambda x, k=k: tied(x)[k], q) for k in range(m)])  # type: ignore[misc]
+        return np.array([*(slope(potential, q) + held @ rows), *np.real(tied(q))])
+
+    source, found = np.random.default_rng(5), set()
+    for _ in range(starts):
+        z = np.array([*(source.uniform(-b, b) for b in bounds), *source.normal(size=m) * 5])
+        for _ in range(40):
+            value = residual(z)
+            steps = np.array([(residual(z + 1e-6 * e) - residual(z - 1e-6 * e)) / 2e-6 for e in np.eye(n + m)]).T
+            change = np.linalg.lstsq(steps, -value, rcond=None)[0]
+            z = z + change * min(1.0, 0.7 / max(1e-12, float(np.abs(change[:n]).max())))
+            if np.abs(change[:n]).max() < 1e-12:
+                break
+        if np.abs(residual(z)).max() < 1e-8 and (np.abs(z[:n]) <= np.array(bounds)).all():
+            found.add(tuple(round(float(x), 4) + 0.0 for x in z[:n]))
+    return found
+
+
+def turned_within(found: Equilibria, angles: Sequence[int]) -> set[tuple[float, ...]]:
+    """What is listed, with all turns of ``angles`` (by their places) in (-2 pi, 2 pi)."""
+    every = set()
+    for one in found.equilibria:
+        values = [x.value for x in one.values]
+        for turns in product((-2 * math.pi, 0, 2 * math.pi), repeat=len(angles)):
+            moved = [x + (turns[angles.index(k)] if k in angles else 0) for k, x in enumerate(values)]
+            every.add(tuple(round(x, 4) + 0.0 for x in moved))
+    return every
+
+
+TORSION = "loads: [{spring: {coordinate: s, stiffness: 4}}, {uniform"
+WISHBONES = (
+    HEAD
+    + """
+bodies:
+  - {name: lower, attached to: 0, rotation: {axes: [1], angles: [p]}, mass centre: [0, 1/5, 0], mass: 2,
+     inertia about: mass centre, inertia: [1/10, 1/10, 1/10]}
+  - {name: upright, attached to: lower, connection point: [0, 2/5, 0], rotation: {axes: [1], angles: [q]},
+     mass centre: [0, 0, 1/10], mass: 10, inertia about: mass centre, inertia: [1/5, 1/5, 1/5]}
+  - {name: upper, attached to: 0, connection point: [0, 1/10, 1/4], rotation: {axes: [1], angles: [s]},
+     mass centre: [0, 3/20, 0], mass: 1, inertia about: mass centre, inertia: [1/10, 1/10, 1/10]}
+loads:
+  - uniform gravity: {vector: [0, 0, -10]}
+  - spring: {between: [{body: lower, point: [0, 3/10, 0]}, {body: 0, point: [0, 1/5, 1/2]}], stiffness: 300,
+     length: 1/2}
+constraints: [{coincide: [{body: upright, point: [0, 0, 1/4]}, {body: upper, point: [0, 3/10, 0]}]}]
+"""
+)
+
+
+def bars(q: Any) -> tuple[Any, ...]:
+    """Ends of the bars 1 and 2 of a four-bar and of the bar 3/2 on the ground 2, as x and y."""
+    x, y = np.cos(q[0]), np.sin(q[0])
+    ends = x + 2 * np.cos(q[0] + q[1]), y + 2 * np.sin(q[0] + q[1])
+    return x, y, *ends, 2 + 1.5 * np.cos(q[2]), 1.5 * np.sin(q[2])
+
+
+def four_bar_with_torsion(q: Any) -> Any:
+    _, y, _, end, _, other = bars(q)
+    return 10 * (y / 2 + (y + end) / 2 + other / 2) + 2 * q[2] ** 2
+
+
+def closed(q: Any) -> list[Any]:
+    _, _, x, y, u, v = bars(q)
+    return [x - u, y - v]
+
+
+def wishbones(q: Any) -> Any:
+    p, b, s = q
+    weights = 2 * np.sin(p) / 5 + 10 * (2 * np.sin(p) / 5 + np.cos(p + b) / 10) + 3 * np.sin(s) / 20
+    apart = np.sqrt((0.3 * np.cos(p) - 0.2) ** 2 + (0.3 * np.sin(p) - 0.5) ** 2)
+    return 10 * weights + 150 * (apart - 0.5) ** 2
+
+
+def wishbones_closed(q: Any) -> list[Any]:
+    p, b, s = q
+    across = 0.4 * np.cos(p) - np.sin(p + b) / 4 - 0.1 - 0.3 * np.cos(s)
+    return [across, 0.4 * np.sin(p) + np.cos(p + b) / 4 - 0.25 - 0.3 * np.sin(s)]
+
+
+def test_a_four_bar_with_a_torsional_spring_in_its_rocker() -> None:
+    """The rocker may be put in with any number of turns of its spring, so no list ends; within 10 it has 15 places.
+
+    With the pivots of one elimination seven of them were found.
+    """
+    found = listed(FOUR_BAR.replace("loads: [{uniform", TORSION))
+    assert any("within 10" in remark for remark in found.remarks)
+    assert not any("undecided" in remark for remark in found.remarks)
+    truth = searched(four_bar_with_torsion, closed, (math.pi, math.pi, 10))
+    assert truth
+    assert truth <= turned_within(found, (0, 1))
+    assert len(found.equilibria) == 15
+    places = [[x.value for x in one.values] for one in found.equilibria]
+    assert len(truth) == len([x for x in places if max(map(abs, x[:2])) <= math.pi])
+
+
+def test_a_double_wishbone_is_listed_completely() -> None:
+    """Bisection over all positions, where the exact solution is not finished."""
+    found = listed(WISHBONES)
+    assert found.complete
+    angles = (math.pi,) * 3
+    assert searched(wishbones, wishbones_closed, angles) == {
+        tuple(round(x.value, 4) for x in one.values) for one in found.equilibria
+    }
+    assert sorted(str(one.verdict.word) for one in found.equilibria) == ["stable", "stable", "unstable", "unstable"]
+
+
+def test_rests_at_positions_in_which_a_pivot_vanishes() -> None:
+    """A bead of weight 10 on x^2 + y^2 = 4 sin(1/2): it hangs and stands at x = 0, where 2 x, the shortest factor of
+    the multiplier, is zero; a sphere cut at x = sin(1/2) the same, at y = 0."""
+    bead = HEAD + (
+        "bodies: [{name: P, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: 1}]\n"
+        "loads: [{uniform gravity: {vector: [0, -10, 0]}}]\nconstraints: [{relation: x**2 + y**2 = 4*sin(1/2)}]\n"
+    )
+    found, height = listed(bead), 2 * math.sqrt(math.sin(0.5))
+    assert found.complete
+    assert states(found) == approx({(0, -height): "stable", (0, height): "unstable"})
+    cut = SPHERE.replace("{relation: x**2", "{relation: x = sin(1/2)}, {relation: x**2")
+    found, x, z = listed(cut), math.sin(0.5), math.cos(0.5)
+    assert found.complete
+    assert states(found) == approx({(x, 0, -z): "stable", (x, 0, z): "unstable"})
+
+
+def test_a_wheel_with_an_eccentric_mass_on_a_slope_is_held_by_a_spring() -> None:
+    """x = -f and the mass centre at (x - sin f/4, cos f/4), against a search of its own."""
+    text = HEAD + (
+        "bodies: [{name: W, attached to: 0, connection point: [x, 0, 0], rotation: {axes: [3], angles: [f]},\n"
+        "  coordinates: [x, f], mass centre: [0, 1/4, 0], mass: 1, inertia about: mass centre, inertia: [1, 1, 1]}]\n"
+        "loads: [{uniform gravity: {vector: [10*sin(pi/12), -10*cos(pi/12), 0]}},\n"
+        "  {spring: {coordinate: x, stiffness: 2}}]\nconstraints: [{relation: x + f = 0}]\n"
+    )
+
+    def potential(q: Any) -> Any:
+        x, f = q
+        along, up = x - np.sin(f) / 4, np.cos(f) / 4
+        return -10 * (math.sin(math.pi / 12) * along - math.cos(math.pi / 12) * up) + x**2
+
+    found = listed(text)
+    assert found.complete
+    assert searched(potential, lambda q: [q[0] + q[1]], (8, 8), 100) == {
+        tuple(round(x.value, 4) for x in one.values) for one in found.equilibria
+    }
+
+
+def test_rests_of_a_linkage_with_more_rows_than_angles() -> None:
+    """Bennett's linkage, five rows on three angles, of which two are independent: q3 = -q1, tan(q1/2) tan(q2/2) = 5.
+
+    Heights of its bars along that branch are extreme where they are listed.
+    """
+    text = (Path(__file__).parents[1] / "cases" / "constraints" / "bennett-no.yaml").read_text(encoding="utf-8")
+    found = listed(text.replace("b: {value: 5", "b: {value: 4").replace("q2: 1, q3: -1", "q2: 2.9, q3: -1"))
+
+    def turned(angle: float, axis: int) -> Any:
+        c, s = math.cos(angle), math.sin(angle)
+        return np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if axis == 0 else [[c, -s, 0], [s, c, 0], [0, 0, 1]])
+
+    def height(q: float) -> float:
+        first = turned(q, 2)
+        second = first @ turned(math.atan(3 / 4), 0) @ turned(2 * math.atan2(5 * math.cos(q / 2), math.sin(q / 2)), 2)
+        third = second @ turned(math.atan(4 / 3), 0) @ turned(-q, 2)
+        return float(((1.5 + 3 + 3) * first[:, 0] + (2 + 4) * second[:, 0] + 1.5 * third[:, 0])[2])
+
+    grid = np.linspace(-math.pi, math.pi, 4001)
+    slopes = np.diff([height(q) for q in grid])
+    extreme = {
+        (round(float(grid[k + 1]), 2), "stable" if slopes[k] < 0 else "unstable")
+        for k in range(len(slopes) - 1)
+        if slopes[k] * slopes[k + 1] < 0
+    }
+    assert {(round(one.values[0].value, 2), str(one.verdict.word)) for one in found.equilibria} == extreme
+    for one in found.equilibria:
+        q1, q2, q3 = (x.value for x in one.values)
+        assert math.tan(q1 / 2) * math.tan(q2 / 2) == pytest.approx(5)
+        assert q3 == pytest.approx(-q1)

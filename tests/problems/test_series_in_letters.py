@@ -221,6 +221,20 @@ def test_the_command_tells_them(tmp_path: Path) -> None:
 
 
 def test_common_denominators_stand_once_in_the_text() -> None:
-    done = CliRunner().invoke(main, ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"])
+    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
+    done = CliRunner().invoke(main, [*words, "--in", "none"])
     assert "p(0) = -lx*r_0/D1\n" in done.output
     assert "D1 = r_0*(A - C) - lz\n" in done.output
+
+
+def test_the_authors_letters_come_before_denominators_of_ours() -> None:
+    """(41) of the paper: what is shorter in them has no D1, and no D is explained that does not stand there."""
+    words = ["oscillations", str(SYSTEMS / "gyrostat-fast.yaml"), "--order", "1"]
+    done = CliRunner().invoke(main, words).output
+    assert "p(0) = P0*r_0\n" in done
+    assert "gamma2(1) = P0*gamma3_0*sin(phase)\n" in done
+    assert "p(1) = r_0*(M3*lam1*cos(phase) + lam)\n" in done  # as in the claim (41)
+    series = done.partition("Secular terms")[0]
+    series, _, explained = series.partition("  with:")
+    for name in ("D1", "D2", "D3"):
+        assert (name in series) == (f"{name} = " in explained)

@@ -22,7 +22,7 @@ from mbsym.algebra.vectors import Tensor, Vector
 from mbsym.analysis import Analysis, Unavailable
 from mbsym.formulas.formula import Formula
 from mbsym.formulas.latex import latex_names
-from mbsym.formulas.told import Definition, occurring_in
+from mbsym.formulas.told import Definition
 from mbsym.formulas.wolfram import wolfram_names
 from mbsym.mechanics import body_equations as recursion
 from mbsym.mechanics.intermediates import NamedScene
@@ -118,7 +118,7 @@ def test_names_are_defined_before_they_are_used_and_once(name: str) -> None:
     assert len(set(names)) == len(names)
     places = {told.index(item.name): place for place, item in enumerate(told.definitions)}
     for place, item in enumerate(told.definitions):
-        used = occurring_in([item.formula.polynomial], told.ring) & places.keys()
+        used = told.ring.held([item.formula.polynomial]) & places.keys()
         assert all(places[index] < place for index in used), item.name
     # What is told is what the formulas need, and shorter than what it stands for.
     everything = [told for _, told, _ in pairs(analysis, analysis.told)]

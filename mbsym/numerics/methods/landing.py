@@ -44,7 +44,7 @@ from mbsym.numerics.methods.interface import (
 from mbsym.numerics.methods.led import LedRun, lead
 from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.runge_kutta import CompiledRun
-from mbsym.numerics.methods.sides import BESIDE, TOGETHER, Leaving, Sides, along, endless, feature_kernel, harmless, met
+from mbsym.numerics.methods.sides import BESIDE, Leaving, Sides, along, endless, feature_kernel, harmless, met
 
 # Stretches of many steps in machine code, on which it is shown afterwards that nothing was passed.
 #
@@ -241,9 +241,7 @@ class LandingRun:
         self._runs: dict[int | None, Run] = {}
         self.work, self.passed = Work(), Passed()
         self._been: set[tuple[int, ...]] = set()
-        self._leaving = Leaving(
-            self._positive, self._switches.looked_for, setting.tolerance or OF_FIXED_STEP, self.passed
-        )
+        self._leaving = Leaving(self._positive, self._switches, setting.tolerance or OF_FIXED_STEP, self.passed)
         first = method.start(dynamics, setting, scalar, initial, at) if not self._count else None
         start = np.array([float(x) for x in dynamics.scenario.state]) if initial is None else np.asarray(initial)
         if first is not None:
@@ -255,6 +253,7 @@ class LandingRun:
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state; its sides are looked for anew."""
         self.time, self.state = time, np.array(state)
+        self._switches.measure(time, state)
         self._sides: tuple[int, ...] | None = None
         self._ahead: Run | None = None
         self._windows: list[_Window] = []
@@ -343,7 +342,7 @@ class LandingRun:
             piece, place, turned = self._tried(until)
             if not turned:
                 return self._taken(piece)
-            if place > piece.start + TOGETHER * max(1.0, abs(place)):
+            if place > piece.start + self._switches.together(place):
                 return self._landed(place, turned)
             self._note_switch()
             self._switch(turned)
@@ -376,7 +375,8 @@ class LandingRun:
         return piece, place, turned
 
     def _bound(self, until: float | None) -> float:
-        bound = self.time + FAR * (1.0 + abs(self.time)) if until is None else until  # at rest steps know no bound
+        far = FAR * (self._switches.time + abs(self.time))  # at rest steps know no bound
+        bound = self.time + far if until is None else until
         assert self._sides is not None
         bound = min(bound, self._switches.next_knot(self._sides))
         if self._longest is not None:
@@ -452,7 +452,7 @@ class LandingRun:
         self._check_landing(piece, self._ahead.state, turned)
         apart = place - self.time
         self.time, self.state = piece.end, self._ahead.state
-        self._together = 0 if apart > 1e-9 * max(1.0, abs(place)) else self._together + 1
+        self._together = 0 if apart > 1e3 * self._switches.together(place) else self._together + 1
         if self._together > MOST_TOGETHER:
             raise endless("they come ever closer to each other", self.time, self.state)
         self._note_switch()
@@ -496,7 +496,7 @@ class LandingRun:
         point = np.concatenate(([piece.end], state))[:, None]
         values, sizes = self._positive(point)[:, 0], np.abs(self._switches.at(piece.end, state))
         middle = along(self._positive, piece, piece.start, piece.end)
-        allowed = 1e-6 * (np.max(np.abs(middle), axis=1) + sizes) + 1e-9
+        allowed = 1e-6 * (np.max(np.abs(middle), axis=1) + sizes + 1e-3 * self._switches.sizes)
         if np.any(values < -allowed):
             raise endless("a switch was missed", piece.end, state)
 
@@ -506,7 +506,9 @@ class LandingRun:
         sizes = np.max(np.abs(along(self._positive, piece, piece.start, piece.end)), axis=1)
         left = np.abs(self._positive(np.concatenate(([piece.end], state))[:, None])[:, 0])
         part = max(1e-5, 10 * (self._setting.tolerance or 0.0))
-        if np.any(left[list(turned)] > (part * sizes + 1e-7)[list(turned)]):
+        sliding = np.array(self._sides) == SLIDING
+        sizes = part * sizes + 1e-7 * np.where(sliding, 1.0, self._switches.sizes)
+        if np.any(left[list(turned)] > sizes[list(turned)]):
             raise endless("a switch is not where it should be", piece.end, state)
 
     # --- narrow features ---

@@ -22,6 +22,7 @@ from mbsym.numerics.events.crossings import NODES, Sign, free_of_zeros, nodes, p
 from mbsym.numerics.events.features import DIP, PEAK, SLIDING, TURN
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import MOST_KEPT, Breakdown, Passed, Piece, compiled_kernel, once
+from mbsym.numerics.methods.magnitudes import about
 
 # Narrow smooth features of a step: where a function of u(t) peaks or turns, and within which time.
 #
@@ -160,9 +161,18 @@ OUTSIDE = "outside of a table"
 #: Values of g below this part of its size are 0: they are what roundings leave of a step that ends at g = 0.
 BLUR = 1e-13
 
+#: Switches so close to each other, relative to the time, that nothing moves between them.
+TOGETHER = 1e-12
+
+#: A g that has moved by less, in a short step from a switch, stands still.
+STANDS = 4e-15
+
 
 class Sides:
-    """The switches of a dynamics; ``count`` of them, one side each."""
+    """The switches of a dynamics; ``count`` of them, one side each.
+
+    ``sizes`` are those of their g in this scene and ``time`` is its time, so that units do not count (``measure``).
+    """
 
     def __init__(self, dynamics: Dynamics) -> None:
         self._dynamics, found = dynamics, dynamics.features
@@ -174,10 +184,34 @@ class Sides:
         self.by_clock = tuple(k for k, knots in enumerate(self._knots) if clock[k] and knots is not None)
         self.looked_for = tuple(k for k in range(self.count) if k not in self.by_clock)
         self.values = feature_kernel(dynamics, "switches")
+        self.sizes, self.time = np.ones(self.count), 1.0
+
+    def measure(self, time: float, state: Any) -> None:
+        """Finds by how much each g changes where one component of a state, or the time, does by its own size."""
+        if not self.count:
+            return
+        state = np.asarray(state, dtype=float)
+        values = self.at(time, state)
+        sides = tuple(self._piece(k, float(v)) or (1 if v >= 0 else -1) for k, v in enumerate(values))
+        scene = about(self._dynamics.on_sides(sides), time, state)
+        self.time = float(scene.times[0])
+        steps = np.diag(np.append(self.time, scene.sizes[:, 0]))
+        point = np.append(time, state)[:, None]
+        changes = np.abs(self.values(np.hstack([point + steps, point - steps])) - values[:, None])
+        found = np.max(np.where(np.isfinite(changes), changes, 0.0), axis=1, initial=0.0)
+        self.sizes = np.where(found > 0, found, 1.0)
+
+    def size(self, k: int, side: int | None = None) -> float:
+        """That of one g; of what holds a sliding one it is 1."""
+        return 1.0 if side == SLIDING else float(self.sizes[k])
 
     def at(self, time: float, state: Any) -> Any:
         """All g and x in a state."""
         return self.values(np.concatenate(([float(time)], np.asarray(state, dtype=float))))
+
+    def together(self, time: float) -> float:
+        """Switches so close to each other at a time are at once."""
+        return TOGETHER * max(self.time, abs(float(time)))
 
     def next_knot(self, sides: tuple[int, ...]) -> float:
         """When the first table of the time comes to its next knot."""
@@ -245,17 +279,19 @@ class Sides:
                 self._check_sliding(time, state, tuple(sides))
         return tuple(sides)
 
-    def _plainly(self, k: int, value: float) -> int:
+    def _piece(self, k: int, value: float) -> int:
+        """That of a table; 0 of what is none."""
         knots = self._knots[k]
-        if knots is not None:
-            return 1 + int(np.searchsorted(knots, value, side="right"))
-        return 0 if abs(value) <= blur(value) else int(np.sign(value))
+        return 0 if knots is None else 1 + int(np.searchsorted(knots, value, side="right"))
+
+    def _plainly(self, k: int, value: float) -> int:
+        return self._piece(k, value) or (0 if self._at_border(k, value) else int(np.sign(value)))
 
     def _at_border(self, k: int, value: float) -> bool:
-        knots = self._knots[k]
+        knots, blur = self._knots[k], BLUR * (self.size(k) + abs(value))
         if knots is None:
-            return abs(value) <= blur(value)
-        return k not in self.by_clock and float(np.min(np.abs(knots - value))) <= blur(value)
+            return abs(value) <= blur
+        return k not in self.by_clock and float(np.min(np.abs(knots - value))) <= blur
 
     def _ways(self, k: int, was: int, value: float) -> tuple[tuple[int, int], ...]:
         """The sides that there are, the likelier first, and in which direction g or x would move there."""
@@ -274,16 +310,15 @@ class Sides:
         state = np.asarray(state, dtype=float)
         frozen = self._dynamics.on_sides(tuple(side or 1 for side in sides) if sides.count(0) > 1 else sides)
         rates = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([time], state)))
-        scale = np.max(np.abs(state), initial=0.0) + np.max(np.abs(rates), initial=0.0) + abs(time) + 1.0
-        reach = 1e-6 * (1.0 + np.max(np.abs(state), initial=0.0)) / (1.0 + np.max(np.abs(rates), initial=0.0))
-        begun = self.at(time, state)[k]
+        begun, reach = self.at(time, state)[k], 1e-6 * self.time
+        scale = abs(begun) + self.size(k) * (1.0 + abs(time) / self.time)  # the time is rounded, too
         # A Taylor step of third order: g may begin to move by its second derivative only.
         for length in (reach, 1e3 * reach):
             later = state + length * rates
             middle = compiled_kernel(frozen, "right_hand_side")(np.concatenate(([time + length], later)))
             later = state + 0.5 * length * (rates + middle)
             moved = self.at(time + length, later)[k] - begun
-            if abs(moved) > 1e-15 * scale * 4:
+            if abs(moved) > STANDS * scale:
                 return bool(moved * way > 0)
         return True
 
@@ -311,7 +346,7 @@ class Sides:
                 end = float(curve.knots[0] if side == 1 else curve.knots[-1])
                 text = "the table [[name]] begins at [[end]]" if side == 1 else "the table [[name]] ends at [[end]]"
                 message = Message(text, name=curve.table.name, end=f"{end:.9g}")
-                if abs(value - end) > 1e-9 * (1 + abs(end)):
+                if abs(value - end) > 1e-9 * (self.size(k) + abs(end)):
                     argument = Message("its argument is [[value]]", value=f"{value:.9g}")
                     message = joined([message, argument], ", ")
                 raise Breakdown(OUTSIDE, message, float(time), np.array(state, dtype=float))
@@ -321,11 +356,6 @@ def feature_kernel(dynamics: Dynamics, name: str) -> Callable[[Any], Any]:
     """The ``switches`` or the ``narrow`` of a dynamics, compiled once."""
     code = getattr(dynamics.features, name)
     return once(dynamics, ("features", name), lambda: kernel(code)) if code.outputs else lambda points: np.empty((0,))
-
-
-def blur(size: Any) -> Any:
-    """What roundings leave of a g that is 0."""
-    return BLUR * (1.0 + np.abs(size))
 
 
 def endless(why: str, time: float, state: Any) -> Breakdown:
@@ -339,24 +369,20 @@ def endless(why: str, time: float, state: Any) -> Breakdown:
 #: A piece is halved so often to resolve a g.
 DEPTH = 12
 
-#: Switches so close to each other, relative to the time, that nothing moves between them.
-TOGETHER = 1e-12
-
 
 class Leaving:
     """``values`` maps points (1 + 2n, m) to what is positive on the sides of a step, shape (switches, m).
 
-    Of the switches those ``looked_for`` may turn; what cannot be resolved is noted in ``passed``.
+    Of the ``switches`` those that are looked for may turn; what cannot be resolved is noted in ``passed``.
     """
 
-    def __init__(
-        self, values: Callable[[Any], Any], looked_for: tuple[int, ...], tolerance: float, passed: Passed
-    ) -> None:
-        self._values, self._looked_for, self._tolerance, self._passed = values, looked_for, tolerance, passed
+    def __init__(self, values: Callable[[Any], Any], switches: Sides, tolerance: float, passed: Passed) -> None:
+        self._values, self._switches, self._tolerance, self._passed = values, switches, tolerance, passed
+        self._looked_for = switches.looked_for
 
     def first(self, piece: Piece) -> tuple[float, tuple[int, ...]]:
         """The first time at which switches leave their sides in a piece, and which do so then; (end, ()) if none."""
-        if not self._looked_for or piece.end - piece.start <= TOGETHER * max(1.0, abs(float(piece.end))):
+        if not self._looked_for or piece.end - piece.start <= self._switches.together(piece.end):
             return piece.end, ()
         found: list[tuple[float, int]] = []
         whole = along(self._values, piece, piece.start, piece.end)
@@ -368,7 +394,7 @@ class Leaving:
         if not found:
             return piece.end, ()
         first = min(place for place, _ in found)
-        together = TOGETHER * max(1.0, abs(first))
+        together = self._switches.together(first)
         return first, tuple(k for place, k in found if place <= first + together)
 
     def _left(
@@ -396,7 +422,8 @@ class Leaving:
         if not resolved(known, rounding) and len(self._passed.unresolved) < MOST_KEPT:
             self._passed.unresolved.append(start)
         # Beside a switch that was just passed, what is within the tolerance of it is at it.
-        near = 0.1 * self._tolerance if begins and abs(values[0]) < 1e-6 * (1 + size) else 0.0
+        whole = self._switches.size(k)
+        near = 0.1 * self._tolerance * whole if begins and abs(values[0]) < 1e-6 * (whole + size) else 0.0
         passed, _, _ = passages(known, Sign(1, begins), max(BLUR * size, near))
         down = [one.place for one in passed if one.turn < 0]
         if not down:

@@ -13,7 +13,9 @@ What follows (Lyapunov 1892; Yakubovich & Starzhinskii, Linear Differential Equa
 a multiplier outside the unit circle: unstable, and so is the motion of the whole equations; all inside: asymptotically
 stable, likewise.  Where the equations follow from a Lagrangian, mu and 1/conj(mu) are multipliers together: a simple
 one whose ball meets the mirror image of no other is on the circle exactly; if all are, the first approximation is
-stable, and the whole equations are a critical case, unless they are linear.  Anything else is undecided.
+stable, and the whole equations are a critical case, unless they are linear.  Anything else is undecided.  Coordinates
+that nothing couples with others are judged by themselves: equal multipliers of two of them are no resonance, and of
+one coordinate whose J has no trace they are mu and 1/mu.
 
 With constraints the flow takes changes that keep them, C y = 0 with C = [df/dq, 0; dg/dq, J], to such.  y has free
 components, and others y_d = -C_d^-1 C_f y_f; of the monodromy matrix M_ff - M_fd C_d^-1 C_f is left, C being periodic.
@@ -23,10 +25,11 @@ Irrational numbers of the description are rounded to 256 bits before all this.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
+from functools import partial
 from itertools import combinations
 from math import ceil, gcd, lcm
 from typing import TYPE_CHECKING, Any
@@ -92,7 +95,8 @@ class Multiplier:
 
 @dataclass(frozen=True)
 class Judged:
-    """``monodromy`` is a matrix of balls that contains Phi(T); ``simple``: the multipliers' balls are disjoint.
+    """``monodromy`` is a matrix of balls that contains Phi(T); ``simple``: the multipliers' balls of each part of it
+    that nothing couples with others are disjoint.
 
     ``rests`` says whether the unperturbed motion satisfies the equations as a program, or only to 50 digits.
     """
@@ -120,12 +124,14 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
     with ctx.workprec(bits):
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
-        lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code))
+        lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code, (0, 1)))
         names: tuple[str, ...] = (*dynamics.system.coordinates, *dynamics.system.velocities)
         if dynamics.constraints is not None:
             monodromy, names = _allowed(dynamics, dynamics.constraints, monodromy, period, names)
             lagrangian = lagrangian and dynamics.constraints.holonomic == len(dynamics.constraints)
-        multipliers, simple = _multipliers(monodromy, lagrangian)
+            multipliers, simple = _multipliers(monodromy, lagrangian, lambda _: False)
+        else:
+            multipliers, simple = _multipliers(monodromy, lagrangian, partial(_traceless, code))
     word = _word(multipliers, simple, dynamics.linear)
     return Judged(word, period, frequency, names, monodromy, multipliers, simple, lagrangian, rests, steps)
 
@@ -277,11 +283,11 @@ def _require_no_time(there: bool) -> None:
         raise NotPeriodic("its coefficients are not periodic: the time is in them otherwise than in sines and cosines")
 
 
-def _traceless(code: Code) -> bool:
-    """Whether tr J vanishes as a program."""
+def _traceless(code: Code, part: Sequence[int]) -> bool:
+    """Whether the trace of that part of J vanishes as a program."""
     size = round(len(code.outputs) ** 0.5)
     total: Node = code.program.zero
-    for place in range(size):
+    for place in part:
         total = total + code.outputs[place * (size + 1)]
     return code.program.vanishes(total)
 
@@ -412,10 +418,20 @@ def remainder(code: Code, start: arb, step: arb, size: int, order: int) -> arb_m
     jets = _matrices(code, whole, size, order + 1)
     growth = ((_norm(jets[0]) * step).exp() - 1).upper()
     around = arb(0, growth)
-    near = [arb(int(i == j)) + around for i in range(size) for j in range(size)]
+    reached = _reached(jets[0])
+    near = [arb(int(i == j)) + (around if reached[i, j] else 0) for i in range(size) for j in range(size)]
     found = _coefficients(jets, arb_mat(size, size, near), order + 1)[-1]
     if not all(entry.is_finite() for row in found.tolist() for entry in row):
         raise NotPeriodic("the equations may be singular on the unperturbed motion: no bound over a step was found")
+    return found
+
+
+def _reached(slopes: arb_mat) -> np.ndarray:
+    """Where Phi has entries that may differ from those of 1: i, j with a chain of entries of J from j to i."""
+    rows = np.array([[not x.is_zero() for x in row] for row in slopes.tolist()])
+    found, longer = rows, rows @ rows | rows
+    while (longer != found).any():
+        found, longer = longer, longer @ longer | longer
     return found
 
 
@@ -433,27 +449,39 @@ def _coefficients(jets: Sequence[arb_mat], first: arb_mat, count: int) -> list[a
 # --- multipliers ---
 
 
-def _multipliers(monodromy: arb_mat, lagrangian: bool) -> tuple[tuple[Multiplier, ...], bool]:
-    balls = [ball for block in _diagonal_blocks(monodromy) for ball in _eigenvalues(block)]
-    simple = not any(one.overlaps(other) for one, other in combinations(balls, 2))
-    found = []
-    for place, root in enumerate(balls):
-        size = abs(root)
-        on_circle = size == 1 or (lagrangian and _alone(balls, place))
-        found.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
+def _multipliers(
+    monodromy: arb_mat, lagrangian: bool, keeps_area: Callable[[Sequence[int]], bool]
+) -> tuple[tuple[Multiplier, ...], bool]:
+    """The multipliers, and whether those of each part that nothing couples with others are simple."""
+    parts = _parts(monodromy, "weak")
+    balls = [[ball for block in _diagonal_blocks(monodromy, part) for ball in _eigenvalues(block)] for part in parts]
+    simple = not any(one.overlaps(other) for own in balls for one, other in combinations(own, 2))
+    every = [ball for own in balls for ball in own]
+    found: list[Multiplier] = []
+    for part, own in zip(parts, balls, strict=True):
+        mirrored = len(part) == 2 and keeps_area(part)
+        for place, root in enumerate(own):
+            size, alone = abs(root), mirrored and _alone(own, place)
+            on_circle = size == 1 or alone or (lagrangian and _alone(every, len(found)))
+            found.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
     return tuple(sorted(found, key=lambda one: -one.greatest)), simple
 
 
-def _diagonal_blocks(matrix: arb_mat) -> list[acb_mat]:
-    """Diagonal blocks of a block triangular form by the entries that are zero exactly.
+def _parts(matrix: arb_mat, connection: str) -> list[list[int]]:
+    """Rows by the entries that are not zero exactly: what is connected, whichever way (weak) or both ways (strong)."""
+    pattern = csr_array([[int(not entry.is_zero()) for entry in row] for row in matrix.tolist()])
+    count, of = connected_components(pattern, connection=connection)
+    return [[i for i in range(matrix.nrows()) if of[i] == k] for k in range(count)]
+
+
+def _diagonal_blocks(matrix: arb_mat, part: Sequence[int]) -> list[acb_mat]:
+    """Diagonal blocks of a block triangular form of a part, by the entries that are zero exactly.
 
     A cyclic coordinate and its rate, z' = v and v' = 0, have a Jordan block of the multiplier 1 for ever, which no
     precision takes apart; as blocks of one row they are exact.
     """
     rows = matrix.tolist()
-    pattern = csr_array([[int(not entry.is_zero()) for entry in row] for row in rows])
-    count, of = connected_components(pattern, connection="strong")
-    members = [[i for i in range(len(rows)) if of[i] == k] for k in range(count)]
+    members = [one for one in _parts(matrix, "strong") if one[0] in part]
     return [acb_mat([[acb(rows[i][j]) for j in one] for i in one]) for one in members]
 
 

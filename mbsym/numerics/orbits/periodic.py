@@ -27,6 +27,7 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable, compiled_kernel
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.floquet import NotPeriodic, common_frequency
 from mbsym.numerics.orbits.variational import Flow
@@ -144,9 +145,10 @@ def periodic_orbit(
     free_period = not (known_time or guess.keep_period)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     turns = np.array([2 * np.pi * guess.turns.get(name, 0) for name in names])
-    rates, energy = compiled_kernel(dynamics, "right_hand_side"), _Energy(dynamics)
+    rates, sizes = compiled_kernel(dynamics, "right_hand_side"), about(dynamics, 0.0, guess.state).sizes[:, 0]
     if known_time:
-        _require_repetition(dynamics, rates, guess)
+        _require_repetition(dynamics, rates, guess, sizes)
+    energy = _Energy(dynamics, sizes)
     search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
@@ -155,8 +157,8 @@ def periodic_orbit(
     for count in range(MOST_STEPS):
         watch(count, here.size)
         if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
-            return _orbit(dynamics, flow, best, turns, count, not known_time, rates)
-        forward = np.append(rates(np.concatenate(([0.0], here.state))), 0.0) if free_period else None
+            return _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
+        forward = rates(np.concatenate(([0.0], here.state))) if free_period else None
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
         found = search.towards(here, search.step(here, forward, ahead))
         if found is None:
@@ -175,13 +177,14 @@ def periodic_orbit(
     )
 
 
-def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess) -> None:
+def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any) -> None:
     """Raises NotFound where f(t + T, x) is not f(t, x): a motion that comes back after T goes on otherwise then."""
-    shift = np.cos(np.arange(1.0, 1 + len(guess.state)))
+    shift = sizes * np.cos(np.arange(1.0, 1 + len(guess.state)))
     for state in (np.asarray(guess.state, float) + size * shift for size in (0.0, 0.1, -0.3)):
         for t in np.linspace(0.0, guess.period, SAMPLES):
             now, then = (rates(np.concatenate(([at], state))) for at in (t, t + guess.period))
-            if np.any(np.abs(then - now) > REPEATED * (1 + np.abs(now))):  # never where one of them is no number
+            apart = np.abs(then - now)  # compared in vain where one of them is no number
+            if np.any(apart > REPEATED * (sizes / guess.period + np.abs(now))):
                 raise NotFound(_unrepeated(dynamics, f"{guess.period:.15g}"))
 
 
@@ -234,37 +237,38 @@ class _Search:
         except Breakdown:
             return None
         rest = end - state - self.turns
-        size = float(np.max(np.abs(rest) / (1 + np.abs(state))))
+        size = float(np.max(np.abs(rest) / self.energy.scale(state)))
         if self.wanted is not None:
             off = self.wanted - self.energy(state)
             rest = np.append(rest, -off)
-            size = max(size, abs(off) / (1 + abs(self.wanted)))
+            size = max(size, abs(off) / (self.energy.size(state) + abs(self.wanted)))
         return _Place(state, period, end, phi, rest, size)
 
     def step(self, here: _Place, forward: Any, ahead: Any) -> Callable[[float], Any]:
         """(dx0, dT), or dx0 alone, by the damping; ``forward`` is f at the start, orthogonal to dx0, ``ahead`` f at the
-        end.
+        end.  All in parts of the state's sizes, of the period and of the energy, so that units do not count.
 
         Off the orbit the singular values that vanish on it are about what is left over: below that they mean nothing.
         """
         size, basis = self.flow.size, self.flow.tangent(here.state)
-        matrix, right = here.phi - np.eye(size), -here.rest
+        scale = self.energy.scale(here.state)
+        allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
+        matrix, units = here.phi - np.eye(size), scale
         if self.wanted is not None:
             matrix = np.vstack([matrix, self.energy.gradient(here.state)])
-        scale = 1 + np.abs(here.state)
-        if basis is not None:  # changes that constraints allow, in lengths of their own
-            matrix, scale = matrix @ basis, np.ones(basis.shape[1])
-            forward = None if forward is None else np.append(forward[:size] @ basis, 0.0)
+            units = np.append(units, self.energy.size(here.state) + abs(self.wanted))
+        matrix, right = matrix @ allowed / units[:, None], -here.rest / units
         if forward is not None:
             column = np.zeros((len(matrix), 1))
-            column[:size, 0] = ahead
-            matrix = np.vstack([np.hstack([matrix, column]), forward])
-            right, scale = np.append(right, 0.0), np.append(scale, here.period)
+            column[:size, 0] = here.period * ahead / scale
+            way = (here.period * forward / scale) @ (allowed / scale[:, None])
+            matrix = np.vstack([np.hstack([matrix, column]), np.append(way, 0.0)])
+            right = np.append(right, 0.0)
+        width = allowed.shape[1]
 
         def found(damping: float) -> Any:
-            step = _least_squares(matrix, right, scale, damping * here.size)
-            width = size if basis is None else basis.shape[1]
-            return step if basis is None else np.concatenate([basis @ step[:width], step[width:]])
+            step = _least_squares(matrix, right, damping * here.size)
+            return np.append(allowed @ step[:width], here.period * step[width:])
 
         return found
 
@@ -290,32 +294,40 @@ class _Search:
         return self.at(here.state + step[:size], period)
 
 
-def _least_squares(matrix: Any, right: Any, scale: Any, damping: float) -> Any:
-    """The shortest solution, lengths measured in ``scale``, damped as by Levenberg and Marquardt."""
-    u, s, v = np.linalg.svd(matrix * scale, full_matrices=False)
+def _least_squares(matrix: Any, right: Any, damping: float) -> Any:
+    """The shortest solution, damped as by Levenberg and Marquardt."""
+    u, s, v = np.linalg.svd(matrix, full_matrices=False)
     kept = s > RANK * s[0]
     weights = np.where(kept, s / (s**2 + (damping * s[0]) ** 2 + np.where(kept, 0.0, 1.0)), 0.0)
-    return v.T @ (weights * (u.T @ right)) * scale
+    return v.T @ (weights * (u.T @ right))
 
 
 class _Energy:
-    """h = T2 - T0 - U and its gradient."""
+    """h = T2 - T0 - U and its gradient; ``sizes`` are those that the scene gives the components of the state."""
 
-    def __init__(self, dynamics: Dynamics) -> None:
-        self._energies = compiled_kernel(dynamics, "energies")
+    def __init__(self, dynamics: Dynamics, sizes: Any) -> None:
+        self._energies, self.sizes = compiled_kernel(dynamics, "energies"), sizes
+
+    def scale(self, state: Any) -> Any:
+        """What changes of a state are measured by."""
+        return self.sizes + np.abs(state)
+
+    def size(self, state: Any) -> float:
+        """By how much h changes where the state does by as much as its sizes."""
+        return float(np.abs(self.gradient(state)) @ self.scale(state))
 
     def __call__(self, state: Any) -> float:
         return float(self._energies(np.concatenate(([0.0], state)))[1])
 
     def gradient(self, state: Any) -> Any:
         """By central differences of sixth order, good to some 11 digits."""
-        return _differences(self, state)
+        return _differences(self, state, self.scale(state))
 
 
-def _differences(function: Callable[[Any], Any], state: Any) -> Any:
+def _differences(function: Callable[[Any], Any], state: Any, scale: Any) -> Any:
     rows = []
     for place in range(len(state)):
-        h = 1e-2 * (1 + abs(state[place]))
+        h = 1e-2 * scale[place]
         total = 0.0
         for k, weight in ((1, 0.75), (2, -0.15), (3, 1 / 60)):
             for sign in (1, -1):
@@ -326,24 +338,26 @@ def _differences(function: Callable[[Any], Any], state: Any) -> Any:
     return np.array(rows)
 
 
-def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int, free: bool, rates: Any) -> Orbit:
+def _orbit(
+    dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int, free: bool, rates: Any, energy: _Energy
+) -> Orbit:
     state, period = found.state, found.period
-    speeds = rates(np.concatenate(([0.0], state)))
-    if free and float(np.max(np.abs(speeds) / (1 + np.abs(state)))) * period < RESTING:
+    scale = energy.scale(state)
+    path = period * rates(np.concatenate(([0.0], state))) / scale
+    if free and float(np.max(np.abs(path))) < RESTING:
         raise NotFound(
             Message("Newton's method has found a state of rest: begin farther away from it, or keep the energy")
         )
     _, phi = flow.passage(state, 0.0, period)
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
     basis = flow.tangent(state)
-    basis = np.eye(len(state)) if basis is None else basis
-    phi, other = (basis.T @ one @ basis for one in (phi, other))
+    basis = np.eye(len(state)) if basis is None else np.linalg.qr(basis / scale[:, None])[0]
+    phi, other = (basis.T @ (one * scale / scale[:, None]) @ basis for one in (phi, other))  # in parts of the sizes
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
-    reasons, count = _trivial(dynamics, state, phi, free, basis)
-    verified, verifier = _verified(dynamics, state, period, turns)
+    reasons, count = _trivial(dynamics, state, phi, path if free else None, basis, energy)
+    verified, verifier = _verified(dynamics, state, period, turns, scale)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
-    energy = _Energy(dynamics)(state)
     det = float(np.linalg.det(phi))
     return Orbit(
         names,
@@ -354,12 +368,12 @@ def _orbit(dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int
         verified,
         verifier,
         steps,
-        basis @ phi @ basis.T,
+        (basis @ phi @ basis.T) * scale[:, None] / scale,
         multipliers,
         uncertainty,
         count,
         reasons,
-        energy,
+        energy(state),
         free,
         det,
     )
@@ -380,10 +394,13 @@ def _distance(a: Any, b: Any) -> float:
     return float(worst)
 
 
-def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -> tuple[tuple[Trivial, ...], int]:
+def _trivial(
+    dynamics: Dynamics, state: Any, phi: Any, path: Any, basis: Any, energy: _Energy
+) -> tuple[tuple[Trivial, ...], int]:
     """The reasons for multipliers 1 that hold at this Phi, and for how many of them they stand.
 
-    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all.
+    Phi and its vectors are told in ``basis``, of the changes that constraints allow, or all, in parts of the state's
+    sizes.  ``path`` is what the motion passes in a period at its speed here; None where the period is not free.
 
     Right eigenvectors span V, left ones W; where W vanishes on V, 1 has at least the multiplicity dim V + dim W.
     """
@@ -393,27 +410,29 @@ def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -
     reasons = []
     cyclic = cyclic_coordinates(dynamics)
     candidates: list[tuple[str, Any, bool]] = []
-    if free:
-        rates = compiled_kernel(dynamics, "right_hand_side")(np.concatenate(([0.0], state)))
-        candidates.append((Message("the motion itself: the equations do not depend on the time"), rates, True))
-    if free and conserves_energy(dynamics):
-        candidates.append((Message("the energy is conserved"), _Energy(dynamics).gradient(state), False))
+    scale = energy.scale(state)
+    if path is not None:
+        candidates.append((Message("the motion itself: the equations do not depend on the time"), path, True))
+    if path is not None and conserves_energy(dynamics):
+        candidates.append((Message("the energy is conserved"), scale * energy.gradient(state), False))
     momenta = compiled_kernel(dynamics, "momenta")
-    slopes = _differences(lambda x: momenta(np.concatenate(([0.0], x))), state) if cyclic else None
+    slopes = _differences(lambda x: momenta(np.concatenate(([0.0], x))), state, scale) if cyclic else None
     for name in cyclic:
         unit = np.zeros(2 * n)
         unit[names.index(name)] = 1.0
         candidates.append((Message("[[name]] is cyclic", name=name), unit, True))
         assert slopes is not None
         candidates.append(
-            (Message("the momentum of [[name]] is conserved", name=name), slopes[:, names.index(name)], False)
+            (Message("the momentum of [[name]] is conserved", name=name), scale * slopes[:, names.index(name)], False)
         )
     size = float(np.linalg.norm(phi))
     for reason, vector, is_right in candidates:
         across = float(np.linalg.norm(vector - basis @ (basis.T @ vector)))
         vector = basis.T @ vector
         length = float(np.linalg.norm(vector))
-        if length < 1e-12 or (is_right and across > 1e-9 * length):  # or no change that is allowed
+        if length <= (1e-12 if is_right else 0.0):
+            continue
+        if is_right and across > 1e-9 * length:  # no change that is allowed
             continue
         image = phi @ vector if is_right else vector @ phi
         moved = float(np.linalg.norm(image - vector)) / (length * size)
@@ -425,7 +444,7 @@ def _trivial(dynamics: Dynamics, state: Any, phi: Any, free: bool, basis: Any) -
     return tuple(reasons), max(ranks) if crossing else sum(ranks)
 
 
-def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any) -> tuple[float, str]:
+def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any, scale: Any) -> tuple[float, str]:
     """The closure by another method: Taylor series where heyoka is there, else rk45, in extended arithmetic if any."""
     scalar = EXTENDED if available(EXTENDED) else FLOAT64
     for name, tolerance in (("taylor", 1e-17), ("rk45", 1e-15)):
@@ -435,5 +454,5 @@ def _verified(dynamics: Dynamics, state: Any, period: float, turns: Any) -> tupl
             end = np.array(run.advance(period), float)
         except (Unusable, Breakdown):
             continue
-        return float(np.max(np.abs(end - state - turns) / (1 + np.abs(state)))), f"{name}, {scalar}"
+        return float(np.max(np.abs(end - state - turns) / scale)), f"{name}, {scalar}"
     return float("nan"), "no other method"

@@ -32,7 +32,7 @@ from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
-from mbsym.problems.claims.integrals import of_positions
+from mbsym.problems.claims.integrals import TOO_FEW_STATES, of_positions
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import (
@@ -111,6 +111,9 @@ def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
     ring, form, along = derived.ring, derived.form, _along(derived)
     claimed = _polynomial(derived, result)
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
+        moving = ring.dependencies(claimed, [x.name for x in form.positions])
+        if moving and along.vanishes(form.rate(claimed)):
+            return replace(result, remark=FROM_CONSTRAINTS)
         return of_positions(form, result, claimed)
     if all(
         form.vanishes(x) is True for x in along.along_speeds([ring.derivative(claimed, u.name) for u in form.speeds])
@@ -167,7 +170,7 @@ def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Pol
         remark = "it does not vanish for all parameters; whether it does on their relations is not decided here"
         return replace(result, outcome=UNDECIDED, remark=remark)
     if len(found) < STATES or ring.kinked:
-        return replace(result, outcome=UNDECIDED, remark="there are too few states at which it could be tried")
+        return replace(result, outcome=UNDECIDED, remark=TOO_FEW_STATES)
     return replace(result, outcome=NUMERICAL, remark="at exact states on the constraints")
 
 

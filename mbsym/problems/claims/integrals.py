@@ -34,6 +34,10 @@ from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restric
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
 
+TOO_FEW_STATES = "there are too few states at which it could be tried"
+#: c x' = -k (x - y), c y' = k (x - y): x + y is one.
+WITHOUT_INERTIA = "it contains no velocity; whether it is constant where coordinates carry no inertia is not decided"
+
 
 def of_positions(form: SpeedForm, result: ClaimResult, claimed: Polynomial) -> ClaimResult:
     """What holds no velocity: of unit vectors and quaternions alone it is known, else it is no integral."""
@@ -49,6 +53,9 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
     scene, ring, equations = derived.scene, derived.ring, derived.equations
     result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, derived.system.velocities):
+        light = (row for row in equations.mass_matrix if all(ring.vanishes(x.polynomial) for x in row))
+        if any(True for _ in light) and ring.dependencies(claimed, derived.system.coordinates):
+            return replace(result, outcome=UNDECIDED, remark=WITHOUT_INERTIA)
         return of_positions(derived.form, result, claimed)
     outcome = EXACT
     for outcome in (EXACT, RELATIONS):
@@ -81,7 +88,11 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
     timely = ["t", *(item.name for item in derived.system.prescribed)]
     if any(ring.dependencies(x, timely) for x in parts):
         used.add("t")
+    if difference is not None and difference.is_zero:
+        return replace(result, outcome=outcome)
     example = against_constancy(derived.system, ring, derived.programs, rate, used)
+    if example is None:
+        return replace(result, outcome=UNDECIDED, difference=difference, remark=TOO_FEW_STATES)
     remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
     return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
 

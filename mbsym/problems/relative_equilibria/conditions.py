@@ -38,7 +38,8 @@ class Conditions:
         self.ranks = (self.case.rank, rank)
         self.ring: Ring = chart.found.ring
         self.remarks: list[str] = []
-        self.complete = True
+        self.doubts: list[str] = []
+        self.unfinished = False
 
     def _conditions(self) -> None:
         found, ring = self.found, self.ring
@@ -151,8 +152,12 @@ class Conditions:
         )
 
     def _incomplete(self, remark: str) -> None:
-        self.complete = False
-        self.remarks.append(remark)
+        self.doubts.append(remark)
+
+    @property
+    def complete(self) -> bool:
+        """Whether nothing is missing; else ``doubts`` say what was not done, or it is still to be done."""
+        return not self.doubts and not self.unfinished
 
     def _periodic(self, name: str) -> bool:
         """Whether it occurs as an angle only: not outside of its sine and cosine, nor in a function or another sine."""

@@ -127,12 +127,14 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits, ra
             search.run()
             if families and chart.restrictions:
                 search.points = _off_families(search, within, limits)
+        if first.rows and not all(x.complete for x in searches):
+            _search_whole(searches)
         _counted_once(searches)
         uncounted += [x.is_real for x in searches if rank is not None and x.case.rank < rank and x.leaves_none]
         for search in searches:
             found += search.points
             families += search.families
-            remarks += search.remarks
+            remarks += [*search.remarks, *search.doubts]
             complete = complete and search.complete
         if any(not x.equations and not x.impossible for x in searches):  # everywhere: other angles add nothing
             break
@@ -232,6 +234,20 @@ def searches_of(
         yield search
 
 
+def _search_whole(searches: Sequence[_ChartSearch]) -> None:
+    """The positions of all cases in which the constraints have their rank, searched at once by bisection.
+
+    Where nothing is left open, the list is complete whatever the single cases left out.
+    """
+    left_open = searches[0].search_whole()
+    for search in searches:
+        search.doubts, search.unfinished = search.doubts * bool(left_open), False
+    searches[0].doubts += left_open
+    if not left_open:
+        text = "bisection went through all positions that the constraints allow and left none undecided"
+        searches[0].remarks.append(Message(text))
+
+
 def _counted_once(searches: Sequence[_ChartSearch]) -> None:
     """What in one case of the rank is only the limit of a larger set of another is left out."""
     closures = [closure for search in searches for closure in search.closures()]
@@ -256,7 +272,7 @@ def _off_families(search: _ChartSearch, within: float, limits: Limits) -> list[S
     """The points of a chart that are not limits of families which run on outside its restrictions."""
     whole = _ChartSearch(replace(search.chart, restrictions=()), within, limits, search.case)
     whole.run()
-    search.complete = search.complete and whole.complete
+    search.doubts += whole.doubts
     return [point for point in search.points if not _on_any(point.place, whole.family_equations)]
 
 
@@ -270,7 +286,13 @@ def _sort_key(x: RelativeEquilibrium) -> tuple[tuple[float, float], ...]:
 def _described(group: Sequence[Solution]) -> RelativeEquilibrium:
     """The configuration in its simplest coordinates, judged there."""
     best = min(
-        group, key=lambda c: (c.chart.chart.label, sum(abs(x.value) for x in c.values), [-x.value for x in c.values])
+        group,
+        key=lambda c: (
+            c.chart.chart.label,
+            c.proof != EXACT,
+            sum(abs(x.value) for x in c.values),
+            [-x.value for x in c.values],
+        ),
     )
     judged = best.chart.verdict(best.place)
     return RelativeEquilibrium(
@@ -302,7 +324,9 @@ class _ChartSearch(SearchInBoxes):
             return
         if self.reason:
             self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
-            self._search_numerically(bisect=True)
+            self.unfinished = bool(self.found.rows)  # all cases are searched at once
+            if not self.unfinished:
+                self._search_numerically(bisect=True)
             return
         self._solve_exactly()
 
@@ -358,6 +382,10 @@ class _ChartSearch(SearchInBoxes):
             if self._solve_in_direction_cosines():
                 return
             reasons = joined(result.unfinished, "; ")
+            if self.found.rows:
+                self.unfinished = True
+                self.remarks.append(Message("the exact solution is not finished ([[reasons]])", reasons=reasons))
+                return
             self._incomplete(
                 Message(
                     "the exact solution is not finished ([[reasons]]); the rest was searched for from [[count]] points",

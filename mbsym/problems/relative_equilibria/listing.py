@@ -316,17 +316,28 @@ def turned(value: float, denominator: int = 1) -> float:
 def from_many_points(
     ring: Ring,
     equations: Sequence[Polynomial],
-    slopes: Sequence[Sequence[Polynomial]],
     names: Sequence[str],
     bounds: Sequence[tuple[float, float]],
+    linear: Sequence[str] = (),
 ) -> list[list[float]]:
-    """Where damped Newton iterations from random points end, without repetition; found, not proved."""
+    """Where damped Newton iterations from random points end, without repetition; found, not proved.
+
+    ``linear``: further unknowns, in which the equations are linear and which begin at their least squares.
+    """
     import numpy as np
 
     source = np.random.default_rng(SEED)
-    n = len(names)
-    q = np.array([source.uniform(low, high, STARTS) for low, high in bounds])
-    value = _vectorised(ring, [*equations, *(x for row in slopes for x in row)], names)
+    bounded, unknowns = len(names), (*names, *linear)
+    n = len(unknowns)
+    q = np.array([*(source.uniform(low, high, STARTS) for low, high in bounds), *np.zeros((len(linear), STARTS))])
+    slopes = (ring.derivative(x, name) for x in equations for name in unknowns)
+    value = _vectorised(ring, [*equations, *slopes], unknowns)
+    if linear:
+        with np.errstate(all="ignore"):
+            found = value(q)
+        for at in np.flatnonzero(np.isfinite(found).all(axis=0)):
+            columns = found[n:, at].reshape(n, n)[:, bounded:]
+            q[bounded:, at] = -np.linalg.lstsq(columns, found[:n, at], rcond=None)[0]
     for _ in range(60):
         with np.errstate(all="ignore"):
             found = value(q)
@@ -339,7 +350,7 @@ def from_many_points(
         scale = np.trace(normal, axis1=1, axis2=2)[:, None, None] + 1e-300
         right = np.einsum("kji,jk->ki", matrices[usable], f[:, usable])
         change[:, usable] = -np.linalg.solve(normal + scale * damping, right[..., None])[..., 0].T
-        length = np.sqrt((change**2).sum(axis=0))
+        length = np.sqrt((change[:bounded] ** 2).sum(axis=0))
         q = q + change * np.minimum(1.0, 0.7 / np.maximum(length, 1e-300))
     ends: dict[tuple[float, ...], list[float]] = {}
     for k in range(STARTS):
@@ -357,7 +368,7 @@ def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[s
     import numpy as np
 
     program = Program()
-    carry = Carrier(ring, program, {name: program.input(name) for name in ring.names()})
+    carry = Carrier(ring, program, {name: program.input(name) for name in (*ring.names(), "pi")})
     outputs = [carry(x) for x in polynomials]
 
     def values(q: Any) -> Any:

@@ -13,6 +13,7 @@ from flint import ctx, fmpq, fmpq_mpoly_ctx
 
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.krawczyk import pivot_rows
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, symmetric
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
@@ -170,8 +171,14 @@ class LinearAtRest:
                 bends = [[[look(x) for x in line] for line in bend] for bend in self.bends]
                 if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
                     return undecided(Because.NOT_ENCLOSED)
-                reduced, pivots = echelon(numbers, jacobian, n)
+                columns = list(range(n))
+                if place.modulus is None:  # balls: what may be 0 divides nothing
+                    first = pivot_rows([[float(x.mid()) for x in row[:-1]] for row in table])
+                    columns = [*first, *(k for k in columns if k not in first)]
+                    table = [table[k] for k in columns]
+                reduced, pivots = echelon(numbers, [[row[k] for k in columns] for row in jacobian], n)
                 basis = null_vectors(numbers, dict(zip(pivots, reduced, strict=False)), n)
+                pivots, basis = [columns[k] for k in pivots], [[v[columns.index(k)] for k in range(n)] for v in basis]
                 solved, taken = echelon(numbers, table, len(jacobian))
                 multipliers = dict(zip(taken, (row[-1] for row in solved), strict=False))
                 for k, multiplier in multipliers.items():
@@ -241,7 +248,8 @@ def linear_at_rest(found: Rest) -> LinearAtRest:
     law = balance.law
     if not law.bounded and not found.rows and all(found.at_rest[i].is_zero() for i in cyclic) and has_energy(found):
         law = EnergyLaw.CONSERVED
-    parts = (mass, symmetric(C).rows, skew(C).rows, symmetric(S).rows, skew(S).rows)
+    circulatory = skew(S).map(lambda x: ring.zero if ring.is_zero(x) is True else x)
+    parts = (mass, symmetric(C).rows, skew(C).rows, symmetric(S).rows, circulatory.rows)
     spin = None if found.rows else free_spin(found.system)
     tilts = () if spin is None else tuple(names.index(name) for name in spin.tilts)
     rate = None if spin is None else rates[ring.index("velocity", spin.coordinate)]

@@ -18,12 +18,13 @@ _SAID = {
     Word.UNSTABLE: Message("unstable: a multiplier is outside the unit circle (Lyapunov)"),
     Word.ASYMPTOTICALLY_STABLE: Message("asymptotically stable: all multipliers are inside the unit circle (Lyapunov)"),
     Word.STABLE: Message(
-        "stable: the equations are linear and follow from a Lagrangian, and the multipliers are simple and on the unit "
-        "circle"
+        "stable: the equations are linear and follow from a Lagrangian, and the multipliers are on the unit circle and "
+        "simple (coordinates that are not coupled may have equal ones)"
     ),
     Word.STABLE_FIRST_APPROXIMATION: Message(
-        "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are simple and "
-        "on the unit circle; of the motion itself that proves nothing (a critical case)"
+        "the first approximation is stable: the equations follow from a Lagrangian, and the multipliers are on the "
+        "unit circle and simple (coordinates that are not coupled may have equal ones); of the motion itself that "
+        "proves nothing (a critical case)"
     ),
     Word.UNDECIDED: Message(
         "undecided: no multiplier is proved to be outside the unit circle, and neither are all proved to be inside nor "

@@ -104,13 +104,14 @@ def of_slow(found: Expansion, measured: Measured | str) -> Iterator[Paragraph | 
 def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Paragraph | Display | Definitions]:
     """The periodic solution, variables that follow from it, and its error."""
     yield from map(ragged, oscillation_words.opening(found))
-    yield from map(Display, oscillation_words.collected(found))
-    letters = oscillation_words.denominators(found)
+    solution, drifts = tuple(oscillation_words.collected(found)), tuple(oscillation_words.drifting(found))
+    yield from map(Display, solution)
+    letters = oscillation_words.denominators(found, (*solution, *drifts))
     if letters is not None:
         yield letters
-    if found.found.drifts:
+    if drifts:
         yield ragged(Said(oscillation_words.DRIFTS))
-        yield from map(Display, oscillation_words.drifting(found))
+        yield from map(Display, drifts)
     yield from map(ragged, oscillation_words.sentences(found))
     yield from map(ragged, oscillation_words.measured_sentences(found, measured))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
@@ -150,10 +150,15 @@ def collected(told: Oscillating) -> Iterator[Relation]:
             yield Coefficient(told.phase, True, order, value).equation
 
 
-def denominators(told: Oscillating) -> Definitions | None:
-    """What the letters stand for."""
+def denominators(told: Oscillating, equations: Iterable[Relation]) -> Definitions | None:
+    """What the letters in the equations stand for."""
     tower, ring = told.found.tower, told.told_ring
-    made = [(name, tower.made(factor, tower.context.constant(1))) for factor, name in told.denominators]
+    parts = [
+        x for one in equations for part in one.parts for x in (part.items if isinstance(part, Listed) else (part,))
+    ]
+    formulas = [x.polynomial for x in parts if isinstance(x, Formula) and x.ring is ring]
+    held = {ring.generators[k].name for k in ring.held(formulas)}
+    made = [(name, tower.made(factor, tower.context.constant(1))) for factor, name in told.denominators if name in held]
     items = tuple(Relation(Name(name, ring=ring), "=", told.formula(x)) for name, x in made)
     return Definitions(Said("with"), items) if items else None
 
