@@ -348,6 +348,11 @@ class Transfer:
 def no_variable(ring: Ring, k: int) -> NoClosedForm:
     """Why a generator cannot be one of a polynomial field, and what to write in its place."""
     g = ring.generators[k]
+    if g.kind == "function" and g.name == "exp":  # it would be one, if not for what its exponent holds
+        allowed = ("coordinate", "velocity", "sine", "cosine", "parameter")
+        held = [i for i in occurring([g.argument]) if ring.generators[i].kind not in allowed]
+        if held and any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
+            return no_variable(ring, held[0])
     what, remedy = Message(g.kind), ""
     if g.argument is not None and not any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
         what = Message("the constant [[formula]]", formula=str(Formula(ring, ring.context.gen(k))))

@@ -173,6 +173,9 @@ def test_exponentials_have_one_relation():
         ("exp(x) + x**2", "exp(x), x are functions of each other"),
         ("exp(x) + exp(a*x)", "functions of each other"),
         ("exp(a)*x**2", "constant exp(a) occurs"),
+        ("exp(sqrt(3)*x - y)", "constant sqrt(3) occurs"),
+        ("exp(t*x)", "the time occurs"),
+        ("exp(exp(x))", "function exp occurs"),
     ],
 )
 def test_what_is_left_is_refused_with_its_reason(potential, why):
