@@ -314,11 +314,11 @@ def _is_new(formula: Polynomial, others: Sequence[Polynomial]) -> bool:
     return bool(table.rank() == len(columns)) if len(others) else True
 
 
-def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
+def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool | None:
     """Whether dI/dt = 0, q'' from the equations, at random states, and I holds a velocity at all.
 
     Exact at rational states; where roots or exponentials make the values irrational, balls that contain zero and are
-    narrow.
+    narrow.  None where it could be tried at too few states, and is different from zero at none of them.
     """
     ring = scene.ring
     if not ring.dependencies(formula, scene.system.velocities):
@@ -332,8 +332,10 @@ def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> boo
         return _vanishes(scene, equations, rate, ball_states(scene.system, ring, 4 * STATES), arb_mat)
 
 
-def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iterable[State], matrix: Any) -> bool:
-    """Whether dI/dt, with the accelerations of the equations, is zero at enough of the states."""
+def _vanishes(
+    scene: Scene, equations: Equations, rate: Polynomial, states: Iterable[State], matrix: Any
+) -> bool | None:
+    """Whether dI/dt, with the accelerations of the equations, is zero at the states; None where these are too few."""
     names = scene.system.coordinates
     n, passed = len(names), 0
     for state in states:
@@ -355,7 +357,7 @@ def _vanishes(scene: Scene, equations: Equations, rate: Polynomial, states: Iter
         passed += 1
         if passed == STATES:
             return True
-    return False
+    return None
 
 
 def is_proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:

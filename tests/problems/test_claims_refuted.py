@@ -522,3 +522,17 @@ def test_an_integral_that_is_huge_at_some_states_is_not_refuted_by_them() -> Non
         f"claims:\n{lines}"
     ).claims
     assert [one.outcome for one in found] == [EXACT, FAILS]
+
+
+def test_an_integral_is_refuted_where_numbers_are_tied_by_a_relation() -> None:
+    """A bead on a hoop whose weight is what lets it rest at theta0: no numbers to show are found, and yet it fails."""
+    (result,) = mbsym.loads(
+        "mbsym: 1\nname: bead\nparameters: {m: positive, R: positive, g: positive, W: positive, a: positive}\n"
+        "prescribed: {psi: {rate: W}}\nbodies:\n"
+        "  - {name: hoop, attached to: 0, mass: 0, rotation: {axes: [3], angles: [psi]}}\n"
+        "  - {name: bead, attached to: hoop, mass: m, coordinates: [q], connection point: [R*sin(q), 0, -R*cos(q)]}\n"
+        "loads:\n  - uniform gravity: {acceleration: g, direction: [0, 0, -1]}\n"
+        "motion: {q: a}\nrelations: {g: R*W**2*cos(a)}\n"
+        "claims:\n  - {claim: first integral, equals: R*q_dot**2/2 - R*W**2*sin(q)**2/2 + g*cos(q)}\n"
+    ).claims
+    assert result.outcome == FAILS

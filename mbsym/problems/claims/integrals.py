@@ -65,7 +65,8 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
                 break
             claimed = ring.substitute(claimed, images)
             equations = _substituted(ring, equations, images)
-        if is_conserved(scene, equations, claimed):
+        conserved = is_conserved(scene, equations, claimed)
+        if conserved:
             constant = _constant_where(derived, claimed)
             if constant is not None:
                 told = Message("it is a constant, whatever the motion")
@@ -91,7 +92,7 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
     if difference is not None and difference.is_zero:
         return replace(result, outcome=outcome)
     example = against_constancy(derived.system, ring, derived.programs, rate, used)
-    if example is None:
+    if example is None and conserved is None:
         return replace(result, outcome=UNDECIDED, difference=difference, remark=TOO_FEW_STATES)
     remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
     return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
