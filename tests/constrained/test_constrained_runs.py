@@ -23,8 +23,8 @@ from mbsym.numerics.constrained import drift_of
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import OUT_OF_REACH, SINGULAR_CONSTRAINTS, Setting, compiled_kernel
-from mbsym.numerics.methods.table import METHODS
+from mbsym.numerics.methods.interface import OUT_OF_REACH, SINGULAR_CONSTRAINTS, Setting, Unusable, compiled_kernel
+from mbsym.numerics.methods.table import LED, METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.source import read
@@ -328,6 +328,24 @@ def test_a_run_goes_on_from_the_state_that_it_began_with(tmp_path: Path) -> None
     last = (tmp_path / "on" / "trajectory.csv").read_text().splitlines()[-1].split(",")
     assert float(last[0]) == 2
     assert float(last[1]) ** 2 + float(last[2]) ** 2 == pytest.approx(1, abs=1e-13)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_methods_that_are_said_to_keep_to_constraints_do(name: str) -> None:
+    """And no others begin: the hint that names them is made of what each method says of itself."""
+    dynamics = Dynamics(closed(scenario(described(PENDULUM))).scenario)
+    setting = Setting(step=0.01) if METHODS[name].traits.fixed else Setting(1e-9)
+    if name not in LED:
+        with pytest.raises(Unusable, match="does not keep to constraints"):
+            METHODS[name].start(dynamics, setting)
+        return
+    try:
+        run = METHODS[name].start(dynamics, setting)
+    except Unusable as reason:
+        pytest.skip(str(reason))  # an optional package
+    run.advance(1.0)
+    x, y = run.state[:2]
+    assert x**2 + y**2 == pytest.approx(1, abs=1e-13)
 
 
 def test_tradeoff_tells_from_where_it_begins_and_what_does_not_apply(tmp_path: Path) -> None:

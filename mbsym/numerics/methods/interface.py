@@ -109,8 +109,9 @@ class Traits:
 
     ``order`` is its nominal order (None: variable); ``fixed`` means that it takes a step instead of a tolerance;
     ``scalars`` the arithmetic it runs in; ``conservative`` that it needs forces with a force function;
-    ``extra`` the optional package that it needs.  ``interpreted``: about the seconds of an evaluation with its share of
-    the linear algebra, of a method outside machine code; ``least`` the finest tolerance that such a one takes.
+    ``extra`` the optional package that it needs; ``led`` that between its steps states can be led back to constraints,
+    and quaternions and unit vectors to their lengths.  ``interpreted``: about the seconds of an evaluation with its
+    share of the linear algebra, of a method outside machine code; ``least`` the finest tolerance that such a one takes.
     """
 
     name: str
@@ -121,6 +122,7 @@ class Traits:
     implicit: bool = False
     conservative: bool = False
     extra: str | None = None
+    led: bool = True
     interpreted: float = 0.0
     least: float = 0.0
 

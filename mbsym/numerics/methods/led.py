@@ -181,8 +181,6 @@ TIMES = 2
 #: A correction beyond this part of the state is none: the constraints are nearly singular there.
 LARGEST_PART = 1e-2
 
-DO = Message("these methods do: rk4, rk45, dop853, taylor, rodas5p, scipy-rk45, scipy-dop853, radau, bdf")
-
 #: So many states at ends of steps or questions are kept, to look back from a singular position.
 REMEMBERED = 400
 
@@ -235,12 +233,10 @@ def refuse(dynamics: Dynamics, method: str) -> None:
     """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
         told = dynamics.constraints.told()
-        raise Unusable(
-            Message("[[method]] does not keep to constraints ([[told]]); [[these]]", method=method, told=told, these=DO)
-        )
+        raise Unusable(Message("[[method]] does not keep to constraints ([[which]])", method=method, which=told))
     if dynamics.correction is not None:
-        text = "[[method]] does not keep quaternions and unit vectors at their lengths; [[these]]"
-        raise Unusable(Message(text, method=method, these=DO))
+        text = "[[method]] does not keep quaternions and unit vectors at their lengths"
+        raise Unusable(Message(text, method=method))
 
 
 class LedRun:

@@ -51,8 +51,8 @@ class LibraryRun(Stepping):
         self._rates = counted(self._rhs_kernel, self.work)
         self._kinds = variables(dynamics)
         self._led = lead(dynamics)
-        if method.traits.name == "lsoda":
-            refuse(dynamics, method.traits.name)  # ODEPACK keeps its history to itself
+        if not method.traits.led:
+            refuse(dynamics, method.traits.name)
         if setting.longest is not None:
             self._options["max_step"] = setting.longest
         if method.traits.implicit:
@@ -189,8 +189,9 @@ class Library:
     def __init__(self, name: str, solver: str, order: int | None, seconds: float, implicit: bool = False) -> None:
         self._solver = solver
         title = Message("SciPy's [[solver]], for stiff systems" if implicit else "SciPy's [[solver]]", solver=solver)
+        led = name != "lsoda"  # ODEPACK keeps its history to itself
         self.traits = Traits(
-            name, title, order, fixed=False, implicit=implicit, interpreted=seconds, least=LEAST_TOLERANCE
+            name, title, order, fixed=False, implicit=implicit, led=led, interpreted=seconds, least=LEAST_TOLERANCE
         )
 
     @property

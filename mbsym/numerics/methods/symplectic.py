@@ -520,6 +520,7 @@ class Symplectic:
             scalars=(FLOAT64, EXTENDED),
             implicit=True,
             conservative=True,
+            led=False,
         )
 
     def start(

@@ -20,3 +20,6 @@ _FAMILIES: tuple[tuple[Method, ...], ...] = (
 )
 
 METHODS: dict[str, Method] = {method.traits.name: Landing(method) for family in _FAMILIES for method in family}
+
+#: Those that keep to constraints, and quaternions and unit vectors at their lengths.
+LED = tuple(name for name, method in METHODS.items() if method.traits.led)

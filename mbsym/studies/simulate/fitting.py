@@ -325,14 +325,14 @@ def _check_constrained(system: System, request: Run, wrong: Reasons) -> None:
     """Complains about every option that does not know constraints yet."""
     if not system.constraints:
         return
-    from mbsym.numerics.methods.table import METHODS
+    from mbsym.numerics.methods.table import LED, METHODS
 
     constraints = listed_constraints(system.constraints)
     if request.model.linear:
         message = Message("--linear does not take constraints into account yet ([[which]])", which=constraints)
         wrong.complain("--linear", "constraints", message, "without them this would be another system")
-    if request.method in METHODS and (METHODS[request.method].traits.conservative or request.method == "lsoda"):
-        hint = Message("these do: [[names]]", names="auto, dop853, rk45, rk4, taylor, rodas5p, radau, bdf")
+    if request.method in METHODS and request.method not in LED:
+        hint = Message("these do: [[names]]", names=", ".join(("auto", *LED)))
         message = Message(
             "[[method]] does not keep to constraints ([[which]])", method=request.method, which=constraints
         )
@@ -345,7 +345,7 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
 
     if not isinstance(system, InStates):
         return
-    from mbsym.numerics.methods.table import METHODS
+    from mbsym.numerics.methods.table import LED, METHODS
 
     options = {
         "--continue": request.earlier is not None,
@@ -357,18 +357,16 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
             words = "[[option]] knows coordinates and their velocities only, and this system has speeds"
             message = Message(words, option=option)
             wrong.complain(option, "variables", message, WAY_OUT)
-    if request.method == "lsoda" and any(body.orientation for body in system.bodies):
-        lengths = "lsoda does not keep quaternions and unit vectors at their lengths"
-        wrong.complain("--method", "unsuitable-method", lengths, "take dop853, rk4, taylor, rodas5p, radau or bdf")
-    if request.method in METHODS and METHODS[request.method].traits.conservative:
+    if request.method not in METHODS or request.method in LED:
+        return
+    these = Message("these do: [[names]]", names=", ".join(("auto", *LED)))
+    if METHODS[request.method].traits.conservative:
         words = "[[method]] integrates coordinates and their velocities only, and this system has speeds"
-        message = Message(words, method=request.method)
-        wrong.complain(
-            "--method",
-            "unsuitable-method",
-            message,
-            joined(("take dop853, rk4, taylor or radau", worded(WAY_OUT)), "; "),
-        )
+        hint = joined((these, worded(WAY_OUT)), "; ")
+        wrong.complain("--method", "unsuitable-method", Message(words, method=request.method), hint)
+    elif any(body.orientation for body in system.bodies):
+        text = "[[method]] does not keep quaternions and unit vectors at their lengths"
+        wrong.complain("--method", "unsuitable-method", Message(text, method=request.method), these)
 
 
 def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
