@@ -21,7 +21,7 @@ class PolynomialField:
     Generators of ``context`` are the ``parameters``, then the ``variables``.  ``denominator`` does not vanish where the
     field is regular (it holds det M, and what parameters are divided by).  ``relations`` vanish on all states and are
     kept by the field: the norm of a unit vector less 1, sin^2 + cos^2 - 1.  ``roots``: the parameters that are square
-    roots, each with its square in those before it.
+    roots, each with its square in those before it.  ``units``: variables that vanish in no state.
     """
 
     context: Any
@@ -31,6 +31,7 @@ class PolynomialField:
     denominator: Polynomial
     relations: tuple[Polynomial, ...] = ()
     roots: tuple[tuple[str, Polynomial], ...] = ()
+    units: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         if tuple(self.context.names()) != (*self.parameters, *self.variables):

@@ -84,6 +84,7 @@ def vector_field(
         tuple(moved),
         denominator,
         tuple(map(transfer, relations)),
+        units=frozenset(name for k, name in places.items() if state.is_unit(k)),
     )
     return field, transfer
 
@@ -138,6 +139,10 @@ class _State:
             return []
         reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
         return [k for k in reciprocals if rational_ratio(ring.generators[k].argument, squares[0]) is not None]
+
+    def is_unit(self, k: int) -> bool:
+        """Whether it vanishes in no state: an exponential, 1/p, and the root of a p that the equations divide by."""
+        return k in self.kept or self._exponent(k) is not None or (self._is_root(k) and bool(self._inverse))
 
     def _is_root(self, k: int) -> bool:
         """Whether it is the square root of a polynomial in positions, cosines and parameters."""
