@@ -1,6 +1,6 @@
 """Problem 9: polynomial first integrals of equations of motion.
 
-Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials of these (Toda's lattice),
+Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials (Toda's lattice) and square roots of these,
 and sines and cosines of driven phases.
 
 Of  x' = P(x)/d  the polynomials f with  sum_i P_i df/dx_i = 0  (modulo the relations that all states keep) are the

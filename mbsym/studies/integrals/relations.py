@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
-    Obstacle.NOT_HOMOGENEOUS: "relations of several unit vectors or angles, or of roots, are not looked at here",
+    Obstacle.NOT_HOMOGENEOUS: "relations between variables, of several unit vectors, angles or roots, "
+    "are not looked at here",
     Obstacle.MIXED: "a K of that weight may hold products of variables, which is not looked at",
     Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
     Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
