@@ -122,6 +122,11 @@ class _State:
         self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
 
     @property
+    def _products(self) -> Sequence[Any]:
+        """The pairs of unit vectors and quaternions whose products are constant."""
+        return self.equations.products if isinstance(self.equations, SpeedEquations) else ()
+
+    @property
     def kept(self) -> list[int]:
         """Reciprocals that are variables, and no denominators: of exponentials, and of what stands under a root."""
         ring = self.ring
@@ -152,7 +157,9 @@ class _State:
     def _is_of_positions(self, argument: Polynomial, kinds: Collection[str] = ("coordinate",)) -> bool:
         """Whether it moves, and holds what is of these ``kinds``, parameters and reciprocals of parameters alone."""
         ring, held = self.ring, occurring([argument])
+        tied = {name for sides in self._products for _, names in sides for name in names}
         moved = [k for k in held if ring.generators[k].kind in kinds and self._follows(k)]
+        moved = [k for k in moved if ring.generators[k].name not in tied]  # of unit vectors squares are sums of others
         fixed = {k for k in ring.held([argument]) if ring.generators[k].kind in ("parameter", "reciprocal")}
         return (
             bool(moved)
@@ -241,7 +248,7 @@ class _State:
         if not independent(ring, [ring.context.gen(k) for k in roots]):
             raise NoClosedForm(
                 Message(
-                    "[[names]]: what stands under these roots, or a product of such, is a square",
+                    "[[names]]: it is not shown that no product of what stands under these roots is a square",
                     names=", ".join(map(self.name, roots)),
                 ),
                 remedy="write what is a square without a root, as 2*sin(x/2) for sqrt(2 - 2*cos(x))",
@@ -253,13 +260,12 @@ class _State:
                 found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
         found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in variables if k in self._inverse]
         names = {ring.generators[k].name for k in variables}
-        if isinstance(self.equations, SpeedEquations):
-            for (name, components), (other, others) in self.equations.products:
-                if names.issuperset((*components, *others)):
-                    total = ring.zero if name != other else -ring.one
-                    for a, b in zip(components, others, strict=True):
-                        total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
-                    found.append(total)
+        for (name, components), (other, others) in self._products:
+            if names.issuperset((*components, *others)):
+                total = ring.zero if name != other else -ring.one
+                for a, b in zip(components, others, strict=True):
+                    total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
+                found.append(total)
         exponentials = [k for k in variables if self._exponent(k) is not None]
         tied = self._between_exponentials(exponentials)
         angles = [k for k in variables if ring.generators[k].kind == "sine" and ring.generators[k].argument is not None]
@@ -408,7 +414,8 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         held = [i for i in occurring([g.argument]) if ring.generators[i].kind not in allowed]
         if held and any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
             return no_variable(ring, held[0])
-    what, remedy = Message(g.kind), ""
+    what: Message | str = Message(g.kind)
+    remedy = ""
     if g.argument is not None and not any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
         what = Message("the constant [[formula]]", formula=str(Formula(ring, ring.context.gen(k))))
         remedy = "write a parameter in its place: its value may be any number"
@@ -418,6 +425,8 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         what = Message("the time")
     elif g.kind == "function" and g.name:
         what = Message("the function [[name]]", name=g.name)
+    elif g.argument is not None:
+        what = str(Formula(ring, ring.context.gen(k)))
     elif g.name and not g.name.startswith("#"):
         what = Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)
     told = Message("[[what]] occurs: the equations are not polynomial in speeds and positions", what=what)
