@@ -123,7 +123,7 @@ class Carrier:
             case "reciprocal":
                 return self.algebra.reciprocal(self(g.argument))
             case "root":
-                return self.algebra.square_root(self(g.argument))
+                return self.algebra.principal_root(self(g.argument))
             case "function":
                 return self.algebra.function(g.name, self(g.argument))
             case "velocity":

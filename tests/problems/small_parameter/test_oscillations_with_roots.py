@@ -82,3 +82,29 @@ motion: {x: 0}
     assert str(at.formula(at.found.frequency * at.found.frequency)) == "2*k/m"
     with pytest.raises(NoClosedForm, match="does not oscillate"):
         oscillating(mbsym.loads(text.replace("sqrt(b)", "-sqrt(b)")), 1, {"b": Fraction(4)})
+
+
+TIED = """
+mbsym: 1
+name: a pendulum that a spring with a length of its own ties to a wall
+parameters: {m: positive, l: positive, a: positive, k: positive, s: positive}
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [l, 0, 0], mass: m}
+loads:
+  - potential: k*(sqrt(l**2 + a**2 - 2*a*l*cos(x)) - s)**2/2
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize("longer", ["l", "a"])
+def test_the_root_of_a_square_is_not_negative(longer):
+    """V = k (r - s)^2/2, r = |l - a| + a l x^2/(2 |l - a|) + ...: m l^2 w^2 = k a l (|l - a| - s)/|l - a|."""
+    with pytest.raises(NoClosedForm, match="either sign"):
+        oscillating(mbsym.loads(TIED), 1)
+    shorter = "al".replace(longer, "")
+    at = oscillating(mbsym.loads(TIED + f"assumptions: [{longer} > {shorter}]\n"), 1)
+    ring = at.ring
+    m, l, a, k, s = (ring.generator("parameter", name) for name in "mlaks")
+    size = l - a if longer == "l" else a - l
+    square = at.formula(at.found.frequency * at.found.frequency).polynomial
+    assert ring.is_zero(ring.times(square, m * l * size) - a * k * (size - s))
