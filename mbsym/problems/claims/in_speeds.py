@@ -25,19 +25,7 @@ from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
 from mbsym.problems.claims.integrals import of_positions
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
-from mbsym.problems.claims.result import (
-    ALONG,
-    DIFFERS,
-    EXACT,
-    FACTOR,
-    FAILS,
-    RELATIONS,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-    in_parameters,
-    scene_of_claims,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.in_speeds import speeds
 from mbsym.problems.in_speeds.speed_integrals import Field
@@ -66,7 +54,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.kind == "first integral":
         return _integral(derived, form, claim, about, claimed)
     truth = in_parameters(derived, _derived(derived, form, claim))
-    result = ClaimResult(claim, about, EXACT, Formula(form.ring, truth))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(form.ring, truth))
     images = relations(derived.parameters_scene)
     difference = form.ring.reduce(claimed - truth)
     known = form.vanishes(difference)
@@ -74,16 +62,16 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return result
     if claim.kind == "equation of motion":
         if form.vanishes(form.ring.substitute(claimed, images)) is True:
-            return replace(result, outcome=UNDECIDED, remark=NOTHING)
+            return replace(result, outcome=Outcome.UNDECIDED, remark=NOTHING)
         factor = _factor(form, claimed, truth)
         if factor is not None:
-            return replace(result, outcome=FACTOR, factor=Formula(form.ring, factor))
+            return replace(result, outcome=Outcome.FACTOR, factor=Formula(form.ring, factor))
     if images:
         difference = form.ring.substitute(difference, images)
         known = form.vanishes(difference)
         if known is True:
-            return replace(result, outcome=RELATIONS)
-    outcome = UNDECIDED if known is None else DIFFERS
+            return replace(result, outcome=Outcome.RELATIONS)
+    outcome = Outcome.UNDECIDED if known is None else Outcome.DIFFERS
     result = replace(result, outcome=outcome, difference=Formula(form.ring, difference))
     return _along(derived, form, result, claimed) if claim.kind == "equation of motion" else result
 
@@ -95,26 +83,26 @@ def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polyn
 
     def verdict(left: Polynomial) -> tuple[str, str]:
         known = form.vanishes(ring.substitute(left, images) if images else left)
-        return UNDECIDED if known is None else EXACT if known else DIFFERS, ""
+        return Outcome.UNDECIDED if known is None else Outcome.EXACT if known else Outcome.DIFFERS, ""
 
     try:
         (outcome, _), made = along_motion(dynamics, claimed, verdict)
     except Failure:
         remark = "whether it vanishes on every motion is not decided: the equations are too long"
-        return replace(found, outcome=UNDECIDED, difference=None, remark=remark)
+        return replace(found, outcome=Outcome.UNDECIDED, difference=None, remark=remark)
     plain = replace(found, outcome=outcome, difference=None)
-    if outcome == EXACT:
+    if outcome == Outcome.EXACT:
         remark = NOT_LINEAR if made is None else made.words(dynamics, derived, without_velocity(found.claim.of))
-        return replace(plain, outcome=ALONG, remark=remark)
-    if outcome == UNDECIDED:
+        return replace(plain, outcome=Outcome.ALONG, remark=remark)
+    if outcome == Outcome.UNDECIDED:
         return replace(plain, remark="whether it vanishes on every motion is not decided")
     if made is not None and made.coefficients and found.difference is not None:
         whole = made.equation(dynamics)
         rest = form.shortened(ring.reduce(claimed - whole))
         if not ring.vanishes(rest) and len(rest) < len(found.difference.polynomial):
             told = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
-            return replace(told, outcome=DIFFERS, remark=SAME_ACCELERATIONS)
-    return replace(found, outcome=DIFFERS)
+            return replace(told, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
+    return replace(found, outcome=Outcome.DIFFERS)
 
 
 def _linear(derived: Derived, claim: Claim, about: str) -> ClaimResult:
@@ -167,23 +155,23 @@ def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomi
 
 def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
     ring, equations = form.ring, cast(SpeedEquations, derived.equations)
-    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
         return of_positions(form, result, claimed)
     images = relations(derived.parameters_scene)
     field = Field(form, equations)
-    outcome, known = EXACT, field.keeps(claimed)
+    outcome, known = Outcome.EXACT, field.keeps(claimed)
     if known is not True and images:
-        outcome, claimed = RELATIONS, ring.substitute(claimed, images)
+        outcome, claimed = Outcome.RELATIONS, ring.substitute(claimed, images)
         field = Field(form, _substituted(equations, images))
         known = field.keeps(claimed)
     if known is True:
         slopes = [ring.derivative(claimed, u.name) for u in form.speeds]
         if all(form.vanishes(slope) is True for slope in slopes):
-            return replace(result, outcome=FAILS, remark="it is a constant, whatever the motion")
+            return replace(result, outcome=Outcome.FAILS, remark="it is a constant, whatever the motion")
         return replace(result, outcome=outcome)
     rate = field.rate_in_lowest_terms(claimed)
-    return replace(result, outcome=UNDECIDED if known is None else FAILS, difference=rate)
+    return replace(result, outcome=Outcome.UNDECIDED if known is None else Outcome.FAILS, difference=rate)
 
 
 def _substituted(equations: SpeedEquations, images: Mapping[int, Polynomial]) -> SpeedEquations:
