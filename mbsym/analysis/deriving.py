@@ -46,11 +46,7 @@ if TYPE_CHECKING:
 
 def energy_of(analysis: Analysis) -> Energy:
     """T, U and their parts, in speeds where the system has some."""
-    if analysis.speed_form is None:
-        return energy.energy(analysis.scene)
-    from mbsym.problems.in_speeds import speeds
-
-    return speeds.energy(analysis.speed_form, analysis.scene)
+    return energy.energy(analysis.scene, analysis.speed_form)
 
 
 def equations_of(analysis: Analysis) -> Equations:

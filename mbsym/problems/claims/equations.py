@@ -24,15 +24,11 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, by_place, in_parameters, on_relations
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds import speeds
-from mbsym.problems.in_speeds.speeds import SpeedEquations
-from mbsym.problems.integrals import residual
 
 #: States at which an expression must vanish before a proof is tried; coupled equations, and powers of accelerations,
 #: beyond which none is.
@@ -57,21 +53,15 @@ class Dynamics:
 
     @staticmethod
     def of(derived: Derived) -> Dynamics:
-        """Those of a tree, in declared parameters."""
-        ring, names = derived.ring, derived.system.coordinates
-        places = tuple(ring.index("acceleration", name) for name in names)
-        made = [residual(derived.scene, derived.equations, i) for i in range(len(names))]
-        return Dynamics(ring, names, places, tuple(in_parameters(derived, x) for x in made))
-
-    @staticmethod
-    def in_speeds(form: SpeedForm, equations: SpeedEquations) -> Dynamics:
-        """M u' - f = 0 and s' - g = 0, without those s' that are speeds themselves."""
-        ring, own = form.ring, {u.index for u in form.speeds}
+        """Of a tree M u' - f = 0, and s' - g = 0 of those s' that are no speeds themselves; in declared parameters."""
+        form, ring = derived.form, derived.ring
+        own = {u.index for u in form.speeds}
         kept = [s for s in form.positions if s.rate_index not in own]
-        rows = [speeds.residual(equations, r) for r, _ in enumerate(form.speeds)]
+        rows = [x.polynomial for x in derived.equations.equalities(derived.system.coordinates)]
         rows += [ring.context.gen(s.rate_index) - form.rates[s.name] for s in kept]
         names = (*(without_velocity(u.name) for u in form.speeds), *(s.name for s in kept))
-        return Dynamics(ring, names, tuple(x.rate_index for x in (*form.speeds, *kept)), tuple(rows))
+        places = tuple(x.rate_index for x in (*form.speeds, *kept))
+        return Dynamics(ring, names, places, tuple(in_parameters(derived, x) for x in rows))
 
     def combination(self, x: Polynomial) -> Combination:
         """x, linear in a, against c^T L.  Raises NoClosedForm where too many equations are coupled."""

@@ -8,7 +8,6 @@ in coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import cast
 
@@ -16,18 +15,17 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
-from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
-from mbsym.problems.claims.integrals import of_positions
+from mbsym.problems.claims.integrals import of_positions, substituted
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds import speeds
 from mbsym.problems.in_speeds.speed_integrals import Field
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 
@@ -79,7 +77,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polynomial) -> ClaimResult:
     """A claimed equation that is no multiple of the own one: a combination of all, or what it differs by from one."""
     ring, images = form.ring, relations(derived.parameters_scene)
-    dynamics = Dynamics.in_speeds(form, cast(SpeedEquations, derived.equations))
+    dynamics = Dynamics.of(derived)
 
     def verdict(left: Polynomial) -> tuple[str, str]:
         known = form.vanishes(ring.substitute(left, images) if images else left)
@@ -124,10 +122,9 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
         for position in form.positions:
             if position.name == claim.of and claim.of in derived.system.variables:
                 return form.ring.context.gen(position.rate_index) - form.rates[claim.of]
-        return speeds.residual(equations, _speed(form, claim.of))
+        return equations.equality(_speed(form, claim.of)).polynomial
     if claim.kind == "acceleration":
-        dynamics = Dynamics.in_speeds(form, equations)
-        top, bottom = dynamics.solved(_speed(form, claim.of))
+        top, bottom = Dynamics.of(derived).solved(_speed(form, claim.of))
         return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
     raise NoClosedForm(Message("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind)))
 
@@ -163,7 +160,7 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
     outcome, known = Outcome.EXACT, field.keeps(claimed)
     if known is not True and images:
         outcome, claimed = Outcome.RELATIONS, ring.substitute(claimed, images)
-        field = Field(form, _substituted(equations, images))
+        field = Field(form, substituted(ring, equations, images))
         known = field.keeps(claimed)
     if known is True:
         slopes = [ring.derivative(claimed, u.name) for u in form.speeds]
@@ -172,10 +169,3 @@ def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claim
         return replace(result, outcome=outcome)
     rate = field.rate_in_lowest_terms(claimed)
     return replace(result, outcome=Outcome.UNDECIDED if known is None else Outcome.FAILS, difference=rate)
-
-
-def _substituted(equations: SpeedEquations, images: Mapping[int, Polynomial]) -> SpeedEquations:
-    ring = equations.forcing[0].ring
-    mass = [[ring.substitute(x, images) for x in row] for row in equations.mass_matrix.polynomials]
-    forcing = [ring.substitute(x.polynomial, images) for x in equations.forcing]
-    return replace(equations, mass_matrix=Matrix.of(ring, mass), forcing=column(ring, forcing))

@@ -55,7 +55,7 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
             if not images:
                 break
             claimed = ring.substitute(claimed, images)
-            equations = _substituted(ring, equations, images)
+            equations = substituted(ring, equations, images)
         conserved = is_conserved(scene, equations, claimed)
         if conserved:
             constant = _constant_where(derived, claimed)
@@ -166,7 +166,7 @@ def _holds(ring: Ring, x: Polynomial, index: int) -> bool:
     return any(argument is not None and _holds(ring, argument, index) for argument in inner)
 
 
-def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
+def substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
     def moved(x: Formula) -> Polynomial:
         return ring.substitute(x.polynomial, images)
 

@@ -36,7 +36,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speeds import SpeedEquations, residual
+from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
 
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
@@ -58,7 +58,7 @@ class Field:
     """The vector field of a system in speeds: s' = g, u' = M^-1 f."""
 
     form: SpeedForm
-    equations: SpeedEquations
+    equations: Equations
 
     @cached_property
     def determinant(self) -> Polynomial:
@@ -80,12 +80,8 @@ class Field:
 
     def combines(self, x: Polynomial, multipliers: Sequence[Polynomial]) -> bool | None:
         """Whether dx/dt = sum mu_r (M u' - f)_r with these multipliers, as polynomials in u', too: no inverse of M."""
-        ring = self.form.ring
-        total = self.form.rate(x)
-        for r, multiplier in enumerate(multipliers):
-            if not ring.vanishes(multiplier):
-                total = total - ring.times(multiplier, residual(self.equations, r))
-        return self.form.vanishes(ring.reduce(total))
+        ring, rows = self.form.ring, [x.polynomial for x in self.equations.equalities(())]
+        return self.form.vanishes(ring.reduce(self.form.rate(x) - ring.dot(multipliers, rows)))
 
     def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
         """dx/dt on the motion."""
