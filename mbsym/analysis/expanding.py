@@ -114,7 +114,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     equations: Any = analysis.equations
     motion = _motion(analysis)
     steady: Iterable[Any] = () if isinstance(motion, str) else motion.values()
-    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, [*steady], images)
+    whole, transfer = vector_field(analysis.form, equations, [*steady], images)
     inside = [name for name in whole.variables if not name.isidentifier()]
     if inside:
         raise NoClosedForm(

@@ -494,7 +494,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
         cyclic = ignorable(analysis)[1]
         jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
         return taylor_field(jets, order + 1), True
-    field = vector_field(analysis.system, analysis.ring, analysis.speed_form, equations, (), images)[0]
+    field = vector_field(analysis.form, equations, (), images)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(

@@ -106,7 +106,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     listed = listed if form is None else tuple(_without_aside(form, equations.aside, one) for one in listed)
     also = [one.formula.polynomial for one in listed]
     images = relations(analysis.parameters_scene)
-    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, also, images, driven=driven)
+    whole, transfer = vector_field(analysis.form, equations, also, images, driven=driven)
     angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
     vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
     exponentials = tuple(name for name in whole.variables if name.startswith("exp("))

@@ -63,6 +63,11 @@ class Equations(Shown):
         """Whether they are in speeds of their own (``in_speeds.speeds``), not in generalised velocities."""
         return False
 
+    @property
+    def products(self) -> Sequence[tuple[tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]]]]:
+        """Pairs of unit vectors or quaternions, each with its components, whose product is known."""
+        return ()
+
     def equality(self, i: int, names: Sequence[str]) -> Formula:
         """(M q'' - f)_i, which vanishes along every motion of the open tree; ``names`` are those of the coordinates."""
         ring = self.forcing[i].ring

@@ -144,15 +144,13 @@ def candidates(
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
-    if not isinstance(equations, SpeedEquations):
-        return
     for (name, components), (other, others) in equations.products:
         pairs = [
             (ring.generator("coordinate", a), ring.generator("coordinate", b))
             for a, b in zip(components, others, strict=True)
         ]
         product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
-        if name in equations.quaternions:
+        if any(body.orientation[0].name == name for body in form.by_quaternion):
             yield _integral(form, Message("norm of [[name]]", name=name), NORM, name, product), ()
             continue
         title = (
