@@ -32,7 +32,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
-from mbsym.numerics.methods.interface import NOT_SMOOTH, STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
@@ -175,10 +175,10 @@ def estimated(
                 why, left = Lacking.CUT, left - budget.spent
                 continue
             except Ended as ended:
-                if ended.breakdown.kind == NOT_SMOOTH:
+                if ended.breakdown.kind == Cause.NOT_SMOOTH:
                     left -= budget.spent
                     continue
-                if ended.breakdown.kind != STEP_LIMIT:
+                if ended.breakdown.kind != Cause.STEP_LIMIT:
                     return NoEstimate(Lacking.BREAKS_DOWN)
                 why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent
                 continue
@@ -335,7 +335,7 @@ def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: st
         states[:, np.searchsorted(places, found.times[rows])] = found.states[:, rows]
         truth = solved_at(dynamics, places, PRECISELY, PRECISE_COST)
     except Breakdown as ended:
-        return NoEstimate(Lacking.FINEST if ended.kind == STEP_LIMIT else Lacking.BREAKS_DOWN)
+        return NoEstimate(Lacking.FINEST if ended.kind == Cause.STEP_LIMIT else Lacking.BREAKS_DOWN)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
     against = Against("extrapolation", f"{BITS} bits", Setting(PRECISELY))

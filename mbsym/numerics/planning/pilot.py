@@ -21,7 +21,7 @@ from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
 
 #: Where within a step, its end included, and how many places in all.
@@ -350,7 +350,7 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
         try:
             now = bench.run(method, scalar, Setting(tolerance, None, limit, longest))
         except Breakdown as ended:  # its steps fall below what rounding lets them be
-            if ended.kind != STEP_LIMIT:
+            if ended.kind != Cause.STEP_LIMIT:
                 raise
             return best
         apart, _ = bench.compared(before.states, now.states)

@@ -38,7 +38,7 @@ from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.planning.prices import STARTED, STARTED_EACH, cost
@@ -231,7 +231,7 @@ class _Judge:
                 states.append(np.asarray(run.fill(some), dtype=float))
                 self.spent = before + self._cost(candidate, run.work)
                 if self.spent - before > limit and some[-1] < times[-1]:
-                    raise Breakdown(STEP_LIMIT, "too dear to be measured", float(some[-1]), states[-1][:, -1])
+                    raise Breakdown(Cause.STEP_LIMIT, "too dear to be measured", float(some[-1]), states[-1][:, -1])
             work, typical = self._seconds(candidate, time.thread_time() - started, run.work, before + limit)
         except Breakdown as found:
             wasted = time.thread_time() - started
