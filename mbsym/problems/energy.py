@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 class Energy(Shown):
     """``A2`` is n x n and symmetric, ``A1`` has n entries; ``cyclic`` lists coordinates and prescribed quantities.
 
-    ``speeds``: what A2 and A1 belong to where a system has speeds of its own.
+    ``speeds``: what A2 and A1 belong to, velocities or speeds of their own.
     """
 
     kinetic_energy: Formula
@@ -45,7 +45,7 @@ class Energy(Shown):
     A0: Formula
     force_function: Formula
     cyclic: tuple[str, ...]
-    speeds: tuple[str, ...] = ()
+    speeds: tuple[str, ...]
 
     @property
     def terms(self) -> int:
@@ -74,7 +74,7 @@ def energy(scene: Scene, form: SpeedForm | None = None) -> Energy:
         A0=Formula(ring, ring.substitute(kinetic, at_rest)),
         force_function=Formula(ring, potential),
         cyclic=_cyclic(scene, ring, kinetic, potential) if form is None else (),
-        speeds=() if form is None else names,
+        speeds=names,
     )
 
 

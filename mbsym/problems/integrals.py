@@ -244,18 +244,22 @@ def _momenta(
             others = [*known, *(item.formula.polynomial for item in found)]
             wanted = (kind, axis) in conserved and _is_new(formula, others)
             if wanted and is_conserved(scene, equations, formula):
-                name = (
-                    Message("angular momentum about axis [[axis]]", axis=axis)
-                    if kind == "angular momentum"
-                    else Message("linear momentum along axis [[axis]]", axis=axis)
-                )
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
                 if status is Certainty.VERIFIED and scene.ring.kinked:
                     continue  # a force that comes late vanishes at every state before
-                found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
+                found.append(
+                    Integral(momentum_title(kind, axis), kind, str(axis), Formula(scene.ring, formula), status)
+                )
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return found
+
+
+def momentum_title(kind: str, axis: int) -> Message:
+    """What a component of a momentum of the whole system is called."""
+    if kind == "angular momentum":
+        return Message("angular momentum about axis [[axis]]", axis=axis)
+    return Message("linear momentum along axis [[axis]]", axis=axis)
 
 
 def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:

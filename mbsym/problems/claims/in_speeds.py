@@ -41,8 +41,7 @@ _QUANTITIES = (
 
 def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim.  Raises NoClosedForm where it is about something that is not derived in speeds."""
-    form = derived.speed_form
-    assert form is not None
+    form = derived.form
     if claim.right is not None:
         return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
     if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):

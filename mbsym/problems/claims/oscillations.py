@@ -442,7 +442,7 @@ def _factor(tower: Tower, claimed: Harmonics, truth: Harmonics) -> Element | Non
 def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """The coefficient of eps^n of a fast variable on the slow manifold, or of the rate of a slow one there."""
     told = derived.claimed_manifold
-    found, form = told.manifold, derived.speed_form
+    found = told.manifold
     names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
     if claim.of not in names:
         raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
@@ -459,10 +459,10 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         claimed = ring.substitute(claimed, told.transfer.images)
     difference = ring.reduce(claimed - truth)
     result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, truth))
-    known = None if form is None else form.vanishes(difference)
+    known = derived.form.vanishes(difference)
     if known is True:
         return result
-    if form is None or found.root is not None:  # a square root may be written with squares in it
+    if not derived.system.speeds or found.root is not None:  # a square root may be written with squares in it
         outcome, where = decided(derived, difference)
     else:
         outcome, where = Outcome.DIFFERS if known is False else Outcome.UNDECIDED, ""

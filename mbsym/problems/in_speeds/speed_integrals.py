@@ -37,7 +37,7 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speeds import SpeedEquations
-from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
 
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
 
@@ -136,11 +136,7 @@ def candidates(
         yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, along)), along
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
-            if kind == "angular momentum":
-                title = Message("angular momentum about axis [[axis]]", axis=axis)
-            else:
-                title = Message("linear momentum along axis [[axis]]", axis=axis)
-            yield _integral(form, title, kind, str(axis), formula), ()
+            yield _integral(form, momentum_title(kind, axis), kind, str(axis), formula), ()
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
