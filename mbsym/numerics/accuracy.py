@@ -37,7 +37,7 @@ from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
 from mbsym.numerics.simulate import Trajectory
-from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
+from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, filled, uneven
 from mbsym.numerics.trade.reference_search import BITS, solved_at
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
@@ -286,7 +286,7 @@ def _testimony(
     setting, before = better.setting, inf
     try:
         run = method.start(dynamics, found.setting, scalar)
-        states = np.column_stack([run.state, run.fill(places[1:])])
+        states = filled(run, places)
         while True:
             truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
             apart = float(np.max(np.max(np.abs(states - truth), axis=1) / scales))
@@ -314,12 +314,8 @@ def _filled(witness: Method, dynamics: Dynamics, setting: Setting, scalar: str, 
     """The states (2n, m) of a run at increasing places from 0.  Raises Breakdown, Unusable, _TooDear."""
     with np.errstate(all="ignore"):
         run = witness.start(dynamics, setting, scalar)
-        budget.start(((run, witness.traits.name, scalar),))
-        states = [np.array(run.state)[:, None]]
-        for some in np.array_split(places[1:], LOOKS):
-            states.append(run.fill(some))
-            budget.reached(float(some[-1]))
-    return np.hstack(states)
+    budget.start(((run, witness.traits.name, scalar),))
+    return filled(run, places, LOOKS, budget.reached)
 
 
 def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:

@@ -35,7 +35,7 @@ from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import FOLLOWED, LOOKED_AT, Meter, Working, precise_cost
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
-from mbsym.numerics.trade.comparison import SHARES, Ended, compared, uneven
+from mbsym.numerics.trade.comparison import SHARES, Ended, compared, filled, uneven
 
 # Reference solutions, against which errors are measured: extrapolation in arithmetic of any precision.
 #
@@ -471,11 +471,7 @@ def _filled(search: _Search, method: Method, setting: Setting, scalar: str, plac
     """The states (2n, m) of a run from the first of the places on."""
     run = method.start(search.dynamics, setting, scalar)
     search.next_of([(run, method.traits.name, scalar)])
-    states = [np.asarray(run.state)[:, None]]
-    for some in np.array_split(places[1:], 64):
-        states.append(run.fill(some))
-        search.reached(float(some[-1]))
-    return np.hstack(states)
+    return filled(run, places, 64, search.reached)
 
 
 #: The ways, and the part of what is left which each of them may cost.
