@@ -171,7 +171,7 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
 
 
 #: A line is broken outside of brackets if so much of it is full there.
-NEAR = 0.6
+NEAR = 0.35
 _BRACKETS = {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}
 
 

@@ -146,6 +146,10 @@ class Writer:
         return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
 
     @inline.register
+    def _(self, value: content.Elsewhere) -> Markup:
+        return self.inline(value.link)
+
+    @inline.register
     def _(self, value: content.Emphasis) -> Markup:
         return Markup("<i>{}</i>").format(value.text)
 
