@@ -144,6 +144,11 @@ def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
     return f"\n{indent}".join(line[first:last].rstrip() if at else line for first, last in ends)
 
 
+def between_terms(formula: str) -> str:
+    """A formula that is broken in front of signs only."""
+    return re.sub(r" (?![-+=<>!]+ )", UNBROKEN, formula)
+
+
 def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
     """What stands before the further lines, and where these begin: at words, so that none is wider that need not be.
 
@@ -164,7 +169,7 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
 
 
 #: A line is broken outside of brackets if so much of it is full there.
-NEAR = 0.6
+NEAR = 0.35
 _BRACKETS = {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}
 
 

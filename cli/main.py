@@ -6,6 +6,7 @@ Sub-commands are imported when they are called, so that ``mbsym --help`` does no
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 from typing import Any, NamedTuple
 
@@ -144,6 +145,10 @@ class LazyGroup(click.Group):
                     if defects.tell() and ended.code in (Exit.OK, None):
                         ended.code = Exit.FAILED
                     raise
+        except click.UsageError as error:
+            if meant := _meant(error):
+                raise click.UsageError(error.message + meant, error.ctx) from error
+            raise
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except OSError as error:
@@ -155,6 +160,18 @@ class LazyGroup(click.Group):
             print("interrupted; what has been written is whole", file=sys.stderr)
             sys.exit(Exit.INTERRUPTED)
         sys.exit(Exit.FAILED)
+
+
+def _meant(error: click.UsageError) -> str:
+    """With which option a word that is too much would be understood; nothing where that is nobody's guess."""
+    extra = re.search(r"extra arguments? \((\S+).*\)", error.message)
+    if extra is None or error.ctx is None:
+        return ""
+    word = extra[1]
+    options = {name for parameter in error.ctx.command.params for name in parameter.opts}
+    fitting = (("--set", "=" in word), ("--time", re.fullmatch(r"[\d.]+(e\d+)?", word) is not None), ("--out", True))
+    option = next((name for name, fits in fitting if fits and name in options), "")
+    return f"; did you mean '{option} {word}'?" if option else ""
 
 
 def _command(module: str) -> click.Command:

@@ -195,7 +195,8 @@ def _show(
     language = Language(analysis.language or analysis.system.language)
     with angles_as(request.angles or "shorter"):
         known = results(analysis, analysis.problems)
-        writer = Writer(language, True, LONGEST, (asked_width() or WIDEST) - 2, file)  # documents stand further in
+        width = (asked_width() or WIDEST) - 2  # documents stand further in
+        writer = Writer(language, True, LONGEST, width, file, printable(path))
         lines = _documents(known, writer, request)
         with in_letters(analysis.system, analysis.letters or ()) as used:
             told = finding(known)

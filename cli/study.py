@@ -39,8 +39,10 @@ from mbsym.studies.study import (
 )
 from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
+    HANGING,
     OutPath,
     asked_width,
+    between_terms,
     complain,
     diagnose,
     printable,
@@ -251,7 +253,11 @@ class _Run:
 
     def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
         if answer.text is not None:
-            click.echo(answer.text, nl=False)
+            if answer.breaks and sys.stdout.isatty():
+                for line in answer.text.splitlines():
+                    tell(line if line.startswith("#") else between_terms(line), margin=HANGING)
+            else:
+                click.echo(answer.text, nl=False)
             return
         loud = not self.quiet
         if loud:
