@@ -114,7 +114,8 @@ def _verdict(word: str) -> Iterator[str]:
         Word.ASYMPTOTIC_BUT_TURNED: "disturbed motions stay near and come back to the same motion, turned in space",
         Word.ASYMPTOTIC_BUT_CYCLIC: (
             "everything else comes back, or to a steady motion near by where momenta were changed; cyclic "
-            "coordinates may drift"
+            "coordinates may drift: asymptotic stability with respect to a part of the variables (Rumyantsev), "
+            "where it comes back"
         ),
         Word.ASYMPTOTIC_BUT_STEADY: (
             "of a system with constraints on velocities: they come to a steady motion near by, of another speed "
@@ -124,7 +125,10 @@ def _verdict(word: str) -> Iterator[str]:
             "disturbed motions stay near, in the nonlinear system (of a system given by its matrices: these "
             "equations are all there is)"
         ),
-        Word.STABLE_BUT_CYCLIC: "everything else stays near; cyclic coordinates may drift",
+        Word.STABLE_BUT_CYCLIC: (
+            "everything else stays near; cyclic coordinates may drift: stability with respect to a part of the "
+            "variables (Rumyantsev)"
+        ),
         Word.GYROSCOPIC: (
             "the first approximation is stable by gyroscopic forces; no theorem decides the nonlinear system"
         ),

@@ -22,7 +22,10 @@ export function remedies(model: Model, complaint: Complaint, path: Path): Remedy
   if (/_dot$|_ddot$/.test(name)) return [];
   const found: Remedy[] = [];
   const alone = nodeAt(model, path)?.source?.trim() === name;
-  const change = (operations: () => Operation[], what: string) => () => model.change(operations, `${name} is ${what} now`);
+  // Pressed when the name has become known meanwhile there is nothing left to do.
+  const unknown = (): boolean =>
+    (model.understood?.complaints ?? []).some((one) => one.code === complaint.code && model.understoodText?.slice(one.from, one.to) === name);
+  const change = (operations: () => Operation[], what: string) => () => model.change(() => (unknown() ? operations() : []), `${name} is ${what} now`);
   if (path[0] === "bodies" && path.length > 3 && MOVING.has(String(path[2]))) {
     found.push({ words: `${name} is a coordinate`, act: change(() => coordinate(model, path.slice(0, 2), name), "a coordinate") });
   }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from math import lcm, prod
 from random import Random
 from typing import Any
 
@@ -267,7 +268,27 @@ def _states(system: System, blocks: Blocks, count: int) -> Any:
         turns = turns or {name: x for name, x in state.numbers.basic.items() if name in fixed}
         state.numbers.basic |= turns
         values = {**state.values, **same, **_norms(blocks, source)}
-        yield Carrier(blocks.ring, state.numbers, State(state.numbers, values).values)
+        exponentials = _exponentials(blocks.ring, source)
+        yield Carrier(blocks.ring, state.numbers, State(state.numbers, values).values, exponentials)
+
+
+def _exponentials(ring: Ring, source: Random) -> dict[int, fmpq]:
+    """Values of exp(a): a product of powers, one for each monomial of a, drawn at random.
+
+    With positions and parameters beside they fulfil what all states do, and nothing else: exponentials of such
+    monomials are algebraically independent (J. Ax, Ann. of Math. 93 (1971), 252).
+    """
+    found = [(k, g.argument) for k, g in enumerate(ring.generators) if g.kind == "function" and g.name == "exp"]
+    found = [(k, a) for k, a in found if all(map(partial(_moves, ring), a.monoms()))]
+    common = lcm(*(int(c.q) for _, a in found for c in a.coeffs()))
+    bases = {m: fmpq(source.randint(2, 99), source.randint(2, 99)) for _, a in found for m in a.monoms()}
+    return {k: prod((bases[m] ** int(c * common) for m, c in a.terms()), start=fmpq(1)) for k, a in found}
+
+
+def _moves(ring: Ring, monomial: Sequence[int]) -> bool:
+    """Whether it is made of positions and parameters, and of a position at least."""
+    kinds = {g.kind for g, power in zip(ring.generators, monomial, strict=True) if power}
+    return "coordinate" in kinds and kinds <= {"coordinate", "parameter"}
 
 
 def _norms(blocks: Blocks, source: Random) -> dict[str, fmpq]:

@@ -222,5 +222,4 @@ def decided(found: Stability) -> str:
     """How the verdict at given values was found, if it is one: irrational values have enclosures."""
     if found.numerical is None or found.numerical.word == Word.UNDECIDED:
         return ""
-    enclosed = any(part.theory.at_point is None for part in found.subsystems)
-    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
+    return ", decided by rigorous enclosures" if found.enclosed else ", decided exactly"
