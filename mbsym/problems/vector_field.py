@@ -91,9 +91,9 @@ class _State:
     def __init__(self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool) -> None:
         system, ring = form.system, form.ring
         self.ring, self.equations = ring, equations
-        told, tied = _free(form, equations)
+        free, tied = _free(form, equations)
         self.images, self.driven = {**images, **tied}, driven
-        mass, forcing = told.mass_matrix.polynomials, [x.polynomial for x in told.forcing]
+        mass, forcing = free.mass_matrix.polynomials, [x.polynomial for x in free.forcing]
         whole = determinant(ring, mass)
         if ring.vanishes(whole):
             raise NoClosedForm(SINGULAR)
@@ -306,18 +306,18 @@ def _free(form: SpeedForm, equations: Equations) -> tuple[Equations | Embedded, 
 
     Raises NoClosedForm where constraints tie positions, which are no variables of their own then.
     """
-    found = equations.constraints
-    if found is None:
+    tied = equations.constraints
+    if tied is None:
         return equations, NOTHING
-    if found.position_rank or equations.embedded is None or found.solved is None:
+    if tied.position_rank or equations.embedded is None or tied.solved is None:
         raise NoClosedForm(
             "constraints tie positions: no polynomial field in free variables"
-            if found.position_rank
+            if tied.position_rank
             else "the equations without multipliers outgrow the budget of terms"
         )
     from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
 
-    return equations.embedded, dependent_velocities(form, found.solved)
+    return equations.embedded, dependent_velocities(form, tied.solved)
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:

@@ -97,7 +97,7 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
     mass = [[form.shortened(a.derivative(u.rate_index)) for u in form.speeds] for a in needed]
     names = tuple(s.name for s in form.positions)
     occurring = {s.name for s in form.occurring([*needed, *supplied, *rows])}
-    told = [(body.name, one) for body in form.oriented for one in body.orientation if set(one.components) & occurring]
+    oriented = [(body.name, e) for body in form.oriented for e in body.orientation if set(e.components) & occurring]
     return SpeedEquations(
         mass_matrix=Matrix.of(ring, mass),
         forcing=column(ring, forcing),
@@ -108,8 +108,8 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
         rates=column(ring, [form.rates[name] for name in names]),
         needed=column(ring, needed),
         supplied=column(ring, supplied),
-        vectors=tuple((one.name, one.components) for _, one in told),
-        owners=tuple(owner for owner, _ in told),
-        quaternions=tuple(one.name for _, one in told if isinstance(one, Quaternion)),
+        vectors=tuple((e.name, e.components) for _, e in oriented),
+        owners=tuple(owner for owner, _ in oriented),
+        quaternions=tuple(e.name for _, e in oriented if isinstance(e, Quaternion)),
         aside=tuple(name for name in names if name not in occurring),
     )

@@ -127,9 +127,9 @@ def blocks(form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, 
     field = Field(form, equations)
 
     def keeps(x: Polynomial) -> Certainty | None:
-        found = (field.rate(x),) if declared else integrals.rate_on_motion(scene, equations, x)
-        if found is not None:
-            zero = form.vanishes(put_in(ring, found[0], images))
+        rate = (field.rate(x),) if declared else integrals.rate_on_motion(scene, equations, x)
+        if rate is not None:
+            zero = form.vanishes(put_in(ring, rate[0], images))
             return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED
         if images:
             return Certainty.UNDECIDED
