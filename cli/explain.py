@@ -10,8 +10,9 @@ from difflib import get_close_matches
 import click
 
 from mbsym.problems import NUMBERS, ranges
+from mbsym.studies.study import Exit
 from mbsym_cli.completion import among
-from mbsym_cli.console import BAD_INPUT, asked_width, wrapped
+from mbsym_cli.console import asked_width, wrapped
 
 TOPICS = {
     "description": "the keys of a description",
@@ -56,7 +57,7 @@ def command(topic: tuple[str, ...]) -> None:
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
         message = f"nothing is called {word}: no problem, topic, command, verdict, theorem, key or kind; {known}"
         click.echo(message, err=True)
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
 
 
 def explanations(word: str) -> list[str]:

@@ -346,7 +346,7 @@ def _joined(factors: Sequence[str]) -> str:
 
 
 #: Names of several letters, which must not run into their neighbours.
-_WORDS = (r"\mathit", r"\mathtt")
+_WORDS = (r"\mathit", r"\mathtt", r"\dot{\mathit", r"\ddot{\mathit")
 _FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{")
 
 

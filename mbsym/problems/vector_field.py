@@ -30,9 +30,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_environment
-from mbsym.model.system import System
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 if TYPE_CHECKING:
     from mbsym.problems.constraints.motion import Embedded
@@ -44,9 +42,7 @@ SINGULAR = "the mass matrix is singular everywhere, so that the equations do not
 
 
 def vector_field(
-    system: System,
-    ring: Ring,
-    form: SpeedForm | None,
+    form: SpeedForm,
     equations: Equations,
     also: Sequence[Polynomial] = (),
     images: Mapping[int, Polynomial] = NOTHING,
@@ -58,8 +54,8 @@ def vector_field(
     dependent ones; phases are variables where they may be ``driven``.  Raises NoClosedForm where M is singular, and
     where the time, inputs, roots or functions other than exponentials occur.
     """
-    state = _State(system, ring, form, equations, images, driven)
-    images = state.images
+    state = _State(form, equations, images, driven)
+    images, ring = state.images, form.ring
     variables = state.variables()
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
@@ -92,39 +88,21 @@ def vector_field(
 class _State:
     """Generators of the ring as variables: how each moves, how it is called, what ties it to others."""
 
-    def __init__(
-        self,
-        system: System,
-        ring: Ring,
-        form: SpeedForm | None,
-        equations: Equations,
-        images: Mapping[int, Polynomial],
-        driven: bool,
-    ) -> None:
-        self.system, self.ring, self.form, self.equations = system, ring, form, equations
-        told, tied = _free(system, ring, form, equations)
+    def __init__(self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool) -> None:
+        system, ring = form.system, form.ring
+        self.ring, self.equations = ring, equations
+        free, tied = _free(form, equations)
         self.images, self.driven = {**images, **tied}, driven
-        mass, forcing = told.mass_matrix.polynomials, [x.polynomial for x in told.forcing]
+        mass, forcing = free.mass_matrix.polynomials, [x.polynomial for x in free.forcing]
         whole = determinant(ring, mass)
         if ring.vanishes(whole):
             raise NoClosedForm(SINGULAR)
         self.determinant, *scaled = (put_in(ring, p, images) for p in (whole, *cramer(ring, mass, forcing)))
-        if form is None:
-            self.unknowns = {ring.index("velocity", name): f"{name}_dot" for name in system.coordinates}
-            self.rates = {name: ring.generator("velocity", name) for name in system.coordinates}
-        else:
-            self.unknowns = {u.index: u.name for u in form.speeds}
-            self.rates = dict(form.rates)
-        self.unknowns = {k: name for k, name in self.unknowns.items() if k not in tied}
-        self.rates = {name: put_in(ring, rate, tied) for name, rate in self.rates.items()}
+        self.unknowns = {u.index: u.name for u in form.speeds if u.index not in tied}
+        self.rates = {name: put_in(ring, rate, tied) for name, rate in form.rates.items()}
         self.accelerations = dict(zip(self.unknowns, scaled, strict=True))
         lower = Lowering(ring, ring_environment(system, ring))
         self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
-
-    @property
-    def _products(self) -> Sequence[Any]:
-        """The pairs of unit vectors and quaternions whose products are constant."""
-        return self.equations.products if isinstance(self.equations, SpeedEquations) else ()
 
     @property
     def kept(self) -> list[int]:
@@ -157,7 +135,7 @@ class _State:
     def _is_of_positions(self, argument: Polynomial, kinds: Collection[str] = ("coordinate",)) -> bool:
         """Whether it moves, and holds what is of these ``kinds``, parameters and reciprocals of parameters alone."""
         ring, held = self.ring, occurring([argument])
-        tied = {name for sides in self._products for _, names in sides for name in names}
+        tied = {name for sides in self.equations.products for _, names in sides for name in names}
         moved = [k for k in held if ring.generators[k].kind in kinds and self._follows(k)]
         moved = [k for k in moved if ring.generators[k].name not in tied]  # of unit vectors squares are sums of others
         fixed = {k for k in ring.held([argument]) if ring.generators[k].kind in ("parameter", "reciprocal")}
@@ -260,7 +238,7 @@ class _State:
                 found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
         found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in variables if k in self._inverse]
         names = {ring.generators[k].name for k in variables}
-        for (name, components), (other, others) in self._products:
+        for (name, components), (other, others) in self.equations.products:
             if names.issuperset((*components, *others)):
                 total = ring.zero if name != other else -ring.one
                 for a, b in zip(components, others, strict=True):
@@ -323,25 +301,23 @@ class _State:
         return [difference / difference.leading_coefficient()]
 
 
-def _free(
-    system: System, ring: Ring, form: SpeedForm | None, equations: Equations
-) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
+def _free(form: SpeedForm, equations: Equations) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
     """The equations of the independent velocities, and the dependent ones by these (q' = Y u, the constraints).
 
     Raises NoClosedForm where constraints tie positions, which are no variables of their own then.
     """
-    found = equations.constraints
-    if found is None:
+    tied = equations.constraints
+    if tied is None:
         return equations, NOTHING
-    if found.position_rank or equations.embedded is None or found.solved is None:
+    if tied.position_rank or equations.embedded is None or tied.solved is None:
         raise NoClosedForm(
             "constraints tie positions: no polynomial field in free variables"
-            if found.position_rank
+            if tied.position_rank
             else "the equations without multipliers outgrow the budget of terms"
         )
     from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
 
-    return equations.embedded, dependent_velocities(form or SpeedForm(system, ring), found.solved)
+    return equations.embedded, dependent_velocities(form, tied.solved)
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:

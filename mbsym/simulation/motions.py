@@ -162,7 +162,8 @@ def sensitivities(
     """
     scenario = prepared(scenario, request)[0]
     augmented = sensitive(scenario, names, overrides, request.fixed)
-    name = request.method if request.method not in ("auto", "midpoint", "midpoint4", "midpoint6") else "dop853"
+    automatic = request.method == "auto" or METHODS[request.method].traits.conservative
+    name = "dop853" if automatic else request.method
     method = METHODS[name]
     step = request.step if method.traits.fixed else None
     tolerance = None if step is not None else request.tolerance or TOLERANCE["float64"]

@@ -181,8 +181,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "equations: terms of higher order decide."
     ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots without those of coordinates that drop out: [[1]]; the steady motions that the description gives "
-        "explain [[2]] of them. Terms of higher order decide."
+        "Zero roots beside those of coordinates that drop out: [[1]]; of these the steady motions under 'motion:' "
+        "explain [[2]]. Terms of higher order decide."
     ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",

@@ -16,7 +16,7 @@ from mbsym.analysis import symmetric
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION
-from mbsym.problems.symmetries import in_speeds
+from mbsym.problems.symmetries import blocks
 from mbsym.problems.symmetries.search import DEPENDENT
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
@@ -159,11 +159,11 @@ def test_a_mistake_in_the_equations_is_found_by_the_second_route(monkeypatch):
     """The torque about the third axis left out: q of the condition would be conserved, dI/dt is not zero."""
     text = ODD.replace("[0, A, 0]", "[0, A + C, 0]")
 
-    def wrong(form, energy, equations, images):
-        blocks = in_speeds(form, energy, equations, images)
-        return replace(blocks, rates=(*blocks.rates[:2], blocks.ring.zero))
+    def wrong(*derived):
+        right = blocks(*derived)
+        return replace(right, rates=(*right.rates[:2], right.ring.zero))
 
-    monkeypatch.setattr(symmetric, "in_speeds", wrong)
+    monkeypatch.setattr(symmetric, "blocks", wrong)
     result = found(text)
     assert {name for one in result.symmetries for name, _ in one.directions} & {"r"} == set()
     assert not result.complete
