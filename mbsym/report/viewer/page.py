@@ -41,6 +41,8 @@ WORDS = (
     "Names of bodies", "Axes", "Axes of bodies: the first red, the second green, the third blue", "Forces",
     "Forces and torques of loads", "Paths", "Paths of mass centres", "Inertia",
     "Ellipsoids of inertia, of rods and in the plane, too",
+    "kinetic energy (line)", "energy (its change dashed)", "of a family: ", "any position", "The list is complete.",
+    "The list may be incomplete.", "no initial value is given", "initial value", "initial velocity",
     "No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another.",
 )  # fmt: skip
 
