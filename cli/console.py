@@ -1,4 +1,4 @@
-"""What the commands share: reading descriptions, printing complaints, the two consoles, exit codes."""
+"""What the commands share: reading descriptions, printing complaints, the two consoles."""
 
 from __future__ import annotations
 
@@ -31,13 +31,6 @@ if TYPE_CHECKING:
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
-
-
-#: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
-OK, FAILED, BAD_INPUT = 0, 1, 2
-
-#: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
-BROKEN_DOWN, INTERRUPTED = 3, 130
 
 
 class Debugging:

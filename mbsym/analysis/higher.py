@@ -141,7 +141,7 @@ def check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.normal_forms.result import symbols_agree
 
-    if analysis.speed_form is not None:
+    if analysis.system.speeds:
         analysis = analysis.in_coordinates
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
     word, said = found.first, found.at_values.outcome.value

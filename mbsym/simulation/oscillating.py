@@ -80,7 +80,7 @@ def measured_orders(
         if found.small in numbers:
             numbers[found.small] = eps
         series = Numeric(told, parameters | symbols, eps)
-        time = 2 * pi / series.rate
+        time = 2 * pi / abs(series.rate)  # a root in the frequency may stand above what is negative
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         if simulated:
             rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)

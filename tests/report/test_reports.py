@@ -713,6 +713,8 @@ def test_an_alternative_is_one_inequality() -> None:
 
     assert told(required, other) == [[], [(p * f**2, ">"), (q, ">")]]
     assert told(required) == [[(p, ">"), (f, "!=")], []]
+    without = Requirement("c", p, Condition("inequality", p))
+    assert told(required, other, without) == [[], [(q, ">"), (p, ">")]]  # which p f^2 > 0 implies
 
 
 def test_a_short_formula_of_many_terms_is_counted() -> None:

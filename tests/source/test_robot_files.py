@@ -14,7 +14,7 @@ import mbsym
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import text as written
 from mbsym.model.constraints import Coincide, Relation
-from mbsym.problems.claims import DIFFERS, EXACT
+from mbsym.problems.claims import Outcome
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
@@ -426,7 +426,14 @@ def test_links_without_mass_are_frames_that_can_be_named() -> None:
         " + 0.055*(q1_dot + q2_dot)**2}",
     )
     analysis = mbsym.loads(made.yaml + "claims:\n" + "".join(f"  - {claim}\n" for claim in claims))
-    assert [one.outcome for one in analysis.claims] == [EXACT, EXACT, EXACT, DIFFERS, EXACT, EXACT]
+    assert [one.outcome for one in analysis.claims] == [
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.DIFFERS,
+        Outcome.EXACT,
+        Outcome.EXACT,
+    ]
     assert made.still == ("f",)
     assert made.joints == ("s", "e")
     assert [body.name for body in analysis.system.bodies if body.shapes] == ["camera"]
@@ -448,7 +455,7 @@ def test_named_sites_and_bodies_without_mass_are_frames_and_other_sites_are_list
         "  - {claim: position, of: flag, component: 1, equals: -3*sin(q1)}\n"
         "  - {claim: position, of: home, component: 3, equals: 1}\n"
     )
-    assert [one.outcome for one in mbsym.loads(text).claims] == [EXACT] * 3
+    assert [one.outcome for one in mbsym.loads(text).claims] == [Outcome.EXACT] * 3
     freed, _ = read(converted(SITES, floating=True).yaml, "p.yaml")
     assert freed is not None
     assert [body.name for body in freed.bodies if "x" in body.coordinates] == ["b frame 1"]
@@ -502,7 +509,7 @@ def test_every_joint_that_something_can_drive_has_its_torque_as_an_input() -> No
     (one,) = system.inputs
     assert (one.name, one.meaning) == ("tau_x_dot_joint", "torque in joint x-dot, at most 40 N*m")
     claim = "{{claim: equation of motion, of: q1, equals: 0.6*q1_ddot + 0.7*q1_dot + 9.81*sin(q1) {} tau_x_dot_joint}}"
-    assert outcomes(made.yaml, claim.format("-"), claim.format("+")) == [EXACT, DIFFERS]
+    assert outcomes(made.yaml, claim.format("-"), claim.format("+")) == [Outcome.EXACT, Outcome.DIFFERS]
     assert "inputs:" not in converted(PENDULUM, inputs=False).yaml
 
 
@@ -540,7 +547,7 @@ def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
         f"{{claim: kinetic energy, equals: {energy} + 0.15*q1_dot**2 + 0.35*q2_dot**2}}",
         f"{{claim: kinetic energy, equals: {energy}}}",
         "{claim: force function, equals: 9.81*(0.5*cos(q1) - 2*q2*cos(q1))}",
-    ) == [EXACT, DIFFERS, EXACT]
+    ) == [Outcome.EXACT, Outcome.DIFFERS, Outcome.EXACT]
     assert not any("armature" in one for one in made.left_out)
 
 
@@ -572,7 +579,7 @@ def test_joints_that_mimic_others_follow_them() -> None:
             "{claim: equation of motion, of: q1,"
             " equals: 4.5*q1_ddot + 1.25*q1_dot + 3*9.81*0.5*2*sin(1 - 2*q1) - tau_j1}",
         )
-        == [EXACT] * 3
+        == [Outcome.EXACT] * 3
     )
     assert not any("mimic" in one for one in made.left_out)
     limited = GRIPPER.replace('<dynamics damping="5"/>', '<dynamics damping="5"/><limit lower="0" upper="1"/>')
@@ -582,9 +589,11 @@ def test_joints_that_mimic_others_follow_them() -> None:
 def test_a_joint_that_only_leads_has_a_coordinate_and_one_that_follows_nothing_that_moves_is_at_its_offset() -> None:
     """The first finger without mass: 2 T = 3.5 q'^2.  A follower of the fixed joint stands at 1 + 2*0 all the time."""
     light = GRIPPER.replace('<inertial><mass value="1"/></inertial>', "")
-    assert outcomes(converted(light).yaml, "{claim: kinetic energy, equals: 1.75*q1_dot**2}") == [EXACT]
+    assert outcomes(converted(light).yaml, "{claim: kinetic energy, equals: 1.75*q1_dot**2}") == [Outcome.EXACT]
     fixed = GRIPPER.replace('<mimic joint="j2" multiplier="4"/>', '<mimic joint="p" multiplier="2" offset="1"/>')
-    assert outcomes(converted(fixed).yaml, "{claim: position, of: f3, component: 1, equals: 0.5*sin(1)}") == [EXACT]
+    assert outcomes(converted(fixed).yaml, "{claim: position, of: f3, component: 1, equals: 0.5*sin(1)}") == [
+        Outcome.EXACT
+    ]
     assert "angles: [1]" in converted(fixed).yaml
 
 
@@ -625,7 +634,7 @@ def test_a_joint_with_ref_has_it_as_its_coordinate_where_it_is_straight() -> Non
         converted(mujoco("", body)).yaml,
         "{claim: position, of: a, component: 3, equals: -cos(q1 - pi/6)/2}",
         "{claim: position, of: b, component: 1, equals: (q2 - 0.25)*cos(q1 - pi/6)}",
-    ) == [EXACT, EXACT]
+    ) == [Outcome.EXACT, Outcome.EXACT]
 
 
 def test_the_total_mass_may_be_set() -> None:
@@ -661,7 +670,7 @@ def test_what_stands_in_frames_is_placed_relative_to_them() -> None:
             "{claim: position, of: tip, component: 3, equals: 2 - 2*cos(q1)}",
             "{claim: position, of: c, component: 2, equals: (q2 - 1)*sin(q1)}",
         )
-        == [EXACT] * 4
+        == [Outcome.EXACT] * 4
     )
     inside = FRAMES.replace("<site", '<joint name="x"/><site')
     assert complaints_of(mujoco("", inside))[0][0] == "unsupported"

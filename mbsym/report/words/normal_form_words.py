@@ -128,7 +128,7 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
         yield say(text, values=tuple(map(_number, found.frequencies)))
     for one in found.resonances:
         text = "A resonance of order [[order]] holds exactly: [[relation]]."
-        yield say(text, order=str(one.order), relation=_relation(one.vector))
+        yield say(text, order=str(one.order), relation=_relation(one.vector, found.frequencies))
     if found.quadratic:
         yield say("Normal form of fourth order in the actions: [[form]].", form=_form(found.quadratic))
     for order, value in found.determinants:
@@ -272,12 +272,13 @@ def _focus(found: Focus, everywhere: Word | None) -> Iterator[Said]:
     )
 
 
-def _relation(vector: Sequence[int]) -> Notation:
-    """omega1 = 2 omega2."""
+def _relation(vector: Sequence[int], frequencies: Sequence[Any]) -> Notation:
+    """omega1 = 2 |omega2|, where the second one is told with the sign of a negative energy."""
     sides: tuple[list[str], list[str]] = ([], [])
-    for place, k in enumerate(vector, start=1):
+    for place, (k, frequency) in enumerate(zip(vector, frequencies, strict=True), start=1):
         if k:
-            sides[k < 0].append((f"{abs(k)} " if abs(k) > 1 else "") + f"\\omega_{place}")
+            size = f"|\\omega_{place}|" if frequency < 0 else f"\\omega_{place}"
+            sides[k < 0].append((f"{abs(k)} " if abs(k) > 1 else "") + size)
     return Notation(" = ".join(" + ".join(side) or "0" for side in sides))
 
 
