@@ -32,7 +32,7 @@ from mbsym.report.html.report import asked_motion
 from mbsym.report.language import Language
 from mbsym.report.targets import TARGETS
 from mbsym.report.viewer.motion import Motion, motion_of, moving_picture, run_sentences
-from mbsym.report.viewer.page import animation_page
+from mbsym.report.viewer.page import AFTER, KEYS, NEEDED, WORDS, animation_page
 from mbsym.simulation import Simulation
 from mbsym.studies.simulate.files import motion_files
 from mbsym_cli.main import main
@@ -235,6 +235,22 @@ def test_the_policy_lets_the_page_run_as_it_is(opened: Callable[..., Any]) -> No
     shown = opened(animation_page(replace(whole, scenario=replace(whole.scenario, system=system))))
     shown.get_by_role("button", name="Pause").wait_for()
     assert shown.title() == attack
+
+
+def test_the_viewer_has_its_words_from_the_page_in_its_language(opened: Callable[..., Any]) -> None:
+    """Each that its sources ask for, and no other; in every language that reports have."""
+    sources = (TESTS.parent / "editor/src/picture").glob("*.ts")
+    asked = {word for one in sources for word in re.findall(r'\bsay\("([^"]*)"\)', one.read_text(encoding="utf-8"))}
+    assert asked == set(WORDS)
+    for name in ("ru", "es"):
+        told = {word: Language(name).say(word) for word in (*WORDS, KEYS, NEEDED, AFTER)}
+        assert [word for word, said in told.items() if said == word] == []
+    whole = run("double-pendulum", 6)
+    system = replace(whole.system, language="es")
+    shown = opened(animation_page(replace(whole, scenario=replace(whole.scenario, system=system))))
+    shown.get_by_role("button", name="Pausa").wait_for()
+    assert shown.locator("html").get_attribute("lang") == "es"
+    assert shown.get_by_role("button", name="Ejes", exact=True).count() == 1
 
 
 # --- other consumers ---

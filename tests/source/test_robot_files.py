@@ -80,6 +80,9 @@ def test_symbols_have_the_printed_values() -> None:
     assert values == {
         "g": "9.81", "p2z": "2", "c2z": "0.5", "m2": "2", "J2xx": "0.1", "J2yy": "0.1", "J2zz": "0.01", "b1": "0.7",
     }  # fmt: skip
+    meanings = {one.name: one.meaning for one in named.parameters}
+    assert meanings["p2z"] == "origin of rod <1> on its carrier along z"
+    assert meanings["c2z"] == "mass centre of rod <1> along z"
 
 
 @pytest.mark.parametrize(
