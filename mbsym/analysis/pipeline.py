@@ -291,7 +291,7 @@ class Analysis(Stages):
         knows=OF_MOTIONS,
     )
     state_space: Derived[Analysis, StateSpace] = Derived(
-        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=Knows.CONSTRAINTS
+        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=OF_MOTIONS
     )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=OF_MOTIONS)
     balance = Derived["Analysis", Balance](deriving.balance_of, knows=OF_MOTIONS)

@@ -68,6 +68,7 @@ def find_orbit(
     keep: str = "auto",
     turns: Mapping[str, int] | None = None,
     watch: Callable[[int, float], None] = lambda k, size: None,
+    shifted: Sequence[str] = (),
 ) -> PeriodicMotion:
     """The periodic motion near the scenario's initial state and near ``period``, and one period of it.
 
@@ -79,7 +80,7 @@ def find_orbit(
         raise NotFound("the energy is not known to be conserved, so that it cannot be kept: --keep period or nothing")
     energy = keep in ("energy", "auto") and conserved
     state = np.array([float(x) for x in scenario.state])
-    guess = Guess(state, period, dict(turns or {}), keep == "period", energy)
+    guess = Guess(state, period, dict(turns or {}), tuple(shifted), keep == "period", energy)
     found: Orbit = periodic_orbit(dynamics, guess, watch=watch)
     times = np.linspace(0.0, found.period, ROWS)
     run = METHODS["dop853"].start(dynamics, Setting(1e-13), initial=found.state)
