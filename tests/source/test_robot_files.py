@@ -205,6 +205,7 @@ def test_what_is_a_robot() -> None:
 
 
 #: Its mass is pi at a density of 6.
+POINT = '<inertial pos="0 0 -1" mass="1" diaginertia="1 1 1"/>'
 BALL = '<body name="b"><joint axis="0 1 0"/><geom size="0.5"/></body>'
 
 
@@ -289,10 +290,46 @@ def test_a_template_is_told_to_be_one() -> None:
     assert complaints_of(text) == [("unsupported", 3)]
 
 
-def test_misspelled_elements_do_not_go_by_in_silence() -> None:
-    assert "unknown element <orign> in <joint>" in converted(PENDULUM.replace("<origin rpy", "<orign rpy")).left_out
-    made = converted(PENDULUM.replace("<mass value", "<mas value"))
-    assert "unknown element <mas> in <inertial>" in made.left_out
+@pytest.mark.parametrize(
+    ("old", "new", "what", "meant"),
+    [
+        ("<origin rpy", "<orign rpy", "element <orign> in <joint>", "origin"),
+        ("<mass value", "<mas value", "element <mas> in <inertial>", "mass"),
+        ('damping="', 'dampng="', "attribute 'dampng' of <dynamics>", "damping"),
+        ('ixy="', 'Ixy="', "attribute 'Ixy' of <inertia>", "ixy"),
+        (' xyz="0 0 -0.5"', ' XYZ="0 0 -0.5"', "attribute 'XYZ' of <origin>", "xyz"),
+    ],
+)
+def test_what_is_misspelt_in_urdf_is_complained_about_with_a_guess(old: str, new: str, what: str, meant: str) -> None:
+    assert old in PENDULUM
+    complaints = Complaints()
+    assert convert(PENDULUM.replace(old, new, 1), complaints) is None
+    found = next(one for one in complaints.items if one.code == "unknown-key")
+    assert what in found.message
+    assert found.hint == f"did you mean '{meant}'?"
+
+
+def test_what_urdf_files_have_of_their_own_is_left_out_by_name() -> None:
+    """Both stand in files of robots that are sold; neither is a slip of the pen."""
+    text = PENDULUM.replace('<link name="world"/>', '<link name="world"><collision_checking/></link>')
+    made = converted(text.replace("<dynamics ", '<dynamics gear_damping="2" '))
+    assert "unknown element <collision_checking> in <link>" in made.left_out
+    assert "unknown attribute 'gear_damping' of <dynamics>" in made.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ('<mass value="2"/>', '<mass value="2"/>\n<mass value="3"/>', "repeated-key"),
+        ("<dynamics ", '<dynamics damping="9"/>\n<dynamics ', "repeated-key"),
+        ("<axis ", '<axis xyz="1 0 0"/>\n<axis ', "repeated-key"),
+        ('value="2"', 'value="1_0"', "bad-number"),
+        ('value="2"', 'value="\u0662"', "bad-number"),
+    ],
+)
+def test_of_two_elements_where_one_holds_none_is_taken(old: str, new: str, code: str) -> None:
+    assert old in PENDULUM
+    assert [one for one, _ in complaints_of(PENDULUM.replace(old, new, 1))] == [code]
 
 
 @pytest.mark.parametrize(
@@ -318,6 +355,81 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
     assert found.hint == f"did you mean '{meant}'?"
     assert found.span is not None
     assert found.span.line == 2
+
+
+@pytest.mark.parametrize(
+    ("body", "after", "codes"),
+    [
+        (f"<body><joint name='j'/>{POINT}</body><body><joint name='j'/>{POINT}</body>", "", ["repeated-name"]),
+        (f"<body><joint/>{POINT}{POINT}</body>", "", ["repeated-key"]),
+        ("<body><joint/>" + POINT.replace("/>", ' fullinertia="1 1 1 0 0 0"/>') + "</body>", "", ["conflicting-keys"]),
+        (
+            f"<body><joint name='j'/>{POINT}</body>",
+            "<equality><joint joint1='j' polycoeff='1 2'/></equality>",
+            ["unknown-key"],
+        ),
+    ],
+)
+def test_what_mujoco_refuses_is_refused(body: str, after: str, codes: list[str]) -> None:
+    """A joint's name twice, two inertias, a tensor told twice, a slip in a tie."""
+    assert [code for code, _ in complaints_of(mujoco("", body, after))] == codes
+
+
+@pytest.mark.parametrize(
+    ("flag", "gone"),
+    [
+        ("damper", ["damper"]),
+        ("spring", ["spring"]),
+        ("passive", ["damper", "spring"]),
+        ("equality", ["constraints"]),
+        ("constraint", ["constraints", "limits"]),
+        ("limit", ["limits"]),
+        ("gravity", ["gravity"]),
+    ],
+)
+def test_what_flags_switch_off_is_off(flag: str, gone: list[str]) -> None:
+    option = f'<compiler angle="radian"/><option><flag {flag}="disable"/></option>'
+    body = f'<body><joint name="j" damping="3" stiffness="4" range="-1 1"/>{POINT}</body>'
+    after = '<equality><joint joint1="j" polycoef="0.5"/></equality>'
+    words = ("damper", "spring", "constraints", "limits", "gravity")
+    plain, switched = (
+        converted(mujoco(before, body, after)).yaml for before in (option.replace(flag, "energy"), option)
+    )
+    assert all(f"{word}:" in plain for word in words)
+    assert [word for word in words if f"{word}:" not in switched] == gone
+
+
+def test_a_class_may_switch_off_a_tie() -> None:
+    """As MuJoCo has it: the class of a tie is that of <equality>."""
+    before = '<default><default class="off"><equality active="false"/></default></default>'
+    body = f'<body><joint name="j"/>{POINT}</body>'
+    made = converted(mujoco(before, body, '<equality><joint class="off" joint1="j"/></equality>'))
+    assert "constraints:" not in made.yaml
+    assert "inactive constraint (<joint>)" in made.left_out
+
+
+def test_a_tie_is_of_the_joint_of_its_name_and_of_no_nameless_one() -> None:
+    """The joint ``elbow`` is q1; the nameless one in the body ``elbow``, with another reference, is q3."""
+    bodies = [
+        f'<body name="upper"><joint name="elbow" ref="30"/>{POINT}</body>',
+        f'<body name="lower"><joint name="x"/>{POINT}</body>',
+        f'<body name="elbow"><joint ref="60"/>{POINT}</body>',
+    ]
+    after = '<equality><joint joint1="elbow" joint2="x"/></equality>'
+    assert "relation: q1 - pi/6 = (1)*(q2)" in converted(mujoco("", "".join(bodies), after)).yaml
+
+
+def test_a_joint_s_name_stands_once_in_urdf_and_a_floating_joint_s_damping_is_told() -> None:
+    text = PENDULUM.replace(
+        "</robot>",
+        """<link name="more"/><joint name="pivot&#10;x: y" type="fixed">
+<parent link="world"/><child link="more"/></joint></robot>""",
+    )
+    assert "repeated-name" in [code for code, _ in complaints_of(text)]
+    free = PENDULUM.replace('type="revolute"', 'type="floating"')
+    assert "damping of a floating joint" in converted(free).left_out
+    loop = PENDULUM.replace("</robot>", '<loop_joint name="l" type="revolute"/></robot>')
+    assert "joint that closes a loop (<loop_joint>)" in converted(loop).left_out
 
 
 def test_of_ties_all_that_is_wrong_is_told_and_once() -> None:
