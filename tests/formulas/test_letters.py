@@ -306,5 +306,7 @@ def test_what_was_found_is_in_letters_that_were_asked_for_alone(asked: list[str]
     finding, _, meanings = done.output.partition("Letters used here")
     assert held in finding
     assert ("v0 = " in meanings) == bool(asked)
-    labels = re.compile(r"(?:v\d|discriminant) [<>] 0(?:,| or|(?= \(characteristic polynomial\)))")
+    labels = re.compile(
+        r"(?:v\d|discriminant) [<>] 0(?:,| or|$)|(?:v\d|discriminant|, )+(?=: of the char)", re.MULTILINE
+    )
     assert bool(asked) == ("v0" in labels.sub("", finding))

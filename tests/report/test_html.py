@@ -98,7 +98,7 @@ def told_values(page: str, known: dict[str, arb], number: int = 3) -> dict[str, 
         equations: list[list[tuple[str, object]]] = []
         for part in line.iter("math"):
             tokens = tokens_of(part)
-            if ("mo", "=") in tokens:
+            if not equations or (("mo", "=") in tokens and tokens[0] != ("mo", "=")):  # a line may end in front of "="
                 equations.append([])
             equations[-1] += tokens
         for tokens in equations:
