@@ -17,7 +17,8 @@ import mbsym
 from mbsym.expressions.message import Message
 from mbsym.report.language import Language
 from mbsym.source import is_description, load
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, asked_width, defect, printable, read_description, wrapped
+from mbsym.studies.study import Exit
+from mbsym_cli.console import asked_width, defect, printable, read_description, wrapped
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -51,20 +52,20 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
     if skip_others:
         files = tuple(file for file in files if file.is_dir() or not os.access(file, os.R_OK) or is_description(file))
     if not files:
-        sys.exit(OK if output_format == "text" else _for_programs((), output_format))
+        sys.exit(Exit.OK if output_format == "text" else _for_programs((), output_format))
     asked = Options()
     paths = asked.descriptions(files)
     if asked.refused():
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     if output_format != "text":
         sys.exit(_for_programs(paths, output_format))
-    worst = OK
+    worst: int = Exit.OK
     for path in paths:
         try:
             worst = max(worst, _check(path))
         except Exception as error:  # a defect of ours must not cost the rest of the batch
             defect(error, path)
-            worst = max(worst, FAILED)
+            worst = max(worst, Exit.FAILED)
     sys.exit(worst)
 
 
@@ -73,16 +74,16 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
     from mbsym.report.words.findings import Finding, findings_of, github_annotations, json_lines, sarif
 
     findings: list[Finding] = []
-    worst = OK
+    worst = Exit.OK
     for path in paths:
         try:
             _, complaints, _ = load(path)
         except Exception as error:
             defect(error, path)
-            worst = max(worst, FAILED)
+            worst = max(worst, Exit.FAILED)
             continue
         findings += findings_of(printable(path.as_posix()), complaints.sorted())
-        worst = max(worst, BAD_INPUT if complaints.errors else OK)
+        worst = max(worst, Exit.BAD_INPUT if complaints.errors else Exit.OK)
     written = {
         "github": github_annotations,
         "sarif": lambda found: sarif(found, mbsym.__version__),
@@ -95,10 +96,10 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
 def _check(path: Path) -> int:
     system = read_description(path)
     if system is None:
-        return BAD_INPUT
+        return Exit.BAD_INPUT
     sound = Language(system.language).say(Message("ok: [[name]]; [[size]]", name=system.name, size=_size(system)))
     print(wrapped(f"{printable(path)}: {sound}", asked_width()))
-    return OK
+    return Exit.OK
 
 
 def _size(system: System) -> str:

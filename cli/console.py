@@ -1,4 +1,4 @@
-"""What the commands share: reading descriptions, printing complaints, the two consoles, exit codes."""
+"""What the commands share: reading descriptions, printing complaints, the two consoles."""
 
 from __future__ import annotations
 
@@ -31,13 +31,6 @@ if TYPE_CHECKING:
 
     from mbsym.model.system import System
     from mbsym.report.plain_writer import Line
-
-
-#: Exit codes: everything held; a result failed its self-check, or is missing; the input is wrong.
-OK, FAILED, BAD_INPUT = 0, 1, 2
-
-#: A simulation ended early and what it had was kept; the user stopped it (as shells count the signal).
-BROKEN_DOWN, INTERRUPTED = 3, 130
 
 
 class Debugging:
@@ -151,6 +144,11 @@ def wrapped(line: str, width: int | None, margin: int | None = None) -> str:
     return f"\n{indent}".join(line[first:last].rstrip() if at else line for first, last in ends)
 
 
+def between_terms(formula: str) -> str:
+    """A formula that is broken in front of signs only."""
+    return re.sub(r" (?![-+=<>!]+ )", UNBROKEN, formula)
+
+
 def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list[int]]:
     """What stands before the further lines, and where these begin: at words, so that none is wider that need not be.
 
@@ -171,7 +169,7 @@ def _breaks(line: str, width: int, margin: int | None = None) -> tuple[str, list
 
 
 #: A line is broken outside of brackets if so much of it is full there.
-NEAR = 0.6
+NEAR = 0.35
 _BRACKETS = {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}
 
 

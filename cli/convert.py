@@ -16,8 +16,9 @@ import click
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints
 from mbsym.source import read, render, to_text, to_yaml
+from mbsym.studies.study import Exit
 from mbsym_cli.assignments import in_scale
-from mbsym_cli.console import BAD_INPUT, FAILED, OutPath, complain, diagnose, printable, read_description, speaking
+from mbsym_cli.console import OutPath, complain, diagnose, printable, read_description, speaking
 from mbsym_cli.files import write_whole
 from mbsym_cli.options import Options
 
@@ -83,7 +84,7 @@ def command(
     else:
         asked.unwritten("--out", out)
     if asked.refused(file):
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     robot = robot_text(file)
     if robot is not None:
         written = described(
@@ -94,14 +95,14 @@ def command(
         if floating or symbols or no_damping or no_inputs or joint_names or angles:
             options = "--floating, --symbols, --no-damping, --no-inputs, --joint-names, --angles"
             complain(file, Message("is no URDF or MJCF: [[options]] mean nothing here", options=options))
-            sys.exit(BAD_INPUT)
+            sys.exit(Exit.BAD_INPUT)
         written, system = None, read_description(file)
     if system is not None and scale is not None:
         written, system = None, in_scale(system, scale, asked)
         if asked.refused(file):
-            sys.exit(BAD_INPUT)
+            sys.exit(Exit.BAD_INPUT)
     if system is None:
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     if spelling is None:
         other = ".yaml" if file.suffix == ".txt" or robot is not None else ".txt"
         spelling = "text" if (out.suffix if out is not None else other) == ".txt" else "yaml"
@@ -113,7 +114,7 @@ def command(
         write_whole(out, text)
     except OSError as error:
         complain(out, Message("cannot be written: [[why]]", why=error.strerror), speaking(file))
-        sys.exit(FAILED)
+        sys.exit(Exit.FAILED)
 
 
 def _same(one: Path, other: Path) -> bool:

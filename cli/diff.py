@@ -19,18 +19,8 @@ from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.expressions.parser import ascii_safe
 from mbsym.report.documents import diff as doc
 from mbsym.report.language import LANGUAGES, Language
-from mbsym_cli.console import (
-    BAD_INPUT,
-    FAILED,
-    OK,
-    complain,
-    console,
-    defect,
-    printable,
-    read_description,
-    reason_of,
-    speaking,
-)
+from mbsym.studies.study import Exit
+from mbsym_cli.console import complain, console, defect, printable, read_description, reason_of, speaking
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -67,10 +57,10 @@ def command(a: Path, b: Path, check: bool, as_json: bool, everything: bool, lang
     asked = Options()
     tongue = None if language is None else asked.word("--language", language, tuple(LANGUAGES), "language")
     if asked.refused():
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     sides = _side(a), _side(b)
     if not all(sides):
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     if len(sides[0]) == len(sides[1]) == 1:
         common = [(next(iter(sides[1])), next(iter(sides[0].values())), next(iter(sides[1].values())))]
         lacking: list[tuple[str, bool, Source]] = []
@@ -91,26 +81,26 @@ def _compare(
 ) -> int:
     from mbsym.diff import diff
 
-    worst, systems = OK, list[doc.SystemDiff]()
+    worst, systems = Exit.OK, list[doc.SystemDiff]()
     for name, first, second in common:
         try:
             found = diff(first.content(second), second.content(first))
         except Unreadable:
-            worst = BAD_INPUT
+            worst = Exit.BAD_INPUT
             continue
         except Exception as error:  # a defect of ours must not cost the other systems
             defect(error, name)
-            worst = max(worst, FAILED)
+            worst = max(worst, Exit.FAILED)
             continue
         if not found.same and check:
-            worst = max(worst, FAILED)
+            worst = max(worst, Exit.FAILED)
         systems.append(system_data(name, found))
         if not as_json:
             say = speaking(*(one.path for one in (first, second) if one.description))
             say = say if language is None else Language(language).say
             show(name, first.title, second.title, found, everything, say)
     for name, first_only, source in lacking:
-        worst = max(worst, FAILED if check else OK)
+        worst = max(worst, Exit.FAILED if check else Exit.OK)
         if not as_json:
             say = Language(language).say if language else speaking(*([source.path] if source.description else []))
             told = Message("[[name]]: only in [[side]]", name=name, side="A" if first_only else "B")

@@ -10,7 +10,8 @@ from pathlib import Path
 import click
 
 from mbsym.expressions.message import Message
-from mbsym_cli.console import BAD_INPUT, INTERRUPTED, complain, printable
+from mbsym.studies.study import Exit
+from mbsym_cli.console import complain, printable
 from mbsym_cli.files import deliver, folder_for, obstacle
 from mbsym_cli.options import Options
 
@@ -39,16 +40,16 @@ def command(file: Path | None, port: str, no_browser: bool) -> None:
         if (error.name or "").partition(".")[0] not in ("starlette", "uvicorn", "anyio", "h11", "click"):
             raise
         print("the editor needs Starlette and Uvicorn: pip install 'mbsym[edit]'", file=sys.stderr)
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     asked = Options()
     number = asked.whole("--port", port, 0, 65535)
     if asked.refused() or number is None:
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     path = file or _unused()
     reason = _unfit(path)
     if reason:
         complain(path, reason)
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     folder = path.absolute().parent / folder_for(path, None)
 
     def write(place: Path, texts: Mapping[str, str | bytes], what: str, gone: list[str]) -> list[Path]:
@@ -69,9 +70,9 @@ def command(file: Path | None, port: str, no_browser: bool) -> None:
         serve(path, Services(folder, write), number, ready)
     except OSError as error:
         complain(path, Message("port [[number]]: [[why]]", number=number, why=error.strerror or error))
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+        sys.exit(Exit.INTERRUPTED)
 
 
 def _unused() -> Path:

@@ -8,8 +8,9 @@ from pathlib import Path
 import click
 
 from mbsym.expressions.message import Message
+from mbsym.studies.study import Exit
 from mbsym_cli.completion import among, examples
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, OutPath, complain, printable
+from mbsym_cli.console import OutPath, complain, printable
 from mbsym_cli.options import Options
 
 
@@ -39,8 +40,8 @@ def command(names: tuple[str, ...], every: bool, out: Path) -> None:
     for path in targets.values():
         asked.unwritten("NAME", path)
     if asked.refused():
-        sys.exit(BAD_INPUT)
-    sys.exit(max([OK, *(_copy(name, path) for name, path in targets.items())]))
+        sys.exit(Exit.BAD_INPUT)
+    sys.exit(max([Exit.OK, *(_copy(name, path) for name, path in targets.items())]))
 
 
 def _list(names: tuple[str, ...]) -> None:
@@ -65,6 +66,6 @@ def _copy(name: str, path: Path) -> int:
         write_whole(path, example_text(name))
     except OSError as error:
         complain(path, Message("cannot be written: [[why]]", why=error.strerror))
-        return FAILED
+        return Exit.FAILED
     click.echo(printable(path))
-    return OK
+    return Exit.OK

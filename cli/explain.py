@@ -10,8 +10,9 @@ from difflib import get_close_matches
 import click
 
 from mbsym.problems import NUMBERS, ranges
+from mbsym.studies.study import Exit
 from mbsym_cli.completion import among
-from mbsym_cli.console import BAD_INPUT, asked_width, wrapped
+from mbsym_cli.console import asked_width, wrapped
 
 TOPICS = {
     "description": "the keys of a description",
@@ -56,7 +57,7 @@ def command(topic: tuple[str, ...]) -> None:
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
         message = f"nothing is called {word}: no problem, topic, command, verdict, theorem, key or kind; {known}"
         click.echo(message, err=True)
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
 
 
 def explanations(word: str) -> list[str]:
@@ -113,7 +114,8 @@ def _verdict(word: str) -> Iterator[str]:
         Word.ASYMPTOTIC_BUT_TURNED: "disturbed motions stay near and come back to the same motion, turned in space",
         Word.ASYMPTOTIC_BUT_CYCLIC: (
             "everything else comes back, or to a steady motion near by where momenta were changed; cyclic "
-            "coordinates may drift"
+            "coordinates may drift: asymptotic stability with respect to a part of the variables (Rumyantsev), "
+            "where it comes back"
         ),
         Word.ASYMPTOTIC_BUT_STEADY: (
             "of a system with constraints on velocities: they come to a steady motion near by, of another speed "
@@ -123,7 +125,10 @@ def _verdict(word: str) -> Iterator[str]:
             "disturbed motions stay near, in the nonlinear system (of a system given by its matrices: these "
             "equations are all there is)"
         ),
-        Word.STABLE_BUT_CYCLIC: "everything else stays near; cyclic coordinates may drift",
+        Word.STABLE_BUT_CYCLIC: (
+            "everything else stays near; cyclic coordinates may drift: stability with respect to a part of the "
+            "variables (Rumyantsev)"
+        ),
         Word.GYROSCOPIC: (
             "the first approximation is stable by gyroscopic forces; no theorem decides the nonlinear system"
         ),

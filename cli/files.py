@@ -33,7 +33,8 @@ from typing import IO, TYPE_CHECKING, BinaryIO, TypeVar, cast
 
 from mbsym.expressions.message import Message
 from mbsym.source.render import escaped
-from mbsym_cli.console import BAD_INPUT, FAILED, OK, Force, complain
+from mbsym.studies.study import Exit
+from mbsym_cli.console import Force, complain
 
 if TYPE_CHECKING:
     from mbsym_cli.options import Options
@@ -387,12 +388,12 @@ def safe_name(name: str) -> str:
 def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
     """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
     if asked.refused(file if read else None) or not read:
-        return BAD_INPUT
+        return Exit.BAD_INPUT
     reason = "" if folder is None else obstacle(folder)
     if reason:
         complain(file, Message("the results cannot be written: [[why]]", why=reason))
-        return FAILED
-    return OK
+        return Exit.FAILED
+    return Exit.OK
 
 
 def obstacle(folder: Path, inside: Path | None = None) -> str:

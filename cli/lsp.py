@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from mbsym_cli.console import BAD_INPUT
+from mbsym.studies.study import Exit
 
 
 @click.command("lsp")
@@ -24,5 +24,5 @@ def command() -> None:
         from mbsym_cli.language_server import serve
     except ImportError:
         print("the language server needs pygls: pip install 'mbsym[lsp]'", file=sys.stderr)
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     serve()

@@ -6,6 +6,7 @@ Sub-commands are imported when they are called, so that ``mbsym --help`` does no
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 from typing import Any, NamedTuple
 
@@ -108,8 +109,8 @@ class LazyGroup(click.Group):
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """In a process of its own the command is also safe from what its streams do."""
+        from mbsym.studies.study import Exit
         from mbsym_cli.beside import Beside
-        from mbsym_cli.console import FAILED, INTERRUPTED, OK
         from mbsym_cli.streams import Streams, own_process, stoppable
 
         if not own_process():
@@ -119,20 +120,21 @@ class LazyGroup(click.Group):
         with stoppable() as signals:
             try:
                 super().main(*args, **extra)
-                code: Any = OK
+                code: Any = Exit.OK
             except SystemExit as ended:
                 code = ended.code
         refused = streams.refused()
         if refused:
             print(f"standard output cannot be written: {refused}", file=sys.stderr)
-            code = code or FAILED
-        if signals and code == INTERRUPTED:
+            code = code or Exit.FAILED
+        if signals and code == Exit.INTERRUPTED:
             code = 128 + signals[0]
         sys.exit(code)
 
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
-        from mbsym_cli.console import FAILED, INTERRUPTED, OK, Debugging, Force, defect, listening, reason_of, trace
+        from mbsym.studies.study import Exit
+        from mbsym_cli.console import Debugging, Force, defect, listening, reason_of, trace
 
         Debugging.wanted = Force.wanted = False
         try:
@@ -140,9 +142,13 @@ class LazyGroup(click.Group):
                 try:
                     return super().invoke(context)
                 except SystemExit as ended:
-                    if defects.tell() and ended.code in (OK, None):
-                        ended.code = FAILED
+                    if defects.tell() and ended.code in (Exit.OK, None):
+                        ended.code = Exit.FAILED
                     raise
+        except click.UsageError as error:
+            if meant := _meant(error):
+                raise click.UsageError(error.message + meant, error.ctx) from error
+            raise
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except OSError as error:
@@ -152,8 +158,20 @@ class LazyGroup(click.Group):
             defect(error)
         except KeyboardInterrupt:
             print("interrupted; what has been written is whole", file=sys.stderr)
-            sys.exit(INTERRUPTED)
-        sys.exit(FAILED)
+            sys.exit(Exit.INTERRUPTED)
+        sys.exit(Exit.FAILED)
+
+
+def _meant(error: click.UsageError) -> str:
+    """With which option a word that is too much would be understood; nothing where that is nobody's guess."""
+    extra = re.search(r"extra arguments? \((\S+).*\)", error.message)
+    if extra is None or error.ctx is None:
+        return ""
+    word = extra[1]
+    options = {name for parameter in error.ctx.command.params for name in parameter.opts}
+    fitting = (("--set", "=" in word), ("--time", re.fullmatch(r"[\d.]+(e\d+)?", word) is not None), ("--out", True))
+    option = next((name for name, fits in fitting if fits and name in options), "")
+    return f"; did you mean '{option} {word}'?" if option else ""
 
 
 def _command(module: str) -> click.Command:

@@ -15,8 +15,9 @@ import click
 
 from mbsym.expressions.message import Message
 from mbsym.report.language import LANGUAGES, Language
+from mbsym.studies.study import Exit
 from mbsym_cli.completion import among, examples
-from mbsym_cli.console import BAD_INPUT, FAILED, complain, printable
+from mbsym_cli.console import complain, printable
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def command(name: str, like: str | None, language: str | None) -> None:
     if like is not None and example is None:
         asked.word("--like", like, example_names(), "example")
     if asked.refused():
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     title = path.stem.replace("-", " ").replace("_", " ").capitalize()
     text = _interview(title, say) if example is None else _renamed(example, title)
     text = in_language(text, tongue)
@@ -68,7 +69,7 @@ def command(name: str, like: str | None, language: str | None) -> None:
         write_whole(path, text)
     except OSError as error:
         complain(path, Message("cannot be written: [[why]]", why=error.strerror), say)
-        sys.exit(FAILED)
+        sys.exit(Exit.FAILED)
     shown = printable(path)
     quoted = shlex.quote(shown)
     begun = Message("[[file]], begun with the example [[name]]", file=shown, name=example)

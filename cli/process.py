@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 
-#: As shells count Ctrl-C; ``mbsym_cli.console.INTERRUPTED``, which is not there before everything is imported.
+#: As shells count Ctrl-C; ``Exit.INTERRUPTED``, which is not there before everything is imported.
 INTERRUPTED = 130
 
 

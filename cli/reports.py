@@ -15,12 +15,10 @@ from mbsym.expressions.message import Message, joined, worded
 from mbsym.report import content
 from mbsym.report.language import Language
 from mbsym.report.whole_run import derive_all, lost, rendered_all
+from mbsym.studies.study import Exit
 from mbsym_cli.assignments import in_scale, with_settings
 from mbsym_cli.beside import beside
 from mbsym_cli.console import (
-    BAD_INPUT,
-    FAILED,
-    OK,
     asked_width,
     complain,
     defect,
@@ -88,7 +86,7 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
     try:
         system = read_description(path)
         if system is None:
-            return BAD_INPUT
+            return Exit.BAD_INPUT
         asked = Options()
         asked.say = say
         if request.settings:
@@ -97,18 +95,18 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
             system = in_scale(system, request.scale, asked) if system is not None else None
         letters = None if request.letters is None or system is None else read_letters(request.letters, system, asked)
         if asked.refused(path) or system is None:
-            return BAD_INPUT
+            return Exit.BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
             complain(path, Message("the reports cannot be written: [[why]]", why=reason), say)
-            return FAILED
+            return Exit.FAILED
         return _derive(path, system, folder, request, letters)
     except OSError as error:
         complain(path, Message("the reports cannot be written: [[why]]", why=reason_of(error)), say)
         trace(error)
     except Exception as error:  # a defect of ours must not cost the rest of the batch
         defect(error, path)
-    return FAILED
+    return Exit.FAILED
 
 
 def _derive(path: Path, system: System, folder: Path, request: Request, letters: tuple[str, ...] | None) -> int:
@@ -142,7 +140,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request, letters:
     missing = [file.filename for file in files if file.text is None]
     written = deliver(folder, texts, "run", gone=missing)
     _show(analysis, path, written, request, time.perf_counter() - started, found)
-    return FAILED if _complaints(analysis, path, files, request) else OK
+    return Exit.FAILED if _complaints(analysis, path, files, request) else Exit.OK
 
 
 def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
@@ -197,7 +195,8 @@ def _show(
     language = Language(analysis.language or analysis.system.language)
     with angles_as(request.angles or "shorter"):
         known = results(analysis, analysis.problems)
-        writer = Writer(language, True, LONGEST, (asked_width() or WIDEST) - 2, file)  # documents stand further in
+        width = (asked_width() or WIDEST) - 2  # documents stand further in
+        writer = Writer(language, True, LONGEST, width, file, printable(path))
         lines = _documents(known, writer, request)
         with in_letters(analysis.system, analysis.letters or ()) as used:
             told = finding(known)

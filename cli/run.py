@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, cast
 import click
 
 from mbsym.studies.simulate import LEAST_ERROR, MOST_ERROR
-from mbsym_cli.console import BAD_INPUT, OK, OutPath, read_description
+from mbsym.studies.study import Exit
+from mbsym_cli.console import OutPath, read_description
 from mbsym_cli.files import REPORTS, safe_name
 from mbsym_cli.letters import with_letters
 from mbsym_cli.options import Options
@@ -160,7 +161,7 @@ def command(
         for path in paths:
             read_description(path)
         asked.refused()
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     width = max(len(path.name) for path in paths)
     request = Request(
         shown_by(kinds) if chosen is None else chosen,
@@ -182,7 +183,7 @@ def command(
         scale,
         letters,
     )
-    worst = OK
+    worst = Exit.OK
     base = None if out is not None and len(paths) == 1 else out or REPORTS
     for path, folder in zip(paths, _folders(paths, out, base), strict=True):
         worst = max(worst, report_on(path, folder, base, request))

@@ -9,8 +9,8 @@ from typing import Any
 import click
 
 from mbsym.source import json_schema
+from mbsym.studies.study import Exit
 from mbsym_cli.completion import among
-from mbsym_cli.console import BAD_INPUT
 from mbsym_cli.options import Options
 
 #: What is read; the others are written.
@@ -35,7 +35,7 @@ def command(which: str) -> None:
     asked = Options()
     kinds = asked.words("WHICH", which, _kinds(), "schema")
     if asked.refused() or len(kinds) != 1:
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     click.echo(json.dumps(_schema(kinds[0]), indent=2, ensure_ascii=False))
 
 

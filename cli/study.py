@@ -27,6 +27,7 @@ from mbsym.studies.study import (
     Answer,
     Asked,
     Document,
+    Exit,
     Folder,
     Line,
     NotFit,
@@ -38,13 +39,10 @@ from mbsym.studies.study import (
 )
 from mbsym_cli.beside import Beside
 from mbsym_cli.console import (
-    BAD_INPUT,
-    BROKEN_DOWN,
-    FAILED,
-    INTERRUPTED,
-    OK,
+    HANGING,
     OutPath,
     asked_width,
+    between_terms,
     complain,
     diagnose,
     printable,
@@ -108,12 +106,13 @@ def _together(study: Study[Any, Any], runs: Sequence[_Run]) -> int:
     if len({run.folder for run in runs}) < len(runs):
         text = "error[conflicting-files]: two of the files have one name, and their results would have one folder"
         complain(runs[0].file, Message(text))
-        return BAD_INPUT
+        return Exit.BAD_INPUT
     codes = [run.code() for run in runs]
     known = [run.told for run in runs if run.told is not None]
     if known:
         show(study.together(known), known[0][0].system.language)
-    return max(codes, key=[OK, FAILED, BROKEN_DOWN, BAD_INPUT, INTERRUPTED].index)
+    worst_last: list[int] = [Exit.OK, Exit.FAILED, Exit.BROKEN_DOWN, Exit.BAD_INPUT, Exit.INTERRUPTED]
+    return max(codes, key=worst_last.index)
 
 
 class _Run:
@@ -159,7 +158,7 @@ class _Run:
             kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
             code = prevented(file, folder if kept else None, system is not None, self.options)
             if code or asked is None:
-                return code or BAD_INPUT
+                return code or Exit.BAD_INPUT
             return self._answered(asked, request)
 
     @contextmanager
@@ -226,12 +225,12 @@ class _Run:
                     raise answer.stopped
         except OSError as error:
             complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
-            return FAILED
+            return Exit.FAILED
         except NotFit as error:
             for one in error.reasons:
                 self._unfit(one)
             self.options.refused(file)
-            return BAD_INPUT
+            return Exit.BAD_INPUT
         except Exception as error:
             refusal = study.refusal(error, asked, request)
             if refusal is None:
@@ -254,7 +253,11 @@ class _Run:
 
     def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
         if answer.text is not None:
-            click.echo(answer.text, nl=False)
+            if answer.breaks and sys.stdout.isatty():
+                for line in answer.text.splitlines():
+                    tell(line if line.startswith("#") else between_terms(line), margin=HANGING)
+            else:
+                click.echo(answer.text, nl=False)
             return
         loud = not self.quiet
         if loud:
@@ -284,7 +287,7 @@ class _Run:
         """The exit code of a single file."""
         self._complaints(document.complaints)
         if document.text is None:
-            return FAILED
+            return Exit.FAILED
         try:
             if self.out is None:
                 deliver(out.parent, {out.name: document.text}, self.study.name)
@@ -292,10 +295,10 @@ class _Run:
                 write_whole(out, document.text)
         except OSError as error:
             complain(out, Message("cannot be written: [[why]]", why=error.strerror or error), self.say)
-            return FAILED
+            return Exit.FAILED
         if document.told and not self.quiet:
             click.echo(f"{printable(out)}: {self.say(document.told)}")
-        return OK
+        return Exit.OK
 
 
 def _memory() -> Remember:
@@ -320,7 +323,7 @@ def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = 
     except KeyboardInterrupt:
         whole = written()
         complain(file, "interrupted; what has been written is whole" if whole else "interrupted; nothing was written")
-        sys.exit(INTERRUPTED)
+        sys.exit(Exit.INTERRUPTED)
 
 
 # What a command has found, in the language of the description, and where the files are.

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import click
 
-from mbsym_cli.console import BAD_INPUT, INTERRUPTED, OutPath, complain
+from mbsym.studies.study import Exit
+from mbsym_cli.console import OutPath, complain
 
 #: Seconds between two looks at the file, and after which a file that is being saved has settled.
 PERIOD = 0.2
@@ -41,7 +42,7 @@ def command(
     """
     if not file.is_file():
         complain(file, "there is no such file")
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     arguments = [str(file)]
     for option, value in (("--problems", problems), ("--format", formats), ("--out", out)):
         arguments += [] if value is None else [option, str(value)]
@@ -51,7 +52,7 @@ def command(
     try:
         _watch(file, commands)
     except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+        sys.exit(Exit.INTERRUPTED)
 
 
 def _watch(file: Path, commands: list[list[str]]) -> None:

@@ -14,7 +14,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
-from mbsym.numerics.methods.interface import SINGULAR, STEP_LIMIT, UNDEFINED, Unusable
+from mbsym.numerics.methods.interface import Cause, Unusable
 from mbsym.numerics.scenario import Incomplete
 from mbsym.simulation import SAMPLES, Request, sample_times
 
@@ -162,7 +162,7 @@ def test_missing_numbers_and_methods_that_do_not_apply_are_raised() -> None:
 def test_a_run_that_leaves_the_domain_of_its_forces_says_so(load: str, end: float, method: dict[str, object]) -> None:
     run = mbsym.simulate(free(load), 5, **method)  # type: ignore[arg-type]
     assert run.ended is not None
-    assert run.ended.kind == UNDEFINED
+    assert run.ended.kind == Cause.UNDEFINED
     assert run.ended.time == pytest.approx(end, abs=0.02)
     assert np.all(np.isfinite(run.trajectory.states))
     assert np.all(np.isfinite(run.energy))
@@ -173,17 +173,17 @@ def test_an_energy_without_a_value_ends_the_run() -> None:
     """Steps that jump over the pole of -1/(x + 2): beyond it the force is real, and its potential log(x + 2) is not."""
     run = mbsym.simulate(free("potential: x + k*log(x + 2)"), 5, method="rk4", step=0.01)
     assert run.ended is not None
-    assert run.ended.kind == UNDEFINED
+    assert run.ended.kind == Cause.UNDEFINED
     assert np.all(run["x"] > -2)
     assert np.all(np.isfinite(run.energy))
 
 
 def test_other_ends_are_results_too() -> None:
     limited = mbsym.simulate(DOUBLE, 60, step_limit=200)
-    assert (limited.whole, limited.ended.kind) == (False, STEP_LIMIT)  # type: ignore[union-attr]
+    assert (limited.whole, limited.ended.kind) == (False, Cause.STEP_LIMIT)  # type: ignore[union-attr]
     pole = mbsym.simulate(SHIPPED / "spherical-pendulum.yaml", 1, values={"theta": 0})
     assert pole.ended is not None
-    assert pole.ended.kind == SINGULAR
+    assert pole.ended.kind == Cause.SINGULAR
 
 
 def test_times_are_chosen_within_bounds() -> None:

@@ -59,15 +59,17 @@ def run(
     given: str = "",
     timeout: float = 300,
     memory: int | None = None,
+    processor: int | None = None,
 ) -> subprocess.CompletedProcess[str]:
-    """What ``code`` does in such a process with these words after its name, ``given`` on its standard input and at
-    most so many bytes of ``memory``; raises subprocess.TimeoutExpired as ``subprocess.run`` does."""
+    """What ``code`` does in such a process with these words after its name, ``given`` on its standard input, at most
+    bytes of ``memory`` and seconds of ``processor``; raises subprocess.TimeoutExpired as ``subprocess.run`` does."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "in").write_text(given, encoding="utf-8")
         arguments = ["-c", *map(str, words)]
         asked = {
             "code": code, "arguments": arguments, "cwd": str(cwd or Path.cwd()), "folder": folder,
-            "seconds": timeout, "memory": memory, "environment": dict(os.environ),
+            "seconds": timeout, "limits": [[resource.RLIMIT_AS, memory], [resource.RLIMIT_CPU, processor]],
+            "environment": dict(os.environ),
         }  # fmt: skip
         server = _server()
         assert server.stdin is not None
@@ -152,7 +154,7 @@ def _begin_script(client: socket.socket) -> int:
         return waiting
     _, streams, _, _ = socket.recv_fds(client, 1, 3)
     with client.makefile("r", encoding="utf-8") as told:
-        asked = {"code": COMMAND, "memory": None, **json.loads(told.read())}
+        asked = {"code": COMMAND, "limits": [], **json.loads(told.read())}
     child = os.fork()
     if not child:
         client.close()
@@ -192,8 +194,9 @@ def _become(asked: dict[str, Any], streams: list[int]) -> None:
         os.chdir(asked["cwd"])
         sys.path[0] = ""
         sys.argv = asked["arguments"]
-        if asked["memory"]:
-            resource.setrlimit(resource.RLIMIT_AS, (asked["memory"],) * 2)
+        for limit, most in asked["limits"]:
+            if most:
+                resource.setrlimit(limit, (most, most))
         exec(compile(asked["code"], "<string>", "exec"), {"__name__": "__main__"})
         code = 0
     except SystemExit as ended:

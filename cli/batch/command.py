@@ -13,7 +13,8 @@ import click
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.safe import quoted as ascii_safe
-from mbsym_cli.console import BAD_INPUT, OutPath, speaking
+from mbsym.studies.study import Exit
+from mbsym_cli.console import OutPath, speaking
 from mbsym_cli.options import Options
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def command(
     if appendix and "latex" not in kinds:
         asked.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
     if asked.refused() or bound is None:
-        sys.exit(BAD_INPUT)
+        sys.exit(Exit.BAD_INPUT)
     from mbsym_cli.batch.machine import processors, shared_memory
     from mbsym_cli.batch.run import Request, run
 
@@ -154,7 +155,7 @@ def _on_cluster(request: Request) -> int:
     except NoCluster as error:
         files = [place.file for place in found_in(request.folders, request.out).places]
         print(f"--cluster: {speaking(*files)(error.reason)}", file=sys.stderr)
-        return BAD_INPUT
+        return Exit.BAD_INPUT
 
 
 def _formats(asked: Options, text: str) -> tuple[str, ...]:

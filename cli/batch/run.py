@@ -24,11 +24,12 @@ from mbsym.batch.transport import BatchOptions, Budget
 from mbsym.expressions.message import Message, joined
 from mbsym.report.language import Language
 from mbsym.report.words.findings import github_annotations, json_lines, sarif
+from mbsym.studies.study import Exit
 from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
 from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
-from mbsym_cli.console import BAD_INPUT, FAILED, INTERRUPTED, printable, speaking
+from mbsym_cli.console import printable, speaking
 from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifest
 from mbsym_cli.options import DESCRIPTIONS_HAVE, nothing_here
 
@@ -68,13 +69,13 @@ def run(request: Request) -> int:
     reason = obstacle(request.out)
     if reason:
         print(say(Message("the results cannot be written: [[why]]", why=reason)), file=sys.stderr)
-        return BAD_INPUT
+        return Exit.BAD_INPUT
     found = found_in(request.folders, request.out)
     places = chosen(found.places, request.patterns)
     say = speaking(*(place.file for place in places or found.places))
     if not places and not found.unreadable:
         print("\n".join(map(say, _nothing(request, found))), file=sys.stderr)
-        return BAD_INPUT
+        return Exit.BAD_INPUT
     if request.shard is not None:
         places = share(places, *request.shard)
     if request.budget.memory and not memory_is_bounded():
@@ -93,8 +94,8 @@ def run(request: Request) -> int:
         print(f"{say(totals(summary))}; {summary.seconds:.2f} s; {where}")
     if stopped:
         print(say(Message("interrupted; what was finished is kept")), file=sys.stderr)
-        return INTERRUPTED
-    return summary.exit_code if whole else summary.exit_code or FAILED
+        return Exit.INTERRUPTED
+    return summary.exit_code if whole else summary.exit_code or Exit.FAILED
 
 
 def _summed_up(request: Request, places: list[Place], found: Descriptions, started: float) -> tuple[Summary, bool]:

@@ -2,6 +2,7 @@
 
 import { make } from "./elements.js";
 import type { Model } from "./model.js";
+import { released } from "./pressing.js";
 import type { Complaint, View } from "./seam.js";
 
 /** "2 mistakes, 1 warning"; what the status line says, too. */
@@ -38,7 +39,14 @@ export function complaintList(model: Model, go: (complaint: Complaint) => void):
       ),
     );
   }
-  model.on("view", shown);
+  let told = "";
+  model.on("view", (view) => {
+    // What says the same stays: a button may have the focus, or be pressed.
+    const now = JSON.stringify(view.complaints);
+    if (now === told) return;
+    told = now;
+    released(() => shown(view));
+  });
   details.hidden = true;
   return details;
 }

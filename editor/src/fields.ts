@@ -3,7 +3,7 @@
 
 import { make } from "./elements.js";
 import { formula } from "./mathml.js";
-import { remedies } from "./remedies.js";
+import { remedies, type Remedy } from "./remedies.js";
 import type { Model } from "./model.js";
 import { released } from "./pressing.js";
 import type { Complaint, Operation, Path, TreeNode } from "./seam.js";
@@ -142,6 +142,8 @@ interface Drawn {
   note: HTMLElement;
   row: Row;
   shown: string;
+  /** What the buttons beneath it do now: places in the text may be others than when they were drawn. */
+  remedies: Remedy[];
 }
 
 interface Part {
@@ -266,7 +268,7 @@ export class Form {
       ? make("select", attributes, ...row.options.map(([value, words]) => make("option", { value }, words)))
       : make("input", { ...attributes, type: "text", autocomplete: "off", spellcheck: "false" });
     const note = make("span", { class: "note", id: `${id}-note` });
-    const drawn: Drawn = { input, note, row, shown: "" };
+    const drawn: Drawn = { input, note, row, shown: "", remedies: [] };
     this.drawn.set(row.key, drawn);
     input.addEventListener("change", () => {
       const value = input.value;
@@ -327,12 +329,13 @@ export class Form {
   private tell(drawn: Drawn, complaint: Pick<Complaint, "message" | "hint"> | Complaint): void {
     drawn.input.setAttribute("aria-invalid", "true");
     const found = "code" in complaint ? remedies(this.model, complaint, drawn.row.node?.path ?? []) : [];
+    drawn.remedies = found;
     const told = JSON.stringify([complaint.message, complaint.hint, found.map((one) => one.words)]);
     if (drawn.note.dataset["told"] === told && drawn.note.querySelector(".wrong")) return; // a button there may have the focus
     drawn.note.dataset["told"] = told;
     const act = (index: number): void => {
       drawn.input.focus(); // the button goes with the complaint
-      void found[index]?.act();
+      void drawn.remedies[index]?.act();
     };
     const buttons = found.map((one, index) => make("button", { type: "button", click: () => act(index) }, one.words));
     // The remedies say it, but for a slip of the pen.
@@ -348,6 +351,7 @@ export class Form {
     if (source === "" || /^[\w.]*$/.test(source)) return drawn.note.replaceChildren();
     const answer = await this.model.request<{ mathml?: string }>("formula", { source }).catch(() => null);
     if (drawn.input.value.trim() !== source || document.activeElement !== drawn.input) return;
+    if (drawn.input.getAttribute("aria-invalid")) return; // a complaint came first: it stays, and so do its buttons
     const shown = answer?.mathml ? formula(answer.mathml) : null;
     drawn.note.replaceChildren(...(shown ? [shown] : []));
   }

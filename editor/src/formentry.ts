@@ -139,7 +139,7 @@ async function entered(model: Model, title: string, content: HTMLElement[], oper
     const wanted = operations();
     const before = unknownNames(model);
     const outcome = typeof wanted === "string" ? null : await model.change(wanted, words);
-    if (outcome?.done) await declareNew(model, before);
+    if (outcome?.done) await declareNew(model, before, words);
     trouble.textContent = outcome?.done ? "" : (typeof wanted === "string" ? wanted : (outcome?.complaints[0]?.message ?? "this cannot be done"));
     if (!outcome?.done) continue;
     if (chosen === "add") return;

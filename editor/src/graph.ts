@@ -6,6 +6,7 @@ import { make, makeSvg } from "./elements.js";
 import { coordinatesOf } from "./formentry.js";
 import { FIXED, laidOut, NODE, type Layout, type Placed } from "./layout.js";
 import type { Model } from "./model.js";
+import { released } from "./pressing.js";
 import type { Body, Tie } from "./seam.js";
 import { FIXED_WORDS, Structure } from "./structure.js";
 
@@ -39,7 +40,7 @@ class Graph {
     host.append(top, this.scroller, this.hint);
     this.tree.addEventListener("keydown", (event) => this.key(event));
     this.scroller.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
-    model.on("view", () => this.draw());
+    model.on("view", () => released(() => this.draw()));
     model.on("selection", (name) => this.selected(name));
     this.draw();
   }
@@ -165,7 +166,10 @@ class Graph {
     badge.addEventListener("pointerdown", (event) => event.stopPropagation());
     badge.addEventListener("click", (event) => {
       event.stopPropagation();
-      if (this.model.fresh) this.model.goTo(tie.from, tie.to);
+      // Pressed before a look and let go after it: its place may be another one by now.
+      const ties = [...(this.model.understood?.loads ?? []), ...(this.model.understood?.constraints ?? [])];
+      const now = ties.find((one) => one.path.join() === tie.path.join());
+      if (this.model.fresh && now) this.model.goTo(now.from, now.to);
     });
     return badge;
   }

@@ -22,7 +22,10 @@ export function remedies(model: Model, complaint: Complaint, path: Path): Remedy
   if (/_dot$|_ddot$/.test(name)) return [];
   const found: Remedy[] = [];
   const alone = nodeAt(model, path)?.source?.trim() === name;
-  const change = (operations: () => Operation[], what: string) => () => model.change(operations, `${name} is ${what} now`);
+  // Pressed when the name has become known meanwhile there is nothing left to do.
+  const unknown = (): boolean =>
+    (model.understood?.complaints ?? []).some((one) => one.code === complaint.code && model.understoodText?.slice(one.from, one.to) === name);
+  const change = (operations: () => Operation[], what: string) => () => model.change(() => (unknown() ? operations() : []), `${name} is ${what} now`);
   if (path[0] === "bodies" && path.length > 3 && MOVING.has(String(path[2]))) {
     found.push({ words: `${name} is a coordinate`, act: change(() => coordinate(model, path.slice(0, 2), name), "a coordinate") });
   }
@@ -40,8 +43,8 @@ export function unknownNames(model: Model): Map<string, Complaint> {
   return new Map(found.map((one) => [text.slice(one.from, one.to), one] as const).filter(([name]) => /^[A-Za-z]\w*$/.test(name) && !/_dot$|_ddot$/.test(name)));
 }
 
-/** Names that something new has brought along become parameters: whoever writes k in a spring means one. */
-export async function declareNew(model: Model, before: Map<string, Complaint>): Promise<void> {
+/** Names that something new has brought along become parameters: whoever writes k in a spring means one; `words`: of it. */
+export async function declareNew(model: Model, before: Map<string, Complaint>, words: string): Promise<void> {
   const names = [...unknownNames(model)].filter(([name]) => !before.has(name));
   const operations = names.flatMap(([name, complaint]) => {
     const path = pathAt(model.understood?.tree ?? null, complaint.from);
@@ -49,7 +52,7 @@ export async function declareNew(model: Model, before: Map<string, Complaint>): 
   });
   if (operations.length === 0) return;
   const list = names.map(([name]) => name).join(", ");
-  await model.change(operations, `${list} ${names.length === 1 ? "is a parameter" : "are parameters"} now, of the value 1 to begin with`);
+  await model.change(operations, `${words}; ${list} ${names.length === 1 ? "is a parameter" : "are parameters"} now, of the value 1 to begin with`);
 }
 
 /** Where in the description a place of the text is. */

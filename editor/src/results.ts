@@ -6,6 +6,7 @@ import { copying } from "./copying.js";
 import { exporting } from "./exporting.js";
 import { mapping } from "./mapping.js";
 import type { Model } from "./model.js";
+import { released } from "./pressing.js";
 import { sanitised } from "./sanitised.js";
 import type { Told } from "./seam.js";
 
@@ -85,7 +86,7 @@ class Shown {
     this.element.dataset["state"] = section.state;
     const words = { derived: `${section.seconds.toFixed(2)} s`, refused: "no result", failed: "failed" }[section.state];
     this.state.textContent = this.took = words;
-    this.fill();
+    released(() => this.fill());
   }
 
   private fill(): void {

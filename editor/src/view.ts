@@ -2,9 +2,12 @@
 
 import { Viewer } from "./picture/viewer.js";
 import type { Equilibria, Modes, Motion, Picture } from "./picture/types.js";
+import { speak } from "./picture/words.js";
 import "./view.css";
 
 interface Data {
+  /** What English words are in the language of the description. */
+  words: Record<string, string>;
   picture: Picture;
   motion: Motion | null;
   modes: Modes | Why | null;
@@ -20,6 +23,7 @@ const host = document.getElementById("viewer");
 const source = document.getElementById("picture-data");
 if (host && source) {
   const data = JSON.parse(source.textContent ?? "") as Data;
+  speak(data.words);
   const viewer = new Viewer(host);
   viewer.show(data.picture);
   const { equilibria, modes } = data;

@@ -72,6 +72,10 @@ class Algebra(Generic[S]):
     def square_root(self, x: S) -> S:
         raise NotImplementedError
 
+    def principal_root(self, x: S) -> S:
+        """The root that is not negative, where ``square_root`` may be of either sign."""
+        return self.square_root(x)
+
     def function(self, name: str, x: S) -> S:
         """exp, log, atan, sinh, cosh, tanh, abs or sign, the last two with their values at 0; or a ``Tabulated``."""
         raise NotImplementedError

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from types import MappingProxyType
 from typing import Any
 
 from flint import arb, fmpq
@@ -18,13 +19,22 @@ from mbsym.expressions.rates import ENDINGS, acceleration_name, velocity_name
 
 
 class Carrier:
-    """Evaluates ring polynomials in ``algebra``; ``environment`` gives the declared names' values there."""
+    """Evaluates ring polynomials in ``algebra``; ``environment`` gives the declared names' values there.
 
-    def __init__(self, ring: Ring, algebra: Algebra, environment: Mapping[str, Scalar]) -> None:
+    ``known``: values of generators, by their indices, that are not made of these.
+    """
+
+    def __init__(
+        self,
+        ring: Ring,
+        algebra: Algebra,
+        environment: Mapping[str, Scalar],
+        known: Mapping[int, Scalar] = MappingProxyType({}),
+    ) -> None:
         self.ring = ring
         self.algebra = algebra
         self.environment = environment
-        self._known: dict[int, Scalar] = {}
+        self._known: dict[int, Scalar] = dict(known)
         self._powers: dict[tuple[int, int], Scalar] = {}
         self._exact: dict[int, fmpq | None] = {}
 
@@ -113,7 +123,7 @@ class Carrier:
             case "reciprocal":
                 return self.algebra.reciprocal(self(g.argument))
             case "root":
-                return self.algebra.square_root(self(g.argument))
+                return self.algebra.principal_root(self(g.argument))
             case "function":
                 return self.algebra.function(g.name, self(g.argument))
             case "velocity":

@@ -7,6 +7,7 @@ from itertools import combinations
 from math import prod
 from typing import Any
 
+from mbsym.algebra.factors import occurring, rational_ratio
 from mbsym.algebra.matrices import PrimitiveRows
 from mbsym.algebra.ring import Polynomial, Ring
 
@@ -60,7 +61,8 @@ def independent(ring: Ring, columns: Sequence[Polynomial]) -> bool:
     """Whether the monomials in the columns are linearly independent functions: then ``kernel`` lacks nothing.
 
     That is known where nothing is adjoined but sines and cosines of coordinates, and roots of polynomials in plain
-    generators of which no product is a square: then each root doubles the field.
+    generators and cosines of which no product is a square: then each root doubles the field.  (With the sines a product
+    becomes a square if and only if it is one times some 1 - cos^2: a factor other than 1 - cos and 1 + cos forbids it.)
     """
     radicands = []
     used: set[int] = set()
@@ -71,7 +73,10 @@ def independent(ring: Ring, columns: Sequence[Polynomial]) -> bool:
         if g.kind in PLAIN or (g.kind in ("sine", "cosine") and g.name in ring.angles):
             continue
         inner = None if g.kind != "root" or g.argument is None else g.argument
-        if inner is None or any(d > 0 and ring.generators[j].kind not in PLAIN for j, d in enumerate(inner.degrees())):
+        if inner is None or any(
+            d > 0 and g.kind not in PLAIN and not (g.kind == "cosine" and g.name in ring.angles)
+            for g, d in zip(ring.generators, inner.degrees(), strict=True)
+        ):
             return False
         radicands.append(inner)
     if len(radicands) > MOST_ROOTS:
@@ -79,9 +84,17 @@ def independent(ring: Ring, columns: Sequence[Polynomial]) -> bool:
     for count in range(1, len(radicands) + 1):
         for chosen in combinations(radicands, count):
             _, factors = prod(chosen, start=ring.one).factor()
-            if all(power % 2 == 0 for _, power in factors):
+            if all(power % 2 == 0 or _is_of_a_half_angle(ring, factor) for factor, power in factors):
                 return False
     return True
+
+
+def _is_of_a_half_angle(ring: Ring, factor: Polynomial) -> bool:
+    """Whether it is 1 - cos or 1 + cos but for a constant: twice the square of the sine or cosine of half the angle."""
+    held = occurring([factor])
+    if len(held) != 1 or ring.generators[held[0]].kind != "cosine":
+        return False
+    return any(rational_ratio(factor, ring.one + sign * ring.context.gen(held[0])) is not None for sign in (1, -1))
 
 
 def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:

@@ -21,7 +21,7 @@ class PolynomialField:
     Generators of ``context`` are the ``parameters``, then the ``variables``.  ``denominator`` does not vanish where the
     field is regular (it holds det M, and what parameters are divided by).  ``relations`` vanish on all states and are
     kept by the field: the norm of a unit vector less 1, sin^2 + cos^2 - 1.  ``roots``: the parameters that are square
-    roots, each with its square in those before it.
+    roots, each with its square in those before it.  ``units``: variables that vanish in no state.
     """
 
     context: Any
@@ -31,6 +31,7 @@ class PolynomialField:
     denominator: Polynomial
     relations: tuple[Polynomial, ...] = ()
     roots: tuple[tuple[str, Polynomial], ...] = ()
+    units: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         if tuple(self.context.names()) != (*self.parameters, *self.variables):
@@ -74,12 +75,21 @@ class PolynomialField:
     def reduced(self, f: Polynomial) -> Polynomial:
         """A remainder of f by the relations: of degree 1 at most in what stands first in each.
 
-        The relations of unit vectors and angles share no leading variable, so it is zero if and only if f is in their
-        ideal.
+        Leading monomials, in the variables before the parameters, share no variable and have rational coefficients, so
+        it is zero if and only if f is in their ideal.
         """
-        for relation in self.relations:
+        if not self.relations:
+            return f
+        f = f.project_to_context(self._leading[0])
+        for relation in self._leading[1]:
             f = divmod(f, relation)[1]
-        return f
+        return f.project_to_context(self.context)
+
+    @cached_property
+    def _leading(self) -> tuple[Any, list[Polynomial]]:
+        """The context with the variables first, and the relations there."""
+        context = fmpq_mpoly_ctx.get([*self.variables, *self.parameters], self.context.ordering())
+        return context, [relation.project_to_context(context) for relation in self.relations]
 
     def at(self, values: Mapping[str, fmpq | int]) -> PolynomialField:
         """The field with numbers in place of some parameters, which are no generators any more.

@@ -785,20 +785,21 @@ class Ring(Algebra[Polynomial]):
 
         Raises NoClosedForm for what jumps there.
         """
+        slopes = self._derivatives[name]
+        if len(slopes) == 1 and not self._jumps:  # nothing but the variable itself holds it
+            return x.derivative(*slopes)
         total = self.zero
         degrees = x.degrees()
         if any(degrees[index] > 0 and name in moving for index, moving in self._jumps.items()):
             raise NoClosedForm("the derivative of a function with a jump")
-        for index, inner in self._derivatives[name].items():
+        for index, inner in slopes.items():
             if degrees[index] > 0:
                 total = total + self.times(x.derivative(index), inner)
         return self.reduce(total)
 
     def velocity_derivative(self, x: Polynomial, name: str) -> Polynomial:
         """Partial derivative with respect to the velocity of a coordinate."""
-        if len(self._derivatives[velocity_name(name)]) > 1 or self._jumps:
-            return self.derivative(x, velocity_name(name))
-        return x.derivative(self._index["velocity", name])
+        return self.derivative(x, velocity_name(name))
 
     def held(self, polynomials: Iterable[Polynomial]) -> set[int]:
         """The generators of polynomials, and those in what the adjoined ones among them hold."""

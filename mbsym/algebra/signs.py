@@ -201,7 +201,7 @@ class Signs:
                 normal, flip = _normal(factor)
                 direction *= flip
                 kept.append(normal)
-        nonzero = self._apart(nonzero)
+        nonzero = self.apart(nonzero)
         if not kept:
             return self._decided(direction > 0, tuple(nonzero))
         if direction < 0:
@@ -223,9 +223,9 @@ class Signs:
         if p == 0:
             return self._decided(False)
         factors = [_normal(f)[0] for f, _ in _factored(p)[1] if 0 in self._possible(f, -1)]
-        return self._decided(True, tuple(self._apart(factors)))
+        return self._decided(True, tuple(self.apart(factors)))
 
-    def _apart(self, nonzero: list[Polynomial]) -> list[Polynomial]:
+    def apart(self, nonzero: Sequence[Polynomial]) -> list[Polynomial]:
         """Those of the factors that may vanish where the others do not.
 
         A sum of squares such as (p - 2 A c w)^2 + A^2 w^2 (1 - c^2) is positive where 1 - c^2 is.
@@ -263,7 +263,15 @@ class Signs:
 
     @cached_property
     def _generator_signs(self) -> tuple[SignSet, ...]:
-        return tuple(SIGN_SETS[word] for word in self.words)
+        """Of each generator: what its word says, and what is assumed of it alone (c != 0 of c >= 0 is c > 0)."""
+        signs = [SIGN_SETS[word] for word in self.words]
+        for polynomial, relation in self.assumptions:
+            if len(polynomial) == 1 and polynomial.total_degree() == 1:
+                (generator,), unit = occurring([polynomial]), polynomial.leading_coefficient()
+                signs[generator] = (
+                    signs[generator] & _product(RELATIONS[relation], frozenset({_sign(unit)})) or signs[generator]
+                )
+        return tuple(signs)
 
     @cached_property
     def _known(self) -> tuple[tuple[Polynomial, SignSet], ...]:

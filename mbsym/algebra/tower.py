@@ -12,7 +12,7 @@ The cosine of a parameter may be a parameter itself, by the name ``cos(x)`` or `
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -90,6 +90,8 @@ class Tower(Algebra[Element]):
         self.context = fmpq_mpoly_ctx.get(names, Ordering.lex)
         gens = self.context.gens()
         self._roots, self._free = gens[:MOST_ROOTS][::-1], gens[MOST_ROOTS:]
+        #: Whether an element is known to be positive.
+        self.is_positive: Callable[[Element], bool] = lambda x: False
         #: s_i^2, polynomials in what stands before them.
         self.squares: list[fmpq_mpoly] = []
         #: Roots that are sines of parameters, and those: name and denominator.
@@ -179,6 +181,26 @@ class Tower(Algebra[Element]):
                 raise NoClosedForm(Message("more than [[most]] square roots", most=MOST_ROOTS), limit=Limit.FUNCTIONS)
             self.squares.append(inside)
         return self.made(outside * self._roots[self.squares.index(inside)], x.bottom)
+
+    def principal_root(self, x: Element) -> Element:
+        """The root of x that is not negative: |g| s/|bottom|, where x = g^2 s^2/bottom^2.
+
+        Raises NoClosedForm where the sign of g or of the denominator is not known.
+        """
+        outside, _ = self._apart(self.reduced(x.top * x.bottom))
+        root = self.square_root(x)
+        for p in (outside, x.bottom):
+            sign = Element(self, p, self._unit)
+            if p.is_constant() or self.is_positive(sign):
+                root = -root if p.is_constant() and p.leading_coefficient() < 0 else root
+            elif self.is_positive(-sign):
+                root = -root
+            else:
+                raise NoClosedForm(
+                    "the root of a square is taken of what may have either sign",
+                    remedy="say in 'assumptions' which sign it has, as a > b for sqrt((a - b)**2)",
+                )
+        return root
 
     def _apart(self, x: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
         """(g, h) with x = g^2 h, h without square factors but numbers; h = x where x holds a root."""

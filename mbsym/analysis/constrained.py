@@ -31,12 +31,12 @@ def constraints_of(analysis: Analysis) -> Constraints:
     """The rows, their ranks and what they leave free."""
     from mbsym.problems.constraints import constraints
 
-    if analysis.speed_form is None:
+    if not analysis.system.speeds:
         return constraints(analysis.scene)
     from mbsym.problems.constraints.in_speeds import constraints_in_speeds
 
     tied = analysis.tied_in_coordinates
-    return constraints_in_speeds(analysis.speed_form, analysis.scene, tied, programs_of(analysis))
+    return constraints_in_speeds(analysis.form, analysis.scene, tied, programs_of(analysis))
 
 
 def constraints_in_coordinates(analysis: Analysis) -> Constraints:
@@ -71,7 +71,7 @@ def programs_of(analysis: Analysis) -> ConstrainedPrograms:
     """M, f and the rows as straight-line code, in coordinates."""
     from mbsym.mechanics.constraints.programs import constrained_programs
 
-    tied = analysis.constraints if analysis.speed_form is None else analysis.tied_in_coordinates
+    tied = analysis.tied_in_coordinates if analysis.system.speeds else analysis.constraints
     kept = [(name.constraint, name.component) for name in tied.names]
     return constrained_programs(analysis.system.without_speeds, analysis.ring, kept)
 

@@ -46,22 +46,18 @@ if TYPE_CHECKING:
 
 def energy_of(analysis: Analysis) -> Energy:
     """T, U and their parts, in speeds where the system has some."""
-    if analysis.speed_form is None:
-        return energy.energy(analysis.scene)
-    from mbsym.problems.in_speeds import speeds
-
-    return speeds.energy(analysis.speed_form, analysis.scene)
+    return energy.energy(analysis.scene, analysis.form if analysis.system.speeds else None)
 
 
 def equations_of(analysis: Analysis) -> Equations:
     """The equations of motion: with constraints, in speeds, or Lagrange's."""
     if analysis.system.constraints:
         return constrained.equations_of(analysis)
-    if analysis.speed_form is None:
+    if not analysis.system.speeds:
         return equations.equations(analysis.scene, analysis.energy)
     from mbsym.problems.in_speeds import speeds
 
-    return speeds.equations(analysis.speed_form, analysis.scene)
+    return speeds.equations(analysis.form, analysis.scene)
 
 
 def stability_of(analysis: Analysis) -> Stability:
@@ -206,12 +202,12 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
     """x' = A x in speeds and positions."""
     from mbsym.problems import first_order
 
-    if analysis.speed_form is None:
+    if not analysis.system.speeds:
         why = NoResult("the system has no speeds of its own", "see problem 5", "no speeds", "no-speeds")
         raise Unavailable("first order", why)
     equations = cast("SpeedEquations", analysis.equations)
     reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
-    return first_order.first_order(analysis.speed_form, equations, analysis.equilibrium, reduced)
+    return first_order.first_order(analysis.form, equations, analysis.equilibrium, reduced)
 
 
 def told_of(analysis: Analysis) -> ToldSystem:
@@ -248,11 +244,11 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     """
     if analysis.system.constraints:
         return constrained.integrals_of(analysis)
-    if analysis.speed_form is not None:
+    if analysis.system.speeds:
         from mbsym.problems.in_speeds import speed_integrals
 
         equations = cast("SpeedEquations", analysis.equations)
-        return speed_integrals.integrals(analysis.speed_form, analysis.scene, analysis.energy, equations)
+        return speed_integrals.integrals(analysis.form, analysis.scene, analysis.energy, equations)
     try:
         return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
     except Failure as failure:
@@ -281,8 +277,7 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
 
 def analysis(source: Analysis) -> Analysis:
     """The analysis of the same system without speeds.  Raises Unavailable where det S vanishes, or may do so."""
-    form = source.speed_form
-    assert form is not None
+    form = source.form
     system = source.system.without_speeds
     ring = source.ring
     if system.motion:

@@ -108,13 +108,12 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     small = analysis.system.small
     if small is None:
         raise NoClosedForm("the description names no small parameter", remedy="add 'small parameter: eps'")
-    form = analysis.speed_form
     images = relations(analysis.parameters_scene)
     _refuse(analysis, small, values or {}, images)
     equations: Any = analysis.equations
     motion = _motion(analysis)
     steady: Iterable[Any] = () if isinstance(motion, str) else motion.values()
-    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, [*steady], images)
+    whole, transfer = vector_field(analysis.form, equations, [*steady], images)
     inside = [name for name in whole.variables if not name.isidentifier()]
     if inside:
         raise NoClosedForm(
@@ -141,7 +140,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
     there, known, root = _with_root(analysis, there, fast, (*fast, small.name, *dict(small.powers)))
-    velocities = () if form is not None else analysis.system.velocities
+    velocities = () if analysis.system.speeds else analysis.system.velocities
     names = tuple(there.field.context.names())
     found: list[tuple[Expansion, Root]] = []
     reasons: list[Failure] = []
@@ -353,7 +352,7 @@ def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
     if not analysis.system.motion:
         return Message("no unperturbed motion is given")
     try:
-        if analysis.speed_form is None:
+        if not analysis.system.speeds:
             scene, equilibrium = analysis.parameters_scene, analysis.equilibrium
             if equilibrium.impossible:
                 return Message("the given motion does not exist")
@@ -368,7 +367,7 @@ def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
 
 def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -> Mapping[str, Any]:
     """The variables on it.  Raises NoClosedForm where one of them varies."""
-    if analysis.speed_form is not None:
+    if analysis.system.speeds:
         return motion
     found = {}
     for name, k in zip(transfer.variables, transfer.places[len(transfer.parameters) :], strict=True):

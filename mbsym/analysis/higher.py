@@ -48,8 +48,11 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         result = replace(result, at_values=Judged(Outcome.UNDECIDED, Theorem.NONE, nothing))
     if isinstance(result.in_symbols, InSymbols):
         result = replace(result, in_symbols=_told_by_signs(result.in_symbols, analysis.signs))
+    balance = analysis.balance
     return replace(
         result,
+        linear=balance.exactly_linear,
+        linear_at_values=values is not None and balance.at(values).exactly_linear,
         first=first,
         everywhere=None if judged is None else decided(judged.verdict.word),
     )
@@ -141,7 +144,7 @@ def check(analysis: Analysis) -> Check | None:
         return None
     from mbsym.problems.normal_forms.result import symbols_agree
 
-    if analysis.speed_form is not None:
+    if analysis.system.speeds:
         analysis = analysis.in_coordinates
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
     word, said = found.first, found.at_values.outcome.value

@@ -45,7 +45,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     from mbsym.problems.invariant_sets.problem import invariant_sets
 
     count = len(analysis.system.coordinates)
-    if analysis.speed_form is None and count > MOST_ANGLES:
+    if not analysis.system.speeds and count > MOST_ANGLES:
         raise NoClosedForm(
             Message(
                 "[[count]] coordinates: without speeds of their own, families of integrals of at most "
@@ -57,8 +57,8 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
         )
     there = polynomial.setting(analysis)
     field = there.whole
-    lagrangian = analysis.speed_form is None
-    inside = [x for x in field.variables if x.startswith("exp(") or not (lagrangian or x.isidentifier())]
+    lagrangian = not analysis.system.speeds
+    inside = [x for x in field.variables if not (x.isidentifier() or (lagrangian and x.startswith(("sin(", "cos("))))]
     if inside:
         raise NoClosedForm(
             Message(

@@ -310,12 +310,12 @@ def _is_rate(analysis: Analysis, name: str, rate: Expression) -> None:
 
     Square roots are taken with either sign:  (f - q')(f_- - q') = 0.
     """
-    form = analysis.speed_form
+    form = analysis.form
     refusal = NoRate(
         Message("[[name]] is a coordinate, and its rate was not found to be this", name=name),
         remedy="give the integral a name that the description does not have",
     )
-    if form is None or form.by_quaternion:
+    if not analysis.system.speeds or form.by_quaternion:
         raise refusal
     ring = form.ring
     known = ring_environment(analysis.system, ring) | form.plainly
@@ -486,7 +486,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     images = relations(analysis.parameters_scene)
     names = analysis.system.coordinates
     weights = dict(small.powers)
-    in_coordinates = analysis.speed_form is None
+    in_coordinates = not analysis.system.speeds
     if in_coordinates and analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
         from mbsym.analysis.higher import ignorable
         from mbsym.problems.normal_forms.expansion import expansion
@@ -494,7 +494,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
         cyclic = ignorable(analysis)[1]
         jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
         return taylor_field(jets, order + 1), True
-    field = vector_field(analysis.system, analysis.ring, analysis.speed_form, equations, (), images)[0]
+    field = vector_field(analysis.form, equations, (), images)[0]
     for name in names:
         if weights.get(name) and any(f"({name}" in one for one in field.variables):
             raise NoClosedForm(

@@ -226,11 +226,6 @@ class Analysis(Stages):
 
         return SpeedForm(self.system, self.ring)
 
-    @property
-    def speed_form(self) -> SpeedForm | None:
-        """The same of a system that has speeds of its own; None where velocities are the coordinates' rates."""
-        return self.form if self.system.speeds else None
-
     @cached_property
     def in_coordinates(self) -> Analysis:
         """The same system in generalised velocities, over the same ring.
@@ -246,8 +241,8 @@ class Analysis(Stages):
 
         Without ``inputs`` these keep their values on the unperturbed motion.
         """
-        if self.speed_form is not None:
-            return self.speed_form.scene(bodies)
+        if self.system.speeds:
+            return self.form.scene(bodies)
         system = self.system if inputs else held(self.system)
         return Scene(system, self.ring, ring_environment(system, self.ring), self.ring, bodies=bodies)
 
@@ -296,7 +291,7 @@ class Analysis(Stages):
         knows=OF_MOTIONS,
     )
     state_space: Derived[Analysis, StateSpace] = Derived(
-        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=Knows.CONSTRAINTS
+        deriving.state_space_of, ("linearisation", "perturbed motion"), knows=OF_MOTIONS
     )
     judgeable = Derived["Analysis", Linearisation](approximation.judgeable, knows=OF_MOTIONS)
     balance = Derived["Analysis", Balance](deriving.balance_of, knows=OF_MOTIONS)

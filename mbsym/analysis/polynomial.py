@@ -100,17 +100,17 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     Raises NoClosedForm where they are no such field, ZeroDivisionError where it
     divides by zero at these numbers.
     """
-    form = analysis.speed_form
+    form, declared = analysis.form, analysis.system.speeds
     equations: Any = analysis.equations
     listed = analysis.integrals
-    listed = listed if form is None else tuple(_without_aside(form, equations.aside, one) for one in listed)
+    listed = tuple(_without_aside(form, equations.aside, one) for one in listed) if declared else listed
     also = [one.formula.polynomial for one in listed]
     images = relations(analysis.parameters_scene)
-    whole, transfer = vector_field(analysis.system, analysis.ring, form, equations, also, images, driven=driven)
+    whole, transfer = vector_field(form, equations, also, images, driven=driven)
     angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
     vectors: Any = [(angle, (f"sin{angle}", f"cos{angle}")) for angle in angles]
     exponentials = tuple(name for name in whole.variables if name.startswith("exp("))
-    if form is None:
+    if not declared:
         speeds: tuple[str, ...] = tuple(name for name in whole.variables if name not in exponentials)
         held = analysis.ring.dependencies(transfer.back(_product(whole)), analysis.system.coordinates)
         aside = tuple(name for name in analysis.system.coordinates if name not in held)
@@ -124,7 +124,7 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     speeds = tuple(name for name in speeds if name in whole.variables)
     alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
     found = [one for one in grouped_by if one]
-    apart = (exponentials,) if form is None else (*dict.fromkeys(found), *alone)
+    apart = (*dict.fromkeys(found), *alone) if declared else (exponentials,)
     kinds = tuple(x for x in (speeds, *apart) if x)
     follows = None
     if len(known) < len(listed):

@@ -115,11 +115,8 @@ class _Start:
     """The equations and integrals in a ring that has room for all names that come in."""
 
     def __init__(self, analysis: Analysis, asked: Reducing, formulas: Formulas | None, claims: Iterable[Claim]) -> None:
-        equations: Any = analysis.equations
         own = analysis.ring
-        field, there = vector_field(
-            analysis.system, own, analysis.speed_form, equations, (), relations(analysis.parameters_scene)
-        )
+        field, there = vector_field(analysis.form, analysis.equations, (), relations(analysis.parameters_scene))
         indices = there.places[len(there.parameters) :]
         self.system = analysis.system if formulas is None else formulas.system
         bases = dict.fromkeys(own.generators[k].name for k in indices)

@@ -80,11 +80,8 @@ def _kinematics(analysis: Analysis) -> Check | None:
 
 
 def _energy(analysis: Analysis) -> Check | None:
-    found, form = analysis.optional("energy"), analysis.speed_form
-    if found is None:
-        return None
-    names = analysis.system.velocities if form is None else [u.name for u in form.speeds]
-    return comparison.check_energy(analysis.oracles, found, names)
+    found = analysis.optional("energy")
+    return None if found is None else comparison.check_energy(analysis.oracles, found, found.speeds)
 
 
 def _closed(analysis: Analysis) -> Equations | None:
@@ -94,7 +91,7 @@ def _closed(analysis: Analysis) -> Equations | None:
 
 def _equations(analysis: Analysis) -> Check | None:
     closed = _closed(analysis)
-    if closed is not None and analysis.speed_form is not None:
+    if closed is not None and analysis.system.speeds:
         from mbsym.problems.in_speeds import speed_checks
         from mbsym.problems.in_speeds.speeds import SpeedEquations
 
@@ -108,11 +105,11 @@ def _program(analysis: Analysis) -> Check | None:
     if found is None:
         return None
     checked = comparison.check_program(analysis.oracles, found)
-    if analysis.speed_form is None or checked.failed:
+    if not analysis.system.speeds or checked.failed:
         return checked
     from mbsym.problems.in_speeds import speed_checks
 
-    in_speeds = speed_checks.check_program(analysis.oracles, analysis.speed_form)
+    in_speeds = speed_checks.check_program(analysis.oracles, analysis.form)
     return in_speeds if in_speeds.failed else checked
 
 
@@ -165,7 +162,7 @@ def _perturbed(analysis: Analysis) -> Check | None:
 
 def _first_order(analysis: Analysis) -> Check | None:
     """Only where somebody has asked for it."""
-    if analysis.speed_form is None or "first_order" not in analysis.derived:
+    if not analysis.system.speeds or "first_order" not in analysis.derived:
         return None
     found, linear = analysis.optional("first_order"), analysis.optional("linearisation")
     if found is None or linear is None:
@@ -176,7 +173,7 @@ def _first_order(analysis: Analysis) -> Check | None:
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
     reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
-    return first_order.check(analysis.speed_form, closed, found, linear, analysis.equilibrium, reduced)
+    return first_order.check(analysis.form, closed, found, linear, analysis.equilibrium, reduced)
 
 
 def _integrals(analysis: Analysis) -> Check | None:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.motion import relations
-from mbsym.problems.symmetries import Blocks, Symmetries, in_coordinates, in_speeds, symmetries
+from mbsym.problems.symmetries import Blocks, Symmetries, blocks, symmetries
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -27,14 +27,11 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
 
 def blocks_of(analysis: Analysis, values: Mapping[str, Fraction] | None = None) -> Blocks:
     """What conditions of symmetries are made of, with numbers in place of some parameters."""
-    ring, form = analysis.ring, analysis.speed_form
+    ring = analysis.ring
     numbers = {
         ring.index("parameter", name): ring.number(x)
         for name, x in (values or {}).items()
         if ring.has("parameter", name)
     }
     images = {k: ring.substitute(x, numbers) for k, x in relations(analysis.parameters_scene).items()} | numbers
-    equations: Any = analysis.equations
-    if form is None:
-        return in_coordinates(analysis.scene, analysis.energy, equations, images)
-    return in_speeds(form, analysis.energy, equations, images)
+    return blocks(analysis.form, analysis.scene, analysis.energy, analysis.equations, images)

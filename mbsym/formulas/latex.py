@@ -32,6 +32,8 @@ _LATIN = {
     "Mu": "M", "Nu": "N", "Omicron": "O", "Rho": "P", "Tau": "T", "Chi": "X",
 }  # fmt: skip
 _BRACKETS = (("(", ")"), (r"\bigl[", r"\bigr]"), (r"\bigl\{", r"\bigr\}"), (r"\Bigl(", r"\Bigr)"))
+#: The same about fractions.
+_HIGH_BRACKETS = ((r"\Bigl(", r"\Bigr)"), (r"\Bigl[", r"\Bigr]"), (r"\Bigl\{", r"\Bigr\}"), (r"\Bigl(", r"\Bigr)"))
 _DOTS = {"velocity": "dot", "acceleration": "ddot"}
 _COMMANDS = {"sine": r"\sin", "cosine": r"\cos"}
 #: A bracket of this length (names, numbers, signs; a column holds it) is never broken.
@@ -178,6 +180,7 @@ class LatexPrinter:
         self.names = latex_names(ring)
         self._atoms: dict[int, tuple[str, str]] = {}
         self._heights: dict[Sum, int] = {}
+        self._high: dict[Sum, bool] = {}
 
     def sum(self, shape: Sum, depth: int = 0, penalty: int = 0) -> str:
         """The terms, in ``depth`` brackets; where it may be broken, at this penalty."""
@@ -243,7 +246,8 @@ class LatexPrinter:
             return self.atom(factor.base, factor.exponent)
         if isinstance(factor.base, Wave):
             return self.wave(factor.base, factor.exponent)
-        opening, closing = _BRACKETS[min(self._height(factor.base), len(_BRACKETS)) - 1]
+        brackets = _HIGH_BRACKETS if self._is_high(factor.base) else _BRACKETS
+        opening, closing = brackets[min(self._height(factor.base), len(brackets)) - 1]
         raised = f"^{{{factor.exponent}}}" if factor.exponent != 1 else ""
         return f"{opening}{self._bracketed(factor.base, depth + 1)}{closing}{raised}"
 
@@ -269,6 +273,13 @@ class LatexPrinter:
             inner = (f.base for term in shape.terms for f in term.over)
             self._heights[shape] = 1 + max(map(self._height_of_base, inner), default=0)
         return self._heights[shape]
+
+    def _is_high(self, shape: Sum) -> bool:
+        """Whether fractions stand in it."""
+        if shape not in self._high:
+            inner = (f.base for term in shape.terms for f in term.over if isinstance(f.base, Sum))
+            self._high[shape] = any(term.under for term in shape.terms) or any(map(self._is_high, inner))
+        return self._high[shape]
 
     def _height_of_base(self, base: int | Wave | Sum) -> int:
         if isinstance(base, Sum):
@@ -335,7 +346,7 @@ def _joined(factors: Sequence[str]) -> str:
 
 
 #: Names of several letters, which must not run into their neighbours.
-_WORDS = (r"\mathit", r"\mathtt")
+_WORDS = (r"\mathit", r"\mathtt", r"\dot{\mathit", r"\ddot{\mathit")
 _FUNCTIONS = (r"\sin", r"\cos", r"\exp", r"\ln", r"\arctan", r"\operatorname{")
 
 

@@ -23,8 +23,9 @@ from mbsym.formulas.names import greek, parts
 from mbsym.formulas.shape import present
 from mbsym.formulas.tree import Factor, Product, Sum, Wave, angles_or, leaves
 
-#: Brackets with more symbols than this may be broken; those of coefficients, made of parameters, are kept longer.
-LONG_BRACKET, LONG_COEFFICIENT = 16, 36
+#: Brackets with more symbols than this, or of more letters, may be broken; those of coefficients, made of parameters,
+#: are kept longer.
+LONG_BRACKET, LONG_COEFFICIENT, WIDE_BRACKET = 16, 36, 30
 
 _LETTERS = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
@@ -318,7 +319,9 @@ class MathPrinter:
 
     def factor_pieces(self, factor: Factor) -> list[str]:
         """A long bracket in pieces; its brackets, in different pieces, do not grow, and the exponent is the last's."""
-        if not isinstance(factor.base, Sum) or leaves(factor.base) <= LONG_BRACKET:
+        if not isinstance(factor.base, Sum):
+            return [self.factor(factor)]
+        if leaves(factor.base) <= LONG_BRACKET and len(_TAG.sub("", self.sum(factor.base))) <= WIDE_BRACKET:
             return [self.factor(factor)]
         if self._constant(factor.base) and leaves(factor.base) <= LONG_COEFFICIENT:
             return [self.factor(factor)]
@@ -401,7 +404,10 @@ def _join(found: list[str], pieces: Sequence[str]) -> None:
     found.extend(pieces[1:])
 
 
-_WORD = re.compile(r"<mrow><m(sup><m)?i>|<mi( class=\"verbatim\")?>[^<]{2,}<|<m(sub|subsup|sup)><mi[^>]*>[^<]{2,}<")
+_TAG = re.compile("<[^>]*>")
+_WORD = re.compile(
+    r"<mrow><m(sup><m)?i>|<mi( class=\"verbatim\")?>[^<]{2,}<|(<m(sub|subsup|sup|over)[^>]*>)+<mi[^>]*>[^<]{2,}<"
+)
 
 
 def _times(before: str, after: str) -> str:

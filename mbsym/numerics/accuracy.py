@@ -32,12 +32,12 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available
-from mbsym.numerics.methods.interface import NOT_SMOOTH, STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import Meter, Working
 from mbsym.numerics.planning.sizes import AFFORDABLE, sizes_of_scene
 from mbsym.numerics.simulate import Trajectory
-from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, uneven
+from mbsym.numerics.trade.comparison import Comparison, Difference, Ended, compared, compared_at, filled, uneven
 from mbsym.numerics.trade.reference_search import BITS, solved_at
 
 #: The better run's tolerance beside the run's own, and how much smaller it has to be where nothing else differs.
@@ -175,10 +175,10 @@ def estimated(
                 why, left = Lacking.CUT, left - budget.spent
                 continue
             except Ended as ended:
-                if ended.breakdown.kind == NOT_SMOOTH:
+                if ended.breakdown.kind == Cause.NOT_SMOOTH:
                     left -= budget.spent
                     continue
-                if ended.breakdown.kind != STEP_LIMIT:
+                if ended.breakdown.kind != Cause.STEP_LIMIT:
                     return NoEstimate(Lacking.BREAKS_DOWN)
                 why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent
                 continue
@@ -286,7 +286,7 @@ def _testimony(
     setting, before = better.setting, inf
     try:
         run = method.start(dynamics, found.setting, scalar)
-        states = np.column_stack([run.state, run.fill(places[1:])])
+        states = filled(run, places)
         while True:
             truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
             apart = float(np.max(np.max(np.abs(states - truth), axis=1) / scales))
@@ -314,12 +314,8 @@ def _filled(witness: Method, dynamics: Dynamics, setting: Setting, scalar: str, 
     """The states (2n, m) of a run at increasing places from 0.  Raises Breakdown, Unusable, _TooDear."""
     with np.errstate(all="ignore"):
         run = witness.start(dynamics, setting, scalar)
-        budget.start(((run, witness.traits.name, scalar),))
-        states = [np.array(run.state)[:, None]]
-        for some in np.array_split(places[1:], LOOKS):
-            states.append(run.fill(some))
-            budget.reached(float(some[-1]))
-    return np.hstack(states)
+    budget.start(((run, witness.traits.name, scalar),))
+    return filled(run, places, LOOKS, budget.reached)
 
 
 def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
@@ -335,7 +331,7 @@ def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: st
         states[:, np.searchsorted(places, found.times[rows])] = found.states[:, rows]
         truth = solved_at(dynamics, places, PRECISELY, PRECISE_COST)
     except Breakdown as ended:
-        return NoEstimate(Lacking.FINEST if ended.kind == STEP_LIMIT else Lacking.BREAKS_DOWN)
+        return NoEstimate(Lacking.FINEST if ended.kind == Cause.STEP_LIMIT else Lacking.BREAKS_DOWN)
     names = (*dynamics.system.coordinates, *dynamics.system.velocities)
     scene = compared_at(places, states, truth, names, lambda times, x: sizes_of_scene(dynamics, times, x))
     against = Against("extrapolation", f"{BITS} bits", Setting(PRECISELY))

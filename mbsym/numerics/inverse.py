@@ -25,6 +25,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.program import Node, Program
+from mbsym.algebra.ring import Ring
 from mbsym.expressions.tree import Expression, add, differentiate, multiply
 from mbsym.mechanics.constraints.dynamics import conditions
 from mbsym.mechanics.kinematics import Scene
@@ -55,7 +56,8 @@ class InverseDynamics:
     """``inputs`` (k x m) by ``names`` at ``times`` (m); the motion there as ``coordinates``, ``velocities`` (n x m).
 
     ``residual`` (n x m) is B u - r, what is left of each equation; ``left`` the largest of them over all times, against
-    the size of the terms of the same equation over the whole motion, rounding apart.  ``rank`` (m) is that of B.
+    the size of the terms M q'', f and B u of the same equation over the whole motion, rounding apart.  ``rank`` (m) is
+    that of B.
     """
 
     system: System
@@ -103,12 +105,12 @@ def inverse_dynamics(
     if system.constraints:
         return inverse_constrained(system, motion, overrides, times)
     given = scenario(system, overrides, state=False)
-    program, states, needed = _program(system, given, motion)
+    program, states, needed, applied = _program(system, given, motion)
     inputs = [program.input(name) for name in system.input_names]
     slopes = jacobian(program, needed, inputs)
     check_linear(program, system, slopes)
     n, k = len(system.coordinates), len(inputs)
-    outputs = (*states, *needed, *(x for row in slopes for x in row))
+    outputs = (*states, *needed, *applied, *(x for row in slopes for x in row))
     code = Code(program, ("t", *system.input_names), outputs)
     at = np.vstack([times, np.zeros((k, len(times)))])
     found = kernel(code)(at)
@@ -118,10 +120,12 @@ def inverse_dynamics(
     finer = np.asarray(kernel(code, "extended")(at), dtype=float)
     noise = np.abs(finer - found)[3 * n : 4 * n].max(axis=1)
     moved, right = finer[: 3 * n], finer[3 * n : 4 * n]
-    columns = -finer[4 * n :].reshape(n, k, len(times))
+    columns = -finer[5 * n :].reshape(n, k, len(times))
     values, rank = _solved(columns, right)
     supplied = np.einsum("ikm,km->im", columns, values)
-    size = (np.abs(right) + np.einsum("ikm,km->im", np.abs(columns), np.abs(values))).max(axis=1)
+    forces = finer[4 * n : 5 * n]
+    terms = np.abs(right - forces) + np.abs(forces) + np.einsum("ikm,km->im", np.abs(columns), np.abs(values))
+    size = terms.max(axis=1)
     left = np.abs(supplied - right).max(axis=1)
     open_ = (left > ROUNDING * noise) & (left > FOLDED * max(1.0, float(size.max())))
     remaining = float((left[open_] / size[open_]).max(initial=0.0))
@@ -133,8 +137,8 @@ def inverse_dynamics(
 
 def _program(
     system: System, given: Scenario, motion: Mapping[str, Expression]
-) -> tuple[Program, list[Node], list[Node]]:
-    """A program of t and the inputs: (q, q', q''), and M q'' - f."""
+) -> tuple[Program, list[Node], list[Node], list[Node]]:
+    """A program of t and the inputs: (q, q', q''), M q'' - f, and -f alone."""
     program = bound(given)
     rates = {item.name: item.rate for item in system.prescribed}
     names = [*system.parameter_names, *rates, "t", "pi"]
@@ -151,9 +155,19 @@ def _program(
     everything = [*names, *system.coordinates, *system.velocities, *system.input_names]
     everything += [acceleration_name(name) for name in system.coordinates]
     environment = {name: program.input(name) for name in everything}
-    needed = residuals(Scene(system, program, environment, ring_of(system)))
     states = [chain[order] for order in range(3) for chain in lowered]
-    return program, states, [needed[name] for name in system.coordinates]
+    needed, applied = _with_forces(system, program, environment, ring_of(system))
+    return program, states, needed, applied
+
+
+def _with_forces(
+    system: System, program: Program, environment: Mapping[str, Node], ring: Ring
+) -> tuple[list[Node], list[Node]]:
+    """M q'' - f, and the same where q'' is zero."""
+    resting = {acceleration_name(name): program.number(0) for name in system.coordinates}
+    both = [residuals(Scene(system, program, x, ring)) for x in (environment, {**environment, **resting})]
+    needed, applied = ([found[name] for name in system.coordinates] for found in both)
+    return needed, applied
 
 
 def rate_of(expression: Expression, rates: Mapping[str, Expression]) -> Expression:
@@ -208,14 +222,15 @@ def inverse_constrained(
     given = scenario(system, overrides, state=False)
     rows = _Rows(system, given)
     states = rows.followed(_Given(system, given, motion), times)
-    needed, columns, masses = _equations(system, given, states, times)
+    needed, applied, columns, masses = _equations(system, given, states, times)
     _, _, _, partials = rows.at(times, states)
     n, k, m = len(system.coordinates), len(system.input_names), len(times)
     values, rank = np.zeros((k, m)), np.zeros(m, dtype=np.int64)
     residual, left, size = np.zeros((n, m)), 0.0, 0.0
     for place in range(m):
         lower = _root(masses[:, :, place])
-        right, own, ties = (np.linalg.solve(lower, x[..., place]) for x in (needed, columns, _transposed(partials)))
+        vectors = (needed, applied, columns, _transposed(partials))
+        right, forces, own, ties = (np.linalg.solve(lower, x[..., place]) for x in vectors)
         free = _beside(ties)
         scales = np.linalg.norm(own, axis=0)
         scales = np.where(scales > 0, scales, 1.0)
@@ -224,7 +239,7 @@ def inverse_constrained(
         rest = free.T @ (free @ (own @ values[:, place] - right))
         residual[:, place] = lower @ rest
         left = max(left, float(np.linalg.norm(rest)))
-        size = max(size, float(np.linalg.norm(right)), float(np.linalg.norm(own @ values[:, place])))
+        size = max(size, *(float(np.linalg.norm(x)) for x in (right - forces, forces, own @ values[:, place])))
     remaining = left / size if size > 0 else 0.0
     return InverseDynamics(
         system, system.input_names, times, values, states[:n], states[n : 2 * n], states[2 * n :],
@@ -394,24 +409,24 @@ class _Rows:
                 raise ValueError(f"at t = {t:.9g} the motion does not satisfy {name.label}{what}")
 
 
-def _equations(system: System, given: Scenario, states: Any, times: Array) -> tuple[Any, Any, Any]:
-    """(M q'' - f at u = 0 (n, m), B (n, k, m), M (n, n, m))."""
+def _equations(system: System, given: Scenario, states: Any, times: Array) -> tuple[Any, Any, Any, Any]:
+    """(M q'' - f at u = 0 (n, m), -f (n, m), B (n, k, m), M (n, n, m))."""
     program: Program = bound(given)
     n, k = len(system.coordinates), len(system.input_names)
     moving = [*system.coordinates, *system.velocities, *(acceleration_name(name) for name in system.coordinates)]
     names = [*system.parameter_names, *(item.name for item in system.prescribed), "t", "pi", *moving]
     environment = {name: program.input(name) for name in (*names, *system.input_names)}
     ring = ring_of(system)
-    found = residuals(Scene(system, program, environment, ring))
-    needed = [found[name] for name in system.coordinates]
+    needed, applied = _with_forces(system, program, environment, ring)
     slopes = jacobian(program, needed, [program.input(name) for name in system.input_names])
     check_linear(program, system, slopes)
     tree = programs(system, ring, open_tree=True)
     masses = substituted(tree.program, [x for row in tree.mass_matrix for x in row], program)
-    code = Code(program, ("t", *moving, *system.input_names), (*needed, *(x for row in slopes for x in row), *masses))
+    outputs = (*needed, *applied, *(x for row in slopes for x in row), *masses)
+    code = Code(program, ("t", *moving, *system.input_names), outputs)
     values = np.asarray(kernel(code)(np.vstack([times, states, np.zeros((k, len(times)))])), dtype=float)
     if not np.isfinite(values).all():
         first = times[~np.isfinite(values).all(axis=0)][0]
         raise ValueError(f"at t = {first:.9g} what the motion needs is infinite or no number")
-    columns = -values[n : n + n * k].reshape(n, k, -1)
-    return values[:n], columns, values[n + n * k :].reshape(n, n, -1)
+    columns = -values[2 * n : 2 * n + n * k].reshape(n, k, -1)
+    return values[:n], values[n : 2 * n], columns, values[2 * n + n * k :].reshape(n, n, -1)

@@ -17,16 +17,9 @@ from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.methods.interface import (
-    BLOW_UP,
     LARGEST,
-    OUT_OF_REACH,
-    SINGULAR,
-    SINGULAR_CONSTRAINTS,
-    STEP_LIMIT,
-    STOPPED,
-    STUCK,
-    UNDEFINED,
     Breakdown,
+    Cause,
     Method,
     Passed,
     Run,
@@ -278,7 +271,10 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
         found = diagnosed(dynamics, trouble, past)
-        if found.kind in (STEP_LIMIT, STUCK, STOPPED, SINGULAR_CONSTRAINTS, OUT_OF_REACH) and found.time > past[0, -1]:
+        if (
+            found.kind in (Cause.STEP_LIMIT, Cause.STUCK, Cause.STOPPED, Cause.SINGULAR_CONSTRAINTS, Cause.OUT_OF_REACH)
+            and found.time > past[0, -1]
+        ):
             # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
             rows.keep(np.array([found.time]), np.asarray(found.state)[:, None])
     except Breakdown as undefined:
@@ -318,13 +314,13 @@ def _checked(rows: Any, times: Any, bound: float) -> None:
     message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
     if np.any(np.isnan(state)):
         message = Message("a coordinate or velocity is not a number")
-    raise Breakdown(BLOW_UP, message, float(times[first]), np.array(state, dtype=float), rows[:, :first])
+    raise Breakdown(Cause.BLOW_UP, message, float(times[first]), np.array(state, dtype=float), rows[:, :first])
 
 
 def _cut(run: Integrated, first: int) -> Integrated:
     """What is left of a run whose energy has no value from a sample on: it went where the model says nothing."""
     message = "the energy is no real number from here on: a root or a logarithm has left its domain"
-    ended = Breakdown(UNDEFINED, message, float(run.times[first]), run.states[:, first].astype(float))
+    ended = Breakdown(Cause.UNDEFINED, message, float(run.times[first]), run.states[:, first].astype(float))
     kept = max(1, first)
     return replace(run, times=run.times[:kept], states=run.states[:, :kept], breakdown=ended)
 
@@ -392,21 +388,21 @@ def wrong_at_once(dynamics: Dynamics, initial: Any, begin: float = 0.0) -> Break
     """What is wrong with the initial state itself: there the right-hand side must exist."""
     if not np.all(np.abs(initial) < LARGEST_START):
         beyond = Message("the initial state itself is beyond [[bound]]", bound=f"{LARGEST_START:g}")
-        return Breakdown(BLOW_UP, beyond, begin, initial)
+        return Breakdown(Cause.BLOW_UP, beyond, begin, initial)
     lost = _lost_rank(dynamics, initial) if begin == 0 else ""
     if lost:
-        return Breakdown(SINGULAR_CONSTRAINTS, lost, begin, initial)
+        return Breakdown(Cause.SINGULAR_CONSTRAINTS, lost, begin, initial)
     point = np.concatenate(([begin], initial))
     with np.errstate(all="ignore"):
         rates = compiled_kernel(dynamics, "right_hand_side")(point)
     singular = _vanishing(dynamics, begin, initial, _neighbours(dynamics, initial, begin), SINGULAR_AT_ONCE)
     if singular:
-        return Breakdown(SINGULAR, singular, begin, initial)
+        return Breakdown(Cause.SINGULAR, singular, begin, initial)
     if np.all(np.isfinite(rates)):
         return None
     if np.any(np.isnan(rates)):
-        return Breakdown(UNDEFINED, "the accelerations at the initial state are no numbers", begin, initial)
-    return Breakdown(BLOW_UP, "the accelerations at the initial state are not finite", begin, initial)
+        return Breakdown(Cause.UNDEFINED, "the accelerations at the initial state are no numbers", begin, initial)
+    return Breakdown(Cause.BLOW_UP, "the accelerations at the initial state are not finite", begin, initial)
 
 
 def _lost_rank(dynamics: Dynamics, initial: Any) -> str:
@@ -442,23 +438,23 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
     ``past`` holds earlier (t, q, q') in columns: a pivot is small compared with what it was, whatever its units.
     """
     state = np.asarray(found.state, dtype=float)
-    if found.kind in (SINGULAR_CONSTRAINTS, BLOW_UP):
-        at, last = (float(past[0, -1]), past[1:, -1]) if found.kind == BLOW_UP else (found.time, state)
+    if found.kind in (Cause.SINGULAR_CONSTRAINTS, Cause.BLOW_UP):
+        at, last = (float(past[0, -1]), past[1:, -1]) if found.kind == Cause.BLOW_UP else (found.time, state)
         if not _goes_on(dynamics, at, last, float(past[0, 0])):
             message = "no position was found that keeps the constraints behind this one: velocities grow without bound"
-            return Breakdown(OUT_OF_REACH, message, at, last)
-    if found.kind not in (BLOW_UP, STUCK):
+            return Breakdown(Cause.OUT_OF_REACH, message, at, last)
+    if found.kind not in (Cause.BLOW_UP, Cause.STUCK):
         return found
     message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
     if message:
-        return Breakdown(SINGULAR, message, found.time, found.state)
+        return Breakdown(Cause.SINGULAR, message, found.time, found.state)
     if _undefined(dynamics, found.time, state):
         message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
-        return Breakdown(UNDEFINED, message, found.time, found.state)
+        return Breakdown(Cause.UNDEFINED, message, found.time, found.state)
     bound = bound_of(past[1:, 0])
     if not np.all(np.abs(state) < bound):
         message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
-        return Breakdown(BLOW_UP, message, found.time, found.state)
+        return Breakdown(Cause.BLOW_UP, message, found.time, found.state)
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from mbsym.numerics.conservation import EVENLY, LARGEST_CHANGES
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED
-from mbsym.numerics.methods.interface import UNDEFINED, Breakdown, Method, Setting, up_to
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, up_to
 from mbsym.numerics.simulate import Trajectory, allowed_apart, fallen, followed, raw_energies
 
 #: (t, q, q') in columns -> further quantities by name, each of shape (m,).
@@ -115,7 +115,7 @@ class _Recorder:
         if not np.all(defined):
             first = int(np.argmin(defined))
             message = "the energy is no real number from here on: a root or a logarithm has left its domain"
-            raise Breakdown(UNDEFINED, message, float(points[0, first]), rows[:, first].astype(float))
+            raise Breakdown(Cause.UNDEFINED, message, float(points[0, first]), rows[:, first].astype(float))
 
     def past(self) -> Any:
         places = _evenly(self.count, SHOWN)

@@ -15,7 +15,7 @@ import numpy as np
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.events import BATCH, Occurrences, Watcher
 from mbsym.numerics.events.surfaces import Event
-from mbsym.numerics.methods.interface import STOPPED, Breakdown, Method, Passed, Piece, Run, Setting, met_by
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Passed, Piece, Run, Setting, met_by
 from mbsym.numerics.methods.nested import states_on
 from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.simulate import Trajectory, least_pivot, simulate
@@ -150,7 +150,7 @@ class WatchedRun:
         assert ended is not None
         self.time, self.state = ended.time, ended.state
         event = self.watcher.events[ended.event]
-        raise Breakdown(STOPPED, event.text, ended.time, ended.state, filled)
+        raise Breakdown(Cause.STOPPED, event.text, ended.time, ended.state, filled)
 
 
 # What a run does between rows that are far apart: the same run at the ends of its steps and midway between them.

@@ -20,6 +20,7 @@ Example:
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
@@ -27,10 +28,16 @@ from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
 
+if TYPE_CHECKING:
+    from mbsym.mechanics.speeds import SpeedForm
+
 
 @dataclass(frozen=True, repr=False)
 class Energy(Shown):
-    """``A2`` is n x n and symmetric, ``A1`` has n entries; ``cyclic`` lists coordinates and prescribed quantities."""
+    """``A2`` is n x n and symmetric, ``A1`` has n entries; ``cyclic`` lists coordinates and prescribed quantities.
+
+    ``speeds``: what A2 and A1 belong to, velocities or speeds of their own.
+    """
 
     kinetic_energy: Formula
     A2: Matrix
@@ -38,6 +45,7 @@ class Energy(Shown):
     A0: Formula
     force_function: Formula
     cyclic: tuple[str, ...]
+    speeds: tuple[str, ...]
 
     @property
     def terms(self) -> int:
@@ -45,27 +53,28 @@ class Energy(Shown):
         return self.kinetic_energy.terms + self.force_function.terms
 
 
-def energy(scene: Scene) -> Energy:
-    """T, split by powers of the velocities, and U (scene over the ring).
+def energy(scene: Scene, form: SpeedForm | None = None) -> Energy:
+    """T, split by powers of the velocities (of the speeds of ``form``: A2 and A1 in their order), and U.
+
+    The scene is over the ring.  No speed is said to be cyclic: L need not contain a quasi-coordinate, there is none.
 
     Raises NoClosedForm when T outgrows the budget of terms.
     """
-    ring = scene.ring
-    names = scene.system.coordinates
-    kinetic = kinetic_energy(scene)
-    potential = force_function(scene)
-    at_rest = {ring.index("velocity", name): ring.zero for name in names}
-    momenta = [ring.velocity_derivative(kinetic, name) for name in names]
-    quadratic = [[ring.velocity_derivative(p, name) for name in names] for p in momenta]
-    linear = [ring.substitute(p, at_rest) for p in momenta]
-    constant = ring.substitute(kinetic, at_rest)
+    ring, names = scene.ring, scene.system.velocities
+    kinetic, potential = kinetic_energy(scene), force_function(scene)
+    at_rest = {ring.index("velocity", name): ring.zero for name in scene.system.coordinates}
+    if form is not None:
+        kinetic, potential = form.shortened(kinetic), form.shortened(potential)
+        names, at_rest = tuple(u.name for u in form.speeds), {u.index: ring.zero for u in form.speeds}
+    momenta = [ring.derivative(kinetic, name) for name in names]
     return Energy(
         kinetic_energy=Formula(ring, kinetic),
-        A2=Matrix.of(ring, quadratic),
-        A1=column(ring, linear),
-        A0=Formula(ring, constant),
+        A2=Matrix.of(ring, [[ring.derivative(p, name) for name in names] for p in momenta]),
+        A1=column(ring, [ring.substitute(p, at_rest) for p in momenta]),
+        A0=Formula(ring, ring.substitute(kinetic, at_rest)),
         force_function=Formula(ring, potential),
-        cyclic=_cyclic(scene, ring, kinetic, potential),
+        cyclic=_cyclic(scene, ring, kinetic, potential) if form is None else (),
+        speeds=names,
     )
 
 

@@ -35,7 +35,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.formulas.formula import Column, Matrix, Shown, column
+from mbsym.formulas.formula import Column, Formula, Matrix, Shown, column
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.problems.energy import Energy
@@ -63,15 +63,21 @@ class Equations(Shown):
         """Whether they are in speeds of their own (``in_speeds.speeds``), not in generalised velocities."""
         return False
 
-    def equalities(self, names: Sequence[str]) -> Column:
-        """(M q'' - f)_i, which vanish along every motion of the open tree; ``names`` are those of the coordinates."""
-        ring = self.forcing[0].ring
+    @property
+    def products(self) -> Sequence[tuple[tuple[str, tuple[str, ...]], tuple[str, tuple[str, ...]]]]:
+        """Pairs of unit vectors or quaternions, each with its components, whose product is known."""
+        return ()
+
+    def equality(self, i: int, names: Sequence[str]) -> Formula:
+        """(M q'' - f)_i, which vanishes along every motion of the open tree; ``names`` are those of the coordinates."""
+        ring = self.forcing[i].ring
         rates = [ring.generator("acceleration", name) for name in names]
-        found = []
-        for row, force in zip(self.mass_matrix, self.forcing, strict=True):
-            inertia = sum((ring.times(x.polynomial, rate) for x, rate in zip(row, rates, strict=True)), ring.zero)
-            found.append(ring.reduce(inertia - force.polynomial))
-        return column(ring, found)
+        inertia = ring.dot(self.mass_matrix.polynomials[i], rates)
+        return Formula(ring, ring.reduce(inertia - self.forcing[i].polynomial))
+
+    def equalities(self, names: Sequence[str]) -> Column:
+        """The same of all rows."""
+        return tuple(self.equality(i, names) for i, _ in enumerate(self.forcing))
 
     @property
     def terms(self) -> int:

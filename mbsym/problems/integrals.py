@@ -154,15 +154,6 @@ def total_rate(scene: Scene, x: Polynomial) -> Polynomial:
     return ring.reduce(total)
 
 
-def residual(scene: Scene, equations: Equations, i: int) -> Polynomial:
-    """E_i = (M q'' - f)_i."""
-    ring, names = scene.ring, scene.system.coordinates
-    total = -equations.forcing[i].polynomial
-    for j, name in enumerate(names):
-        total = total + equations.mass_matrix[i, j].polynomial * ring.generator("acceleration", name)
-    return ring.reduce(total)
-
-
 def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
     ring, names = scene.ring, scene.system.coordinates
     momenta = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
@@ -170,9 +161,7 @@ def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> I
     power = ring.dot(momenta, speeds)
     lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
     integral = ring.reduce(power - lagrangian)
-    multiplied = ring.zero
-    for i, speed in enumerate(speeds):
-        multiplied = multiplied + speed * residual(scene, equations, i)
+    multiplied = ring.dot(speeds, [x.polynomial for x in equations.equalities(names)])
     power = ring.reduce(total_rate(scene, integral) - multiplied)
     if ring.is_zero(power):
         yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), Certainty.PROVED)
@@ -209,10 +198,12 @@ def _work(scene: Scene, power: Polynomial) -> Polynomial | None:
 
 
 def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
-    ring = scene.ring
-    for i, name in enumerate(scene.system.coordinates):
+    ring, names = scene.ring, scene.system.coordinates
+    for i, name in enumerate(names):
         momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
-        if name in energy.cyclic and ring.is_zero(total_rate(scene, momentum) - residual(scene, equations, i)):
+        if name in energy.cyclic and ring.is_zero(
+            total_rate(scene, momentum) - equations.equality(i, names).polynomial
+        ):
             yield Integral(
                 Message("momentum of [[name]]", name=name),
                 "cyclic momentum",
@@ -253,18 +244,22 @@ def _momenta(
             others = [*known, *(item.formula.polynomial for item in found)]
             wanted = (kind, axis) in conserved and _is_new(formula, others)
             if wanted and is_conserved(scene, equations, formula):
-                name = (
-                    Message("angular momentum about axis [[axis]]", axis=axis)
-                    if kind == "angular momentum"
-                    else Message("linear momentum along axis [[axis]]", axis=axis)
-                )
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
                 if status is Certainty.VERIFIED and scene.ring.kinked:
                     continue  # a force that comes late vanishes at every state before
-                found.append(Integral(name, kind, str(axis), Formula(scene.ring, formula), status))
+                found.append(
+                    Integral(momentum_title(kind, axis), kind, str(axis), Formula(scene.ring, formula), status)
+                )
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return found
+
+
+def momentum_title(kind: str, axis: int) -> Message:
+    """What a component of a momentum of the whole system is called."""
+    if kind == "angular momentum":
+        return Message("angular momentum about axis [[axis]]", axis=axis)
+    return Message("linear momentum along axis [[axis]]", axis=axis)
 
 
 def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
@@ -364,10 +359,10 @@ def is_proved(scene: Scene, equations: Equations, formula: Polynomial) -> bool:
     """dI/dt = sum mu_i E_i as polynomials, with simple multipliers or with those of ``remainder``."""
     multipliers = _simple_multipliers(scene, equations, formula)
     if multipliers is not None:
-        left = total_rate(scene, formula)
+        left, names = total_rate(scene, formula), scene.system.coordinates
         for i, multiplier in enumerate(multipliers):
             if not multiplier.is_zero():
-                left = left - scene.ring.times(multiplier, residual(scene, equations, i))
+                left = left - scene.ring.times(multiplier, equations.equality(i, names).polynomial)
         if scene.ring.is_zero(left):
             return True
     left = remainder(scene, equations, formula)
@@ -454,15 +449,13 @@ def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polyno
 def rate_on_motion(scene: Scene, equations: Equations, formula: Polynomial) -> tuple[Polynomial, Polynomial] | None:
     """(det(M) dI/dt on the equations of motion, det(M)); None where that is too long to be formed."""
     ring, names = scene.ring, scene.system.coordinates
-    n = len(names)
-    if n > MOST_COORDINATES or len(formula) > MOST_TERMS or equations.mass_matrix.terms > MOST_TERMS:
+    if len(names) > MOST_COORDINATES or len(formula) > MOST_TERMS or equations.mass_matrix.terms > MOST_TERMS:
         return None
     mass = [list(row) for row in equations.mass_matrix.polynomials]
     slopes = [ring.velocity_derivative(formula, name) for name in names]
     adjoint = adjugate(mass, partial(determinant, ring))
     whole = ring.dot(mass[0], [row[0] for row in adjoint])
     multipliers = [ring.dot(slopes, row) for row in adjoint]
-    left = ring.times(whole, total_rate(scene, formula))
-    for i in range(n):
-        left = left - ring.times(multipliers[i], residual(scene, equations, i))
+    rows = [x.polynomial for x in equations.equalities(names)]
+    left = ring.times(whole, total_rate(scene, formula)) - ring.dot(multipliers, rows)
     return ring.reduce(left), ring.reduce(whole)

@@ -92,12 +92,11 @@ def groups(scene: Scene, equations: Equations | SpeedEquations) -> Groups:
     """
     made = _Equations(scene.ring, relations(scene))
     coordinates = scene.system.coordinates
+    columns = [made.of_speed(name) for name in scene.system.velocities]
     if isinstance(equations, SpeedEquations):
         columns = [made.of_speed(name) for name in equations.speeds]
         coordinates = (*coordinates, *(name for name in equations.speeds if scene.ring.has("coordinate", name)))
         made.kinematic(scene, equations)
-    else:
-        columns = [{("coordinate", name): Fraction(1), TIME: Fraction(-1)} for name in coordinates]
     for i, (row, force) in enumerate(zip(equations.mass_matrix.polynomials, equations.forcing, strict=True)):
         made.equal(force.polynomial, {("equation", i): Fraction(1)})
         for column, entry in zip(columns, row, strict=True):

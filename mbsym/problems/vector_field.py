@@ -5,8 +5,9 @@
 Variables are the velocities or speeds u (under constraints in velocities those that are independent, in the equations
 without multipliers), and what X holds of positions, by itself or in functions: coordinates, unit vectors and
 quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
-relation between those whose exponents are dependent; phases that are driven at a rate.  Each variable brings in what
-its own derivative holds.  Positions on which nothing depends are left out.
+relation between those whose exponents are dependent; square roots, r^2 = p, r' = r p'/(2 p), and with one of them alone
+1/p; phases that are driven at a rate.  Each variable brings in what its own derivative holds.  Positions on which
+nothing depends are left out.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from typing import TYPE_CHECKING, Any
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpz_mat
 
 from mbsym.algebra.base import Lowering
-from mbsym.algebra.factors import occurring
+from mbsym.algebra.factors import occurring, rational_ratio
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.kernel import independent
 from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.ring import Polynomial, Ring
@@ -28,9 +30,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import ring_environment
-from mbsym.model.system import System
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speeds import SpeedEquations
 
 if TYPE_CHECKING:
     from mbsym.problems.constraints.motion import Embedded
@@ -42,9 +42,7 @@ SINGULAR = "the mass matrix is singular everywhere, so that the equations do not
 
 
 def vector_field(
-    system: System,
-    ring: Ring,
-    form: SpeedForm | None,
+    form: SpeedForm,
     equations: Equations,
     also: Sequence[Polynomial] = (),
     images: Mapping[int, Polynomial] = NOTHING,
@@ -56,8 +54,8 @@ def vector_field(
     dependent ones; phases are variables where they may be ``driven``.  Raises NoClosedForm where M is singular, and
     where the time, inputs, roots or functions other than exponentials occur.
     """
-    state = _State(system, ring, form, equations, images, driven)
-    images = state.images
+    state = _State(form, equations, images, driven)
+    images, ring = state.images, form.ring
     variables = state.variables()
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
@@ -82,6 +80,7 @@ def vector_field(
         tuple(moved),
         denominator,
         tuple(map(transfer, relations)),
+        units=frozenset(name for k, name in places.items() if state.is_unit(k)),
     )
     return field, transfer
 
@@ -89,42 +88,62 @@ def vector_field(
 class _State:
     """Generators of the ring as variables: how each moves, how it is called, what ties it to others."""
 
-    def __init__(
-        self,
-        system: System,
-        ring: Ring,
-        form: SpeedForm | None,
-        equations: Equations,
-        images: Mapping[int, Polynomial],
-        driven: bool,
-    ) -> None:
-        self.system, self.ring, self.form, self.equations = system, ring, form, equations
-        told, tied = _free(system, ring, form, equations)
+    def __init__(self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool) -> None:
+        system, ring = form.system, form.ring
+        self.ring, self.equations = ring, equations
+        free, tied = _free(form, equations)
         self.images, self.driven = {**images, **tied}, driven
-        mass, forcing = told.mass_matrix.polynomials, [x.polynomial for x in told.forcing]
+        mass, forcing = free.mass_matrix.polynomials, [x.polynomial for x in free.forcing]
         whole = determinant(ring, mass)
         if ring.vanishes(whole):
             raise NoClosedForm(SINGULAR)
         self.determinant, *scaled = (put_in(ring, p, images) for p in (whole, *cramer(ring, mass, forcing)))
-        if form is None:
-            self.unknowns = {ring.index("velocity", name): f"{name}_dot" for name in system.coordinates}
-            self.rates = {name: ring.generator("velocity", name) for name in system.coordinates}
-        else:
-            self.unknowns = {u.index: u.name for u in form.speeds}
-            self.rates = dict(form.rates)
-        self.unknowns = {k: name for k, name in self.unknowns.items() if k not in tied}
-        self.rates = {name: put_in(ring, rate, tied) for name, rate in self.rates.items()}
+        self.unknowns = {u.index: u.name for u in form.speeds if u.index not in tied}
+        self.rates = {name: put_in(ring, rate, tied) for name, rate in form.rates.items()}
         self.accelerations = dict(zip(self.unknowns, scaled, strict=True))
         lower = Lowering(ring, ring_environment(system, ring))
         self.rates |= {item.name: lower(item.rate) for item in system.prescribed if driven}
 
     @property
     def kept(self) -> list[int]:
-        """Reciprocals of exponentials: variables, and no denominators."""
+        """Reciprocals that are variables, and no denominators: of exponentials, and of what stands under a root."""
         ring = self.ring
-        return [
-            k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal" and self._exponent(k) is not None
-        ]
+        reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
+        return [*(k for k in reciprocals if self._exponent(k) is not None), *self._inverse]
+
+    @property
+    def _inverse(self) -> list[int]:
+        """1/p, where p stands under the only root and its leading coefficient is 1, so that 1/p leads a relation."""
+        ring = self.ring
+        squares = [ring.generators[k].argument for k in range(ring.spare) if self._is_root(k)]
+        if len(squares) != 1 or any(
+            g.kind == "parameter" and power for g, power in zip(ring.generators, squares[0].monomial(0), strict=True)
+        ):
+            return []
+        reciprocals = (k for k in range(ring.spare) if ring.generators[k].kind == "reciprocal")
+        return [k for k in reciprocals if rational_ratio(ring.generators[k].argument, squares[0]) is not None]
+
+    def is_unit(self, k: int) -> bool:
+        """Whether it vanishes in no state: an exponential, 1/p, and the root of a p that the equations divide by."""
+        return k in self.kept or self._exponent(k) is not None or (self._is_root(k) and bool(self._inverse))
+
+    def _is_root(self, k: int) -> bool:
+        """Whether it is the square root of a polynomial in positions, cosines and parameters."""
+        g = self.ring.generators[k]
+        return g.kind == "root" and self._is_of_positions(g.argument, ("coordinate", "cosine"))
+
+    def _is_of_positions(self, argument: Polynomial, kinds: Collection[str] = ("coordinate",)) -> bool:
+        """Whether it moves, and holds what is of these ``kinds``, parameters and reciprocals of parameters alone."""
+        ring, held = self.ring, occurring([argument])
+        tied = {name for sides in self.equations.products for _, names in sides for name in names}
+        moved = [k for k in held if ring.generators[k].kind in kinds and self._follows(k)]
+        moved = [k for k in moved if ring.generators[k].name not in tied]  # of unit vectors squares are sums of others
+        fixed = {k for k in ring.held([argument]) if ring.generators[k].kind in ("parameter", "reciprocal")}
+        return (
+            bool(moved)
+            and {*moved, *fixed}.issuperset(held)
+            and not any(ring.dependencies(ring.context.gen(k), self.rates) for k in fixed)
+        )
 
     def _exponent(self, k: int) -> Any:
         """a, where the generator is exp(a) and a is made of positions and parameters; else None."""
@@ -144,6 +163,8 @@ class _State:
     def _follows(self, k: int) -> bool:
         """Whether it is a position, a sine or a cosine that moves as ``rates`` say."""
         g = self.ring.generators[k]
+        if g.kind in ("sine", "cosine") and g.argument is not None:  # of x/l, with l a parameter
+            return self._is_of_positions(g.argument)
         return g.kind in ("coordinate", "sine", "cosine", "prescribed") and g.name in self.rates
 
     def variables(self) -> dict[int, Polynomial]:
@@ -160,29 +181,34 @@ class _State:
 
     def _partner(self, k: int) -> int:
         """The cosine of a sine, and the other way round."""
-        g = self.ring.generators[k]
+        ring, g = self.ring, self.ring.generators[k]
         other = {"sine": "cosine", "cosine": "sine"}.get(g.kind)
-        return k if other is None or not self.ring.has(other, g.name) else self.ring.index(other, g.name)
+        if g.argument is not None and other is not None:
+            same = (i for i in range(ring.spare) if ring.generators[i].argument == g.argument)
+            return next(i for i in same if ring.generators[i].kind == other)
+        return k if other is None or not ring.has(other, g.name) else ring.index(other, g.name)
 
     def _order(self, k: int) -> tuple[int, int]:
-        """Velocities, pairs of sine and cosine, positions, functions."""
+        """Velocities, roots (each leads its relation), pairs of sine and cosine, positions, functions."""
         g, names = self.ring.generators[k], [*self.rates]
         if k in self.unknowns:
             return 0, list(self.unknowns).index(k)
-        if g.kind in ("sine", "cosine"):
-            return 1, 2 * names.index(g.name) + (g.kind == "cosine")
-        return (2, names.index(g.name)) if g.name in names else (3, -k)
+        if g.kind == "root":
+            return 1, k
+        if g.kind in ("sine", "cosine") and g.name in names:
+            return 2, 2 * names.index(g.name) + (g.kind == "cosine")
+        return (3, names.index(g.name)) if g.name in names else (4, -k)
 
     def _rate(self, k: int) -> Polynomial:
         """det(M) dg/dt of a generator g."""
         ring, own = self.ring, self.ring.context.gen(k)
-        if not self._follows(k) and self._exponent(k) is None:
+        if not self._follows(k) and self._exponent(k) is None and not self._is_root(k) and k not in self.kept:
             raise no_variable(ring, k)
         slopes = [ring.times(ring.derivative(own, x), self.rates[x]) for x in ring.dependencies(own, self.rates)]
         return ring.reduce(ring.times(self.determinant, put_in(ring, ring.reduce(sum(slopes, ring.zero)), self.images)))
 
     def name(self, k: int) -> str:
-        """``theta_dot``, ``sin(theta/2)``, ``exp(x - y)``."""
+        """``theta_dot``, ``sin(theta/2)``, ``exp(x - y)``, ``sqrt(x**2 + y**2)``."""
         g, exponent = self.ring.generators[k], self._exponent(k)
         if k in self.unknowns:
             return self.unknowns[k]
@@ -190,39 +216,52 @@ class _State:
             return f"exp({Formula(self.ring, exponent)})"
         if g.kind in ("sine", "cosine"):
             angle = g.name if g.denominator == 1 else f"{g.name}/{g.denominator}"
-            return f"{g.kind[:3]}({angle})"
-        return str(g.name)
+            return f"{g.kind[:3]}({angle if g.argument is None else Formula(self.ring, g.argument)})"
+        return str(g.name) if g.argument is None else str(Formula(self.ring, self.ring.context.gen(k)))
 
     def relations(self, variables: Collection[int]) -> list[Polynomial]:
         """What vanishes on all states."""
         ring, found = self.ring, []
+        roots = [k for k in variables if self._is_root(k)]
+        if not independent(ring, [ring.context.gen(k) for k in roots]):
+            raise NoClosedForm(
+                Message(
+                    "[[names]]: it is not shown that no product of what stands under these roots is a square",
+                    names=", ".join(map(self.name, roots)),
+                ),
+                remedy="write what is a square without a root, as 2*sin(x/2) for sqrt(2 - 2*cos(x))",
+            )
+        for k in roots:
+            found.append(ring.context.gen(k) ** 2 - ring.generators[k].argument)
         for k in variables:
             if ring.generators[k].kind == "sine":
                 found.append(ring.context.gen(k) ** 2 + ring.context.gen(self._partner(k)) ** 2 - 1)
+        found += [ring.context.gen(k) * ring.generators[k].argument - 1 for k in variables if k in self._inverse]
         names = {ring.generators[k].name for k in variables}
-        if isinstance(self.equations, SpeedEquations):
-            for (name, components), (other, others) in self.equations.products:
-                if names.issuperset((*components, *others)):
-                    total = ring.zero if name != other else -ring.one
-                    for a, b in zip(components, others, strict=True):
-                        total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
-                    found.append(total)
+        for (name, components), (other, others) in self.equations.products:
+            if names.issuperset((*components, *others)):
+                total = ring.zero if name != other else -ring.one
+                for a, b in zip(components, others, strict=True):
+                    total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
+                found.append(total)
         exponentials = [k for k in variables if self._exponent(k) is not None]
         tied = self._between_exponentials(exponentials)
-        self._refuse_dependent(exponentials, [k for k in variables if k not in exponentials], len(tied))
+        angles = [k for k in variables if ring.generators[k].kind == "sine" and ring.generators[k].argument is not None]
+        apart = {*exponentials, *angles, *map(self._partner, angles)}
+        self._refuse_dependent([*exponentials, *angles], [k for k in variables if k not in apart], len(tied))
         return [*found, *tied]
 
-    def _refuse_dependent(self, exponentials: Sequence[int], others: Sequence[int], tied: int) -> None:
+    def _refuse_dependent(self, functions: Sequence[int], others: Sequence[int], tied: int) -> None:
         """Raises NoClosedForm where variables are functions of each other but for relations: ranks would mislead."""
         ring = self.ring
-        exponents = [self._exponent(k) for k in exponentials]
+        exponents = [ring.generators[k].argument if self._exponent(k) is None else self._exponent(k) for k in functions]
         under = sorted({name for a in exponents for name in ring.dependencies(a, self.rates)})
         beside = [self.name(k) for k in others if k not in self.unknowns and ring.generators[k].name in under]
         chance = Random("exponents")
         point = [fmpq(chance.randint(2, 99)) for _ in ring.generators]
         slopes = [[ring.derivative(a, name)(*point) for name in under] for a in exponents]
         if beside or (slopes and fmpq_mat(slopes).rank() < len(slopes) - tied):
-            told = ", ".join([*map(self.name, exponentials), *beside])
+            told = ", ".join([*map(self.name, functions), *beside])
             raise NoClosedForm(
                 Message("[[names]] are functions of each other: they cannot all be variables", names=told),
                 remedy="see 'mbsym symmetries', which needs no polynomials",
@@ -262,25 +301,23 @@ class _State:
         return [difference / difference.leading_coefficient()]
 
 
-def _free(
-    system: System, ring: Ring, form: SpeedForm | None, equations: Equations
-) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
+def _free(form: SpeedForm, equations: Equations) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
     """The equations of the independent velocities, and the dependent ones by these (q' = Y u, the constraints).
 
     Raises NoClosedForm where constraints tie positions, which are no variables of their own then.
     """
-    found = equations.constraints
-    if found is None:
+    tied = equations.constraints
+    if tied is None:
         return equations, NOTHING
-    if found.position_rank or equations.embedded is None or found.solved is None:
+    if tied.position_rank or equations.embedded is None or tied.solved is None:
         raise NoClosedForm(
             "constraints tie positions: no polynomial field in free variables"
-            if found.position_rank
+            if tied.position_rank
             else "the equations without multipliers outgrow the budget of terms"
         )
     from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
 
-    return equations.embedded, dependent_velocities(form or SpeedForm(system, ring), found.solved)
+    return equations.embedded, dependent_velocities(form, tied.solved)
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:
@@ -353,7 +390,8 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         held = [i for i in occurring([g.argument]) if ring.generators[i].kind not in allowed]
         if held and any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
             return no_variable(ring, held[0])
-    what, remedy = Message(g.kind), ""
+    what: Message | str = Message(g.kind)
+    remedy = ""
     if g.argument is not None and not any(ring.generators[i].kind != "parameter" for i in occurring([g.argument])):
         what = Message("the constant [[formula]]", formula=str(Formula(ring, ring.context.gen(k))))
         remedy = "write a parameter in its place: its value may be any number"
@@ -363,6 +401,8 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         what = Message("the time")
     elif g.kind == "function" and g.name:
         what = Message("the function [[name]]", name=g.name)
+    elif g.argument is not None:
+        what = str(Formula(ring, ring.context.gen(k)))
     elif g.name and not g.name.startswith("#"):
         what = Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)
     told = Message("[[what]] occurs: the equations are not polynomial in speeds and positions", what=what)

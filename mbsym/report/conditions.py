@@ -201,10 +201,7 @@ def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = Fal
     certain = next((k for k, case in enumerate(found) if case.always), len(found))
     possible = (
         CaseStatement(
-            tuple(statements(ring, case.all_of, told=told)),
-            ()
-            if any(r.always for r in case.any_of)
-            else tuple(_alternative(ring, r, told) for r in case.any_of if not r.never),
+            *_required(ring, case, told),
             case.verdict.word,
             case.verdict.theorems,
             case.verdict.explanation,
@@ -218,6 +215,27 @@ def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = Fal
         nothing = Message("None of the theorems that were tried decides there.")
         listed.append(CaseStatement((), (), Word.UNDECIDED, (), nothing, otherwise=True))
     return listed
+
+
+def _required(ring: Ring, case: Case, told: Labels) -> tuple[tuple[Statement, ...], tuple[Statement, ...]]:
+    """What all of has to hold, and what one of; the only alternative that can hold is told in its parts."""
+    every, some = case.all_of, [r for r in case.any_of if not r.never]
+    some = [r for r in some if not any(_suffices(other, r) for other in some)]
+    if any(r.always for r in some):
+        some = []
+    elif len(some) == 1 and some[0].condition.kind == "inequality" and some[0].condition.nonzero:
+        every, some = (*every, *some), []
+    return tuple(statements(ring, every, told=told)), tuple(_alternative(ring, r, told) for r in some)
+
+
+def _suffices(wide: Requirement, narrow: Requirement) -> bool:
+    """Whether p f^2 > 0 is ``narrow`` where p > 0 alone is ``wide``, which is therefore met wherever that is."""
+    one, other = wide.condition, narrow.condition
+    if not one.kind == other.kind == "inequality" or wide.relation != narrow.relation:
+        return False
+    ratio = rational_ratio(one.polynomial, other.polynomial)
+    more = len(one.nonzero) < len(other.nonzero) and all(factor in other.nonzero for factor in one.nonzero)
+    return more and ratio is not None and ratio > 0
 
 
 def _without_repeats(found: Iterable[CaseStatement]) -> Iterator[CaseStatement]:

@@ -238,6 +238,21 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Elsewhere:
+    """Where a reader finds what is too long to stand here: the ``problem`` of a report, or the command that prints it.
+
+    ``name``: what ``mbsym show`` calls it.
+    """
+
+    name: str
+    problem: int
+
+    @property
+    def link(self) -> Link:
+        return Link(say("problem [[number]]", number=str(self.problem)), f"problem-{self.problem}")
+
+
+@dataclass(frozen=True)
 class Numbered:
     """Where the formula with the label ``key`` stands: its number on paper, a link on a screen; a terminal has none."""
 
@@ -283,7 +298,9 @@ class Citation:
 #: What stands in the gaps of a sentence, where it is made piece by piece.
 Gaps = dict[str, "Inline | Sequence[Inline]"]
 #: What stands in a line; a ``str`` that is no message is the same in every language: a name, punctuation.
-Inline = Said | Strong | Graded | Link | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+Inline = (
+    Said | Strong | Graded | Link | Elsewhere | Numbered | Phrase | Emphasis | Verbatim | Unit | Citation | Math | str
+)
 
 
 #: What the keys of conditions begin with: there are references to these.

@@ -17,6 +17,7 @@ from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
 from mbsym.formulas.wolfram import wolfram_name
 from mbsym.mechanics.energy import body_energy
+from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.report.conditions import Statement, label_meanings, statements
@@ -33,6 +34,9 @@ if TYPE_CHECKING:
 
 #: The languages in which a formula is written; the first is for people.
 LANGUAGES = ("text", "latex", "wolfram", "python")
+
+#: Wider matrices and columns are written entry by entry for people.
+WIDEST = 80
 
 #: Accelerations of more coordinates are left to programs: their formulas fill pages.
 MOST_SOLVED = 4
@@ -96,6 +100,29 @@ def _equations(analysis: Analysis) -> Iterator[Line]:
         yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)
     if tied is not None:
         yield from _constraints(analysis)
+
+
+def _coriolis(analysis: Analysis) -> Iterator[Line]:
+    """c, what inertia needs at q'' = 0; C(q, q') q' where nothing moves as prescribed."""
+    forcing = _with_loads(analysis, ()).equations.forcing
+    yield Line("coriolis", tuple(-x for x in forcing))
+
+
+def _gravity(analysis: Analysis) -> Iterator[Line]:
+    """g = -dU/dq, U of the fields of gravity alone."""
+    if analysis.system.speeds:
+        raise NoClosedForm("the equations are in speeds: 'U' is what gravity gives")
+    fields = tuple(one for one in analysis.system.loads if isinstance(one, UniformGravity | NewtonianGravity))
+    force_function = _with_loads(analysis, fields).energy.force_function
+    ring = force_function.ring
+    names = analysis.system.coordinates
+    yield Line("gravity", column(ring, [-ring.derivative(force_function.polynomial, name) for name in names]))
+
+
+def _with_loads(analysis: Analysis, loads: tuple[Load, ...]) -> Analysis:
+    if analysis.system.linear is not None:
+        raise NoClosedForm("a system that is given by its matrices has no bodies")
+    return type(analysis)(replace(analysis.system, loads=loads), terms=analysis.terms)
 
 
 def _constraints(analysis: Analysis) -> Iterator[Line]:
@@ -239,6 +266,8 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
     "L": ("the Lagrangian, T + U", _lagrangian),
     "M": ("the mass matrix", lambda x: iter([Line("M", x.equations.mass_matrix)])),
     "f": ("the right-hand sides of M q'' = f", lambda x: iter([Line("f", x.equations.forcing)])),
+    "coriolis": ("c of M q'' + c + g = forces: what inertia needs at q'' = 0", _coriolis),
+    "gravity": ("g of these, -dU/dq of the fields of gravity", _gravity),
     "constraints": ("the constraints in velocities", _constraints),
     "motion": ("when the unperturbed motion satisfies the equations", _motion),
     "M0": ("the mass matrix of the first approximation", _matrix("M")),
@@ -358,6 +387,9 @@ def written(line: Line, language: str) -> str:
         return line.value if language == "text" else remarked(line.value, language)
     value = _in_small(line.value, language) if isinstance(line.value, InSmall) else _WRITERS[language](line.value)
     if line.name:
+        wide = len(f"{line.name} = ") + max(map(len, value.splitlines())) > WIDEST
+        if language == "text" and wide and (entries := list(_entry_by_entry(str(line.name), line.value))):
+            return "\n".join(entries)
         name = _WRITERS[language](line.name) if isinstance(line.name, Formula) else _LETTERS[language](line.name)
         return f"{name} = " + value.replace("\n", "\n" + " " * (len(name) + 3))
     if not line.relation:
@@ -427,6 +459,19 @@ def _entries(value: Matrix | Determinant, language: str) -> list[list[str]]:
     if isinstance(value, Matrix):
         return [[_WRITERS[language](x) for x in row] for row in value]
     return [[_in_powers(x, language) for x in row] for row in value.rows]
+
+
+def _entry_by_entry(name: str, value: Value) -> Iterator[str]:
+    """Of a matrix what is not zero, of a column all: each in a line of its own; what is symmetric only once."""
+    if isinstance(value, Matrix) and value.shape != (1, 1):
+        symmetric = value.rows == tuple(zip(*value.rows, strict=True))
+        for i, row in enumerate(value, start=1):
+            for j, entry in enumerate(row, start=1):
+                if not (entry.is_zero or (symmetric and j < i)):
+                    mirrored = f" = {name}[{j},{i}]" if symmetric and i != j else ""
+                    yield f"{name}[{i},{j}]{mirrored} = {entry.readable()}"
+    elif isinstance(value, tuple) and len(value) > 1 and all(isinstance(x, Formula) for x in value):
+        yield from (f"{name}[{i}] = {_text(cast(Formula, x))}" for i, x in enumerate(value, start=1))
 
 
 def _text(value: Value) -> str:

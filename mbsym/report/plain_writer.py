@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import singledispatchmethod
+from shlex import quote
 from textwrap import wrap
 from typing import Any, NamedTuple
 
@@ -59,7 +60,7 @@ class Writer:
     """Sentences in a language; ``readable`` formulas are as people write them, others as Python reads them, unbroken.
 
     Formulas with a text of more than ``longest`` letters are counted, with the ``file`` that has them if there is one.
-    What is drawn has at most ``width`` columns.
+    What is drawn has at most ``width`` columns.  ``description``: the file that a command would name.
     """
 
     language: Language = field(default_factory=Language)
@@ -67,6 +68,7 @@ class Writer:
     longest: int = sys.maxsize
     width: int = 100
     file: str = ""
+    description: str = ""
 
     # --- text ---
 
@@ -156,6 +158,12 @@ class Writer:
     def _(self, value: content.Numbered) -> str:
         return ""
 
+    @inline.register
+    def _(self, value: content.Elsewhere) -> str:
+        if not self.description:
+            return self.inline(value.link)
+        return f"mbsym show {quote(self.description)} {value.name}".replace(" ", UNBROKEN)
+
     @inline.register(content.Strong)
     @inline.register(content.Graded)
     @inline.register(content.Link)
@@ -209,7 +217,8 @@ class Writer:
         for x in value.parts:
             piece = self.inline(x).strip()
             called = isinstance(before, content.Symbol) and isinstance(x, content.Listed) and x.brackets
-            close = self.readable and (isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
+            factor = isinstance(before, content.Symbol) and not isinstance(x, str)
+            close = self.readable and (factor or isinstance(before, str) or (x == "=" and len(written) <= _SHORT))
             behind = UNBROKEN if close else " "
             written += (
                 "" if not written or called or piece[:1] in ":," or re.search("(^|=.)-$", written) else behind

@@ -68,6 +68,7 @@ def find_orbit(
     keep: str = "auto",
     turns: Mapping[str, int] | None = None,
     watch: Callable[[int, float], None] = lambda k, size: None,
+    shifted: Sequence[str] = (),
 ) -> PeriodicMotion:
     """The periodic motion near the scenario's initial state and near ``period``, and one period of it.
 
@@ -79,7 +80,7 @@ def find_orbit(
         raise NotFound("the energy is not known to be conserved, so that it cannot be kept: --keep period or nothing")
     energy = keep in ("energy", "auto") and conserved
     state = np.array([float(x) for x in scenario.state])
-    guess = Guess(state, period, dict(turns or {}), keep == "period", energy)
+    guess = Guess(state, period, dict(turns or {}), tuple(shifted), keep == "period", energy)
     found: Orbit = periodic_orbit(dynamics, guess, watch=watch)
     times = np.linspace(0.0, found.period, ROWS)
     run = METHODS["dop853"].start(dynamics, Setting(1e-13), initial=found.state)
@@ -162,7 +163,8 @@ def sensitivities(
     """
     scenario = prepared(scenario, request)[0]
     augmented = sensitive(scenario, names, overrides, request.fixed)
-    name = request.method if request.method not in ("auto", "midpoint", "midpoint4", "midpoint6") else "dop853"
+    automatic = request.method == "auto" or METHODS[request.method].traits.conservative
+    name = "dop853" if automatic else request.method
     method = METHODS[name]
     step = request.step if method.traits.fixed else None
     tolerance = None if step is not None else request.tolerance or TOLERANCE["float64"]

@@ -40,8 +40,9 @@ TOLERANCE = 1e-13
 class MeasuredOrders:
     """``errors[v][k]``: the largest |x_v - X_v| over one period at eps times ``parts[k]``, in scaled variables.
 
-    ``orders``: log2 of the ratio of the last two errors of each variable that rounding leaves; None where there are
-    none.  The expansion to order n is right where they are about n + 1, or more.
+    ``orders``: log2 of the ratio of the last two errors of each variable that rounding leaves, at ``parts[k]`` and
+    ``parts[k + 1]`` with k from ``halved``; None where there are none.  The expansion to order n is right where they
+    are about n + 1, or more.
     """
 
     small: float
@@ -50,6 +51,7 @@ class MeasuredOrders:
     names: tuple[str, ...]
     errors: tuple[tuple[float, ...], ...]
     orders: tuple[float | None, ...]
+    halved: tuple[int, ...]
     simulated: bool
 
 
@@ -80,7 +82,7 @@ def measured_orders(
         if found.small in numbers:
             numbers[found.small] = eps
         series = Numeric(told, parameters | symbols, eps)
-        time = 2 * pi / series.rate
+        time = 2 * pi / abs(series.rate)  # a root in the frequency may stand above what is negative
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         if simulated:
             rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
@@ -93,20 +95,20 @@ def measured_orders(
                 away = [abs(row[place] / unit - series.at(t, name)) for row, t in zip(rows, times, strict=True)]
             errors[place].append(max(float(x.mid()) for x in away))
     noise = NOISE_OF_A_RUN if simulated else NOISE_OF_BALLS
-    return MeasuredOrders(
-        float(whole),
-        time,
-        PARTS,
-        found.names,
-        tuple(map(tuple, errors)),
-        tuple(_order(x, noise) for x in errors),
-        simulated,
-    )
+    orders, halved = zip(*(_order(x, noise) for x in errors), strict=True)
+    return MeasuredOrders(float(whole), time, PARTS, found.names, tuple(map(tuple, errors)), orders, halved, simulated)
 
 
-def _order(errors: Sequence[float], noise: float) -> float | None:
-    kept = [x for x in errors if x > noise]
-    return log(kept[-2] / kept[-1], 2) if len(kept) > 1 else None
+def _order(errors: Sequence[float], noise: float) -> tuple[float | None, int]:
+    """The power by which a halving makes an error smaller, and the place in ``errors`` from which it is halved.
+
+    It is the last halving before which and after which there is more than rounding; None where there is none.
+    """
+    kept = [k for k in range(len(errors) - 1) if min(errors[k : k + 2]) > noise]
+    if kept:
+        return log(errors[kept[-1]] / errors[kept[-1] + 1], 2), kept[-1]
+    last = len(errors) - 2
+    return (log(noise / errors[-1], 2) if errors[-1] > noise else None), last
 
 
 def symbol_values(

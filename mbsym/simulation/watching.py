@@ -19,7 +19,7 @@ from mbsym.numerics.events.events import Occurrence, Occurrences
 from mbsym.numerics.events.surfaces import Action, Event, event, known_names, node
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernel
-from mbsym.numerics.methods.interface import STOPPED, Method
+from mbsym.numerics.methods.interface import Cause, Method
 from mbsym.numerics.simulate import Trajectory
 from mbsym.numerics.watched import Watched
 
@@ -171,7 +171,7 @@ class Watching:
     def happened(self, found: Trajectory) -> tuple[Trajectory, Happened]:
         """The trajectory, whole where it ended as it was asked to, and what happened along it."""
         everything = self.method.occurrences(float(found.times[-1]))
-        if found.breakdown is not None and found.breakdown.kind == STOPPED:
+        if found.breakdown is not None and found.breakdown.kind == Cause.STOPPED:
             found = replace(found, breakdown=None)
         if self._axes is None or self._asked.section is None:
             return found, Happened(everything)

@@ -154,7 +154,8 @@ def file_bytes(path: Path) -> tuple[bytes, Complaint | None]:
             return file.read(4 * MAX_TEXT + 1), None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        return b"", Complaint("unreadable", Message("the file cannot be read: [[reason]]", reason=reason))
+        hint = Message("a value is set by  --set [[value]]", value=path.name) if "=" in path.name else None
+        return b"", Complaint("unreadable", Message("the file cannot be read: [[reason]]", reason=reason), hint=hint)
 
 
 def _decoded(data: bytes) -> tuple[str, Complaint | None]:

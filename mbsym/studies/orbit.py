@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.described import public
-from mbsym.studies.request import Named, Number, Values, Word
+from mbsym.studies.request import Named, Names, Number, Values, Word
 from mbsym.studies.study import Answer, Asked, Folder, Refusal, Study, Unfit, Watch, no_program, refused
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ class Request:
     Floquet multipliers with those that are 1 for a reason.  With constraints states are led to them, and multipliers
     are those of changes that they allow.  Numbers, no proofs.  Written are orbit.csv (one period) and orbit.json.
 
+    What rolls in a circle does not come back by whole revolutions of its spin, on which nothing depends: --shifted.
+
     Exit codes: 0 found, 1 not found or not written, 2 something is missing or wrong, 130 interrupted.
 
     \b
@@ -50,16 +52,21 @@ class Request:
         Mapping[str, int],
         Named("NAME=N", "This angle comes back turned by N revolutions.", least=-1000, most=1000, example="psi=1"),
     ] = field(default_factory=dict)
+    shifted: Annotated[
+        tuple[str, ...],
+        Names("NAME", "This coordinate, on which nothing depends, comes back changed by anything; repeatable."),
+    ] = ()
 
 
 def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     system = asked.system
-    for name in request.turns:
-        if name not in system.coordinates:
-            told = Message("there is no coordinate [[name]]", name=repr(name))
-            yield Unfit(
-                "--turns", "unknown-name", told, Message("there are [[names]]", names=", ".join(system.coordinates))
-            )
+    for option, names in (("--turns", request.turns), ("--shifted", request.shifted)):
+        for name in names:
+            if name not in system.coordinates:
+                told = Message("there is no coordinate [[name]]", name=repr(name))
+                yield Unfit(
+                    option, "unknown-name", told, Message("there are [[names]]", names=", ".join(system.coordinates))
+                )
 
 
 @public(Request)
@@ -79,7 +86,7 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
         watch(f"step {step}, {size:.1e} left over")
 
     watch("compiling")
-    return find_orbit(closed_motion(asked.motion)[0], request.period, request.keep, request.turns, at)
+    return find_orbit(closed_motion(asked.motion)[0], request.period, request.keep, request.turns, at, request.shifted)
 
 
 def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:

@@ -49,6 +49,7 @@ class Request:
     \b
     equations       M q'' - f = 0              T U L         energies
     accelerations   solved for q''             M f           of M q'' = f
+    coriolis        c of M q'' + c + g = tau   gravity       g, of weights alone
     motion          does it satisfy them       constraints   in velocities
     M0 D G K N B    first approximation
     characteristic  polynomials                determinants  and what they come from
@@ -232,7 +233,8 @@ def answer(asked: Asked, request: Request, shown: Shown) -> Answer:
     from mbsym.algebra.failures import message_of
 
     complaints = [joined((name, message_of(error)), ": ") for name, error in shown.failures]
-    return Answer(text=shown.text, complaints=complaints, code=Exit.FAILED if complaints else Exit.OK)
+    code = Exit.FAILED if complaints else Exit.OK
+    return Answer(text=shown.text, breaks=request.language == "text", complaints=complaints, code=code)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

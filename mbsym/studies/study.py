@@ -111,7 +111,8 @@ class Answer:
     behind the name of the description; ``brief``: the blocks that ``--quiet`` leaves; ``last``: lines beneath the names
     of files.  ``owner``: the command whose set the files are, unless it is that of the study; ``more``: what is said
     behind their names; ``stopped``: what broke off the making of some of them, which is raised when the others have
-    been written; ``text``: what is printed as it is, and nothing else, for other programs.
+    been written; ``text``: what is printed as it is, and nothing else, for other programs; ``breaks``: a terminal may
+    break its lines, between the terms of formulas.
     """
 
     lines: Iterable[Line | Block] = ()
@@ -125,6 +126,7 @@ class Answer:
     more: str = ""
     stopped: BaseException | None = None
     text: str | None = None
+    breaks: bool = False
 
 
 @dataclass(frozen=True)

@@ -209,7 +209,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 def _without_reference(error: Breakdown, request: Request) -> Message:
     """A solution that ends is one thing, one that takes too long another."""
-    from mbsym.numerics.methods.interface import STEP_LIMIT
+    from mbsym.numerics.methods.interface import Cause
     from mbsym.numerics.trade.reference_search import BROKEN, DISAGREE
 
     time = f"{request.time:g}"
@@ -219,10 +219,10 @@ def _without_reference(error: Breakdown, request: Request) -> Message:
             "chaotic over such a time; a shorter --time helps"
         )
         return Message(text, time=time, which=error.message)
-    if error.kind not in (BROKEN, STEP_LIMIT):
+    if error.kind not in (BROKEN, Cause.STEP_LIMIT):
         return Message("there is no reference solution up to t = [[time]]: [[why]]", time=time, why=error.told)
     why = error.message
-    if error.kind == STEP_LIMIT:
+    if error.kind == Cause.STEP_LIMIT:
         text = "the budget ended at t = [[time]]; a shorter --time or a larger --budget helps"
         why = Message(text, time=f"{error.time:.3g}")
     return Message("no reference solution up to t = [[time]] was found: [[why]]", time=time, why=why)

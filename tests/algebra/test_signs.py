@@ -51,6 +51,10 @@ def signs(words: str, *assumptions: tuple[Any, str]) -> Signs:
         ("real real real", (), (x - y) ** 2 + (y - z) ** 2 + z**2, "nonnegative"),
         ("real real real", (), x**2 + y**2 + z**2 + x * y + y * z + 1, "positive"),
         ("real real real", (), -(x**2) - y**2 - z**2 - x * y - y * z - 1, "negative"),
+        # What is assumed of a generator alone holds in every term.
+        ("nonnegative real real", ((x, "!="),), x**2 + y**2, "positive"),
+        ("real real real", ((-x, ">"),), x * y**2 - 1, "negative"),
+        ("nonpositive real real", ((2 * x, "!="),), x**3 - y**2, "negative"),
         ("positive nonnegative real", (), x * y, "nonnegative"),
         ("positive real real", (), x * y, "unknown"),
         ("nonzero real real", (), x, "nonzero"),

@@ -101,11 +101,11 @@ initial: {x: 1}
 
 def test_a_proof_that_would_take_too_long_says_so_and_ends(tmp_path: Path) -> None:
     """Fast terms want millions of steps: a tenth of the time shows it."""
-    begun = time.perf_counter()
+    begun = time.process_time()
     done = simulated(tmp_path, FREE, "--time", "300", "--samples", "3", "--no-estimate", "--certify", "1e-9",
                      "--certify-seconds", "2")  # fmt: skip
     assert done.exit_code == 3, done.output
-    assert time.perf_counter() - begun < 60
+    assert time.process_time() - begun < 60
     assert "its time is too short, " in done.stdout
     assert "at this pace all would take" in done.stdout
     found = record_of(tmp_path)["certificate"]

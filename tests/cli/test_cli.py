@@ -143,6 +143,21 @@ def test_a_misspelt_command_is_guessed() -> None:
     assert "did you mean 'simulate'?" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("command", "word", "meant"),
+    [
+        ("simulate", "10", "--time 10"),
+        ("simulate", "m=3", "--set m=3"),
+        ("convert", "other.txt", "--out other.txt"),
+        ("run", "m=3", "--set m=3"),
+    ],
+)
+def test_a_word_too_much_is_told_with_the_option_that_it_lacks(command: str, word: str, meant: str) -> None:
+    done = mbsym(command, PENDULUM, word, "--quiet") if command == "run" else mbsym(command, PENDULUM, word)
+    assert done.exit_code == 2
+    assert meant in done.stderr
+
+
 def test_a_description_is_not_converted_into_itself(tmp_path: Path) -> None:
     own = tmp_path / "own.yaml"
     own.write_text("# a comment\n" + PENDULUM.read_text())

@@ -16,7 +16,7 @@ from conftest import SHIPPED
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.claims import DIFFERS, DIGITS, EXACT, NUMERICAL, UNDECIDED, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.code import c_source
 from mbsym_cli.files import alone, obstacle
 from mbsym_cli.main import main
@@ -68,7 +68,13 @@ CANCELS = "claim: value, of: (theta - sin(theta))*10**60*10**60, state: {theta: 
 
 @pytest.mark.parametrize(
     ("equals", "outcome"),
-    [("0.16667", DIGITS), ("0.16668", DIFFERS), ("0.5", DIFFERS), ("5", DIFFERS), ("1/7", DIFFERS)],
+    [
+        ("0.16667", Outcome.DIGITS),
+        ("0.16668", Outcome.DIFFERS),
+        ("0.5", Outcome.DIFFERS),
+        ("5", Outcome.DIFFERS),
+        ("1/7", Outcome.DIFFERS),
+    ],
 )
 def test_digits_that_cancel_are_computed_in_more_bits(equals: str, outcome: str) -> None:
     (result,) = judged(f"{CANCELS}, equals: {equals}")
@@ -80,11 +86,11 @@ def test_digits_that_cancel_are_computed_in_more_bits(equals: str, outcome: str)
 ROOT = "1.414213562373095048801688724209698078569671875376948073176679737990732478462107038850387534327641572"
 
 
-@pytest.mark.parametrize(("place", "outcome"), [(92, DIGITS), (90, DIFFERS)])
+@pytest.mark.parametrize(("place", "outcome"), [(92, Outcome.DIGITS), (90, Outcome.DIFFERS)])
 def test_more_digits_than_256_bits_hold(place: int, outcome: str) -> None:
     """sqrt(2)*10**45 with 92 digits; the planted error is in the 90th."""
     digits = ROOT.replace(".", "")[:91]
-    if outcome == DIFFERS:
+    if outcome == Outcome.DIFFERS:
         digits = digits[: place - 1] + str((int(digits[place - 1]) + 5) % 10) + digits[place:]
     (result,) = judged(f'claim: value, of: sqrt(2)*10**45, state: {{theta: 1}}, equals: "{digits[:46]}.{digits[46:]}"')
     assert result.outcome == outcome
@@ -98,7 +104,7 @@ def test_numbers_that_have_no_value_are_undecided() -> None:
         "claim: kinetic energy, state: {theta: 0}, equals: 1/theta_dot",
         "claim: value, of: theta_ddot, state: {m: 0, J: 0}, equals: 1.0",
     )
-    assert [result.outcome for result in found] == [UNDECIDED] * 5
+    assert [result.outcome for result in found] == [Outcome.UNDECIDED] * 5
     assert "cancel" in found[0].remark
     assert "finite" in found[3].remark
     assert "singular" in found[4].remark
@@ -111,7 +117,7 @@ def test_a_half_in_the_last_place_and_zero_are_decided() -> None:
         "claim: value, of: sin(theta)**2 + cos(theta)**2 - 1, state: {theta: 1}, equals: 0*theta",
         "claim: value, of: sin(theta)**2 + cos(theta)**2 - 1, state: {theta: 1}, equals: 1/10**40",
     )
-    assert [result.outcome for result in found] == [DIGITS, NUMERICAL, DIFFERS]
+    assert [result.outcome for result in found] == [Outcome.DIGITS, Outcome.NUMERICAL, Outcome.DIFFERS]
 
 
 # --- formulas ---------------------------------------------------------------------------------------------------------
@@ -133,7 +139,13 @@ def test_an_angle_that_no_ring_holds_spoils_no_other_claim() -> None:
         'claim: characteristic polynomial, variable: p, equals: "p**2*sin(p)"',
         "claim: force function, equals: m*g*l*cos(theta)",
     )
-    assert [result.outcome for result in found] == [EXACT, UNDECIDED, DIFFERS, UNDECIDED, EXACT]
+    assert [result.outcome for result in found] == [
+        Outcome.EXACT,
+        Outcome.UNDECIDED,
+        Outcome.DIFFERS,
+        Outcome.UNDECIDED,
+        Outcome.EXACT,
+    ]
 
 
 @pytest.mark.parametrize(

@@ -64,9 +64,9 @@ def test_reading_never_crashes(block: int) -> None:
     for number in range(40):
         chance = Random(f"mutant {block} {number}")
         text = mutant(chance.choice(EVERY).read_text(encoding="utf-8"), chance)
-        started = time.perf_counter()
+        started = time.process_time()
         system, complaints = read(text, "mutant.yaml")
-        assert time.perf_counter() - started < 20
+        assert time.process_time() - started < 20
         assert (system is None) == bool(complaints.errors)
         refused += system is None
         shown = "\n".join(render(item, text, "mutant.yaml") for item in complaints.items)

@@ -91,6 +91,7 @@ def test_interrupted_while_modules_load() -> None:
 
 
 def test_the_code_of_an_interruption_is_that_of_the_command() -> None:
-    from mbsym_cli import console, process
+    from mbsym.studies.study import Exit
+    from mbsym_cli import process
 
-    assert process.INTERRUPTED == console.INTERRUPTED
+    assert process.INTERRUPTED == Exit.INTERRUPTED

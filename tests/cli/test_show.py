@@ -7,11 +7,14 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+import sympy
 from click.testing import CliRunner, Result
 from conftest import SHIPPED, derived
 
 import mbsym
-from mbsym.report.formulas_by_name import LANGUAGES, NAMES, accelerations
+from mbsym.expressions.safe import UNBROKEN
+from mbsym.report.formulas_by_name import LANGUAGES, NAMES, accelerations, lines
+from mbsym_cli.console import HANGING, between_terms, wrapped
 from mbsym_cli.main import main
 
 
@@ -41,6 +44,45 @@ def show(name: str, *words: str) -> Result:
 def test_formulas_are_those_of_the_book(name: str, words: tuple[str, ...], expected: str) -> None:
     result = show(name, *words)
     assert (result.exit_code, result.stdout) == (0, expected)
+
+
+def test_a_robot_is_m_coriolis_and_gravity() -> None:
+    """Two point masses on rods, theta2 between them: M, c and g of textbooks; M is too wide for its rows."""
+    lines = show("double-pendulum", "M", "coriolis", "gravity").stdout.splitlines()
+    assert lines == [
+        "M[1,1] = 2 m2 l1 l2 cos(theta2) + m2 (l1^2 + l2^2) + m1 l1^2",
+        "M[1,2] = M[2,1] = m2 l2 (l1 cos(theta2) + l2)",
+        "M[2,2] = m2 l2^2",
+        "coriolis[1] = -m2 l1 l2 sin(theta2) (2 theta1' + theta2') theta2'",
+        "coriolis[2] = m2 l1 l2 theta1'^2 sin(theta2)",
+        "gravity[1] = g (l1 (m1 + m2) sin(theta1) + m2 l2 sin(theta1 + theta2))",
+        "gravity[2] = m2 l2 g sin(theta1 + theta2)",
+    ]
+    # Euler's equations have these products of rates; weights in speeds are no gradient.
+    assert show("euler-poisson", "coriolis").stdout == "coriolis = ((C - B) q r, (A - C) p r, (B - A) p q)\n"
+    assert show("euler-poisson", "gravity").exit_code == 1
+
+
+@pytest.mark.parametrize("name", ["double-pendulum", "heavy-top", "spherical-pendulum"])
+def test_inertia_coriolis_and_gravity_are_all_of_a_system_of_weights(name: str) -> None:
+    """M q'' + c + g = 0."""
+    analysis = derived(SHIPPED / f"{name}.yaml")
+    one = {x: next(iter(lines(analysis, x))).value for x in ("M", "coriolis", "gravity")}
+    rates = [sympy.Symbol(f"{x}_ddot") for x in analysis.system.coordinates]
+    for row, c, g, line in zip(one["M"], one["coriolis"], one["gravity"], lines(analysis, "equations"), strict=False):
+        total = sum(x.to_sympy() * rate for x, rate in zip(row, rates, strict=True)) + c.to_sympy() + g.to_sympy()
+        assert sympy.simplify(total - line.value.to_sympy()) == 0
+
+
+def test_a_terminal_cuts_no_number_and_no_word() -> None:
+    """It breaks formulas in front of signs, outside of brackets where something is near."""
+    formula = "(m1 + m2 + m3) x'' + c1 x' - (c1x m1 sin(yaw) + (p2y m2 - p3y m3) cos(yaw)) yaw'' = lambda1"
+    told = wrapped(between_terms(formula), 60, HANGING).replace(UNBROKEN, " ")
+    assert told.splitlines() == [
+        "(m1 + m2 + m3) x'' + c1 x'",
+        "  - (c1x m1 sin(yaw) + (p2y m2 - p3y m3) cos(yaw)) yaw''",
+        "  = lambda1",
+    ]
 
 
 def test_mistakes_are_told_at_once() -> None:

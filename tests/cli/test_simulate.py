@@ -31,7 +31,7 @@ from mbsym.numerics.columns import columns
 from mbsym.numerics.conservation import Standing, energy_standing, visited
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import rates
-from mbsym.numerics.methods.interface import SINGULAR, Setting
+from mbsym.numerics.methods.interface import Cause, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.scenario import Incomplete, scenario
@@ -566,7 +566,7 @@ def test_a_rounded_pole_is_one_too() -> None:
     """sin(pi) in doubles is 1e-16, not zero."""
     found = simulate(dynamics_of(SPHERICAL, theta="pi"), METHODS["dop853"], Setting(tolerance=1e-8), [0, 1])
     assert found.breakdown is not None
-    assert found.breakdown.kind == SINGULAR
+    assert found.breakdown.kind == Cause.SINGULAR
 
 
 def test_a_coordinate_that_loses_its_meaning_on_the_way(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from mbsym.numerics.constrained import drift_of
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import OUT_OF_REACH, SINGULAR_CONSTRAINTS, Setting, Unusable, compiled_kernel
+from mbsym.numerics.methods.interface import Cause, Setting, Unusable, compiled_kernel
 from mbsym.numerics.methods.table import LED, METHODS
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, Simulation, simulate
@@ -263,7 +263,7 @@ def test_a_singular_start_is_named() -> None:
     start = f"initial: {{q1: 0, q2: {pi}, q3: 0}}".replace(str(pi), "pi")
     found = simulate(scenario(described(text + start)), Request(time=1.0))
     assert found.ended is not None
-    assert found.ended.kind == SINGULAR_CONSTRAINTS
+    assert found.ended.kind == Cause.SINGULAR_CONSTRAINTS
 
 
 #: An arm of two links of length 1 whose end is drawn along a line.
@@ -289,7 +289,7 @@ def test_what_is_drawn_to_full_stretch_ends_there_and_is_called_so(method: str) 
     given = closed(scenario(described(DRAWN.format(reach="1 + t/2")))).scenario
     found = simulate(given, Request(time=4.0, method=method, estimate=False, **finely))  # type: ignore[arg-type]
     assert found.ended is not None
-    assert found.ended.kind == OUT_OF_REACH
+    assert found.ended.kind == Cause.OUT_OF_REACH
     assert found.ended.time == pytest.approx(2, abs=5e-3)
 
 
@@ -298,7 +298,7 @@ def test_a_reach_that_only_touches_full_stretch_is_a_singular_position() -> None
     given = closed(scenario(described(DRAWN.format(reach="1 + t/2 - t**2/16")))).scenario
     found = simulate(given, Request(time=8.0, method="rk45", tolerance=1e-9, estimate=False))
     assert found.ended is not None
-    assert found.ended.kind == SINGULAR_CONSTRAINTS
+    assert found.ended.kind == Cause.SINGULAR_CONSTRAINTS
 
 
 def test_velocities_that_were_left_out_follow_from_those_that_are_given() -> None:

@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods import led as bridge
-from mbsym.numerics.methods.interface import SINGULAR_CONSTRAINTS, compiled_kernel
+from mbsym.numerics.methods.interface import Cause, compiled_kernel
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.simulation import Request, simulate
@@ -154,7 +154,7 @@ def test_where_no_way_leads_over_it_the_position_is_named(monkeypatch: pytest.Mo
     monkeypatch.setattr("mbsym.numerics.methods.led.bridge", lambda *_: None)
     found = simulate(described(four_bars(2)), Request(10.0, tolerance=1e-12, samples=1001, method="dop853"))
     assert found.ended is not None
-    assert found.ended.kind == SINGULAR_CONSTRAINTS
+    assert found.ended.kind == Cause.SINGULAR_CONSTRAINTS
     assert np.cos(found["th0"][-1]) == pytest.approx(0, abs=2e-3)  # in line
     assert found.conservation.change < 1e-11
 
@@ -169,7 +169,7 @@ def test_a_branch_that_does_not_fit_is_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(bridge._Fitted, "__call__", bent)
     found = simulate(described(four_bars(2)), Request(10.0, tolerance=1e-12, samples=11, method="dop853"))
     assert found.ended is not None
-    assert found.ended.kind == SINGULAR_CONSTRAINTS
+    assert found.ended.kind == Cause.SINGULAR_CONSTRAINTS
     assert found.conservation.change < 1e-11
 
 

@@ -311,6 +311,56 @@ def test_a_segway_at_any_yaw() -> None:
         assert chain.velocities(q, led) == pytest.approx(0, abs=1e-12)
 
 
+def test_rows_of_a_long_axle_are_taken_in_turn() -> None:
+    """26 rows of 13 wheels, of which 14 are independent at every yaw, but never the same: d'Alembert as in ``Chain``.
+
+    At yaw 90 degrees, where the rows chosen at yaw 0 are two, and closely beside it.
+    """
+    count, r = 13, 0.2
+    wheels = range(count)
+    bodies = [
+        "{name: axle, attached to: 0, connection point: [x, y, 1/5], coordinates: [x, y, yaw], "
+        "rotation: {axes: [3], angles: [yaw]}, mass: 2, mass centre: [1/10, 0, 0], inertia about: mass centre, "
+        "inertia: [1, 1, 1]}"
+    ]
+    bodies += [
+        f"{{name: w{k}, attached to: axle, connection point: [0, {k}/10, 0], rotation: {{axes: [2], angles: [p{k}]}}, "
+        "mass: 1, inertia about: mass centre, inertia: [1/100, 1/50, 1/100]}"
+        for k in wheels
+    ]
+    rolling = [f"rolling: {{body: w{k}, point: [0, 0, -1/5], axes: axle, on: ground}}" for k in wheels]
+    start = ", ".join([f"{name}: 0" for name in ("x", "y", "yaw", *(f"p{k}" for k in wheels))])
+    text = "\n".join(["mbsym: 1", "name: axle", "bodies:", *(f"  - {x}" for x in bodies), "constraints:",
+                      *(f"  - {x}" for x in rolling), f"initial: {{{start}}}"])  # fmt: skip
+    links = [Link(-1, (0, 0, r), 3, 2, 2.0, (0.1, 0, 0), (1, 1, 1))]
+    links += [Link(0, (0, k / 10, 0), 2, 3 + k, 1.0, (0, 0, 0), (0.01, 0.02, 0.01)) for k in wheels]
+
+    def slips(q: Any, qd: Any) -> Any:
+        forward, aside = np.array([cos(q[2]), sin(q[2])]), np.array([-sin(q[2]), cos(q[2])])
+        centres = [qd[:2] - k / 10 * qd[2] * forward for k in wheels]
+        return np.array(
+            [
+                x
+                for k, v in zip(wheels, centres, strict=True)
+                for x in ((v - r * qd[3 + k] * forward) @ forward, v @ aside)
+            ]
+        )
+
+    names = ("x", "y", "yaw", *(f"p{k}" for k in wheels))
+    chain = Chain(names, links, (0, 0, -GRAVITY), None, slips, lambda q: np.array([*q[:2], 0]))
+    dynamics, source = Dynamics(begun(text)), np.random.default_rng(2)
+    assert dynamics.constraints is not None
+    assert [(len(one.rows), one.rank) for one in dynamics.constraints.chosen.dependent] == [(26, 14)]
+    rates = arrays.kernel(dynamics.right_hand_side)
+    for yaw in (0.0, pi / 2, pi / 2 - 1e-3, pi / 2 + 1e-6, -pi / 2, 0.77):
+        q = np.array([0.3, -0.2, yaw, *source.uniform(-1, 1, count)])
+        qd = kept_velocities(chain, q, source)
+        wanted, rank = chain.accelerations(q, qd)
+        assert rank == 14
+        found = rates(np.concatenate([[0.0], q, qd]))[len(q) :]
+        assert found == pytest.approx(wanted, abs=1e-6 * (1 + np.max(np.abs(wanted))))
+
+
 def test_a_choice_that_is_not_made_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without exchanges the first three rows of the segway would be used everywhere: at yaw 90 degrees they are two."""
     monkeypatch.setattr(dependence._Chosen, "_exchange", lambda *_: None)

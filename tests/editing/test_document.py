@@ -16,7 +16,7 @@ import mbsym
 from mbsym.editing.document import changes, formula, look
 from mbsym.editing.document.meaning import Edit, Pieces, applied
 from mbsym.editing.document.written import data_of, written
-from mbsym.problems.claims import EXACT
+from mbsym.problems.claims import Outcome
 from mbsym.source import read, to_text
 from mbsym.source.document import read_placed
 
@@ -492,7 +492,7 @@ def test_a_body_on_a_joint_has_what_moves_and_what_has_inertia(begin: str, k: in
     assert system is not None
     assert not found.errors
     (claimed,) = mbsym.loads(text, (2,)).claims
-    assert claimed.outcome == EXACT
+    assert claimed.outcome == Outcome.EXACT
     assert {one.sign for one in system.parameters if one.name not in ("m1", "k") or k == 1} == {"positive"}
 
 

@@ -18,9 +18,10 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas import shape
 from mbsym.formulas.exchange import to_sympy
 from mbsym.formulas.formula import Formula
-from mbsym.formulas.latex import LatexNames, latex_symbol, latex_text
+from mbsym.formulas.latex import LatexNames, LatexPrinter, latex_symbol, latex_text
 from mbsym.formulas.names import injective
 from mbsym.formulas.python import python_text
+from mbsym.formulas.tree import Factor, Product, Sum
 from mbsym.formulas.wolfram import WolframNames, wolfram_name, wolfram_text
 
 PARAMETERS = ("a", "b", "J_x", "Jx", "omega0", "K")
@@ -292,3 +293,20 @@ def test_very_long_polynomials_are_printed():
         exponents[tuple(monomial)] = fmpq(source.randint(1, 5), 6)
     text = python_text(ring, ring.context.from_dict(exponents))
     assert text.count("(") == text.count(")")
+
+
+def test_brackets_are_as_high_as_the_fractions_in_them() -> None:
+    """The innermost bracket about a fraction is a high one, and so is every one about that; others stay as they are."""
+    ring = Ring((), (), ("m", "n", "a"), {})
+    m, n, a = (Factor(ring.index("parameter", name)) for name in "mna")
+
+    def bracket(*terms: Product) -> Factor:
+        return Factor(Sum(terms))
+
+    for first, text in (
+        (Product(fmpq(1), (m,), (n,)), r"m \Bigl[n \Bigl(\frac{m}{n} + a\Bigr) + a\Bigr]"),
+        (Product(fmpq(1), (m,)), r"m \bigl[n (m + a) + a\bigr]"),
+    ):
+        inner = bracket(first, Product(fmpq(1), (a,)))
+        outer = bracket(Product(fmpq(1), (n, inner)), Product(fmpq(1), (a,)))
+        assert LatexPrinter(ring).sum(Sum((Product(fmpq(1), (m, outer)),))) == text

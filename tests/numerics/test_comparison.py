@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from properties import settings
 
-from mbsym.numerics.methods.interface import BLOW_UP, Breakdown
+from mbsym.numerics.methods.interface import Breakdown, Cause
 from mbsym.numerics.trade.comparison import Comparison, Ended, compared
 
 END = 8.0
@@ -48,14 +48,14 @@ class Known:
         start, self.time = self.time, self.time + self.lengths[self.made % len(self.lengths)]
         self.made += 1
         if self.time > self.breaks:
-            raise Breakdown(BLOW_UP, "planted", self.breaks, self.state)
+            raise Breakdown(Cause.BLOW_UP, "planted", self.breaks, self.state)
         return Piece(start, self.time, self.known)
 
     def fill(self, times: Any) -> Any:
         assert times[0] >= self.time
         self.time = float(times[-1])
         if self.time > self.breaks:
-            raise Breakdown(BLOW_UP, "planted", self.breaks, self.state)
+            raise Breakdown(Cause.BLOW_UP, "planted", self.breaks, self.state)
         return self.known(np.asarray(times))
 
 
@@ -202,7 +202,7 @@ def test_who_ends_on_the_way_is_told(most: int) -> None:
         with pytest.raises(Ended) as ended:
             of(*((whole, short) if second else (short, whole)), most=most)
         assert ended.value.second is second
-        assert ended.value.breakdown.kind == BLOW_UP
+        assert ended.value.breakdown.kind == Cause.BLOW_UP
 
 
 def test_no_number_is_an_infinite_difference() -> None:

@@ -334,3 +334,21 @@ def test_a_run_that_ends_where_it_begins_verifies_nothing() -> None:
     assert (found.standing, found.doubt) == (Standing.UNDECIDED, Doubt.NO_MOTION)
     assert confronted("energy", Standing.PROVED, np.array([2.0]), 1.0).standing is Standing.PROVED
     assert confronted("energy", Standing.VERIFIED, np.array([2.0, 2.0]), 1.0).standing is Standing.VERIFIED
+
+
+@pytest.mark.parametrize(("coefficient", "told"), [("1e-15", False), ("1e-7", True)])
+def test_a_change_that_is_less_than_the_error_is_not_told_as_one(tmp_path: Path, coefficient: str, told: bool) -> None:
+    """x'' + c x' + x = 0 loses about c t/2 of its energy: 5e-15 and 5e-7 up to t = 10, at an error near 1e-11."""
+    run = mbsym.simulate(
+        mbsym.loads(
+            FORCED.replace(
+                "{generalized force: {x: -x}}",
+                "{damper: {coordinate: x, "
+                f"coefficient: {coefficient}}}}}, {{spring: {{coordinate: x, stiffness: 1}}}}",
+            )
+        ),
+        10,
+    )
+    ((_, line),) = energy_lines(run)
+    assert ("largest change" in str(line)) is told
+    assert ("is not told from its error" in str(line)) is not told

@@ -16,7 +16,7 @@ from mbsym.numerics.ensembles import side_by_side
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble, ensemble, statistics
 from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.variation import SOBOL, Draw, Grid, Unvaried, drawn, members
-from mbsym.numerics.methods.interface import BLOW_UP, Setting
+from mbsym.numerics.methods.interface import Cause, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import integrated
@@ -129,7 +129,7 @@ def test_members_that_blow_up_are_counted_and_named() -> None:
     ends = 1.8540746773013719 / (3 * np.linspace(0, 0.5, 11)[1:])
     expected = [member for member, end in enumerate(ends, 1) if end < 2]
     assert [fate.member for fate in found.fates] == expected
-    assert {fate.kind for fate in found.fates} == {BLOW_UP}
+    assert {fate.kind for fate in found.fates} == {Cause.BLOW_UP}
     for fate in found.fates:
         assert abs(fate.time - ends[fate.member - 1]) < 0.1
     alive = [11 - sum(end <= t for end in ends) for t in times]

@@ -22,7 +22,7 @@ def simulate_command() -> click.Command:
     return found
 
 
-EVERY = {value for name, value in vars(kinds).items() if name.isupper() and isinstance(value, str)}
+EVERY = set(kinds.Kind)
 
 
 def test_every_kind_says_whether_it_changes_what_is_integrated() -> None:
@@ -64,7 +64,7 @@ def by_plan(whole: bool) -> set[str]:
 
 def test_the_plan_and_the_ledger_say_the_same_of_a_scene() -> None:
     found = {saving.kind for saving in ledger(mbsym.loads(BESIDE, ())).savings} & kinds.SWITCHES.keys()
-    assert found == {kinds.RESTING, kinds.PARTS, kinds.WELDED}
+    assert found == {kinds.Kind.RESTING, kinds.Kind.PARTS, kinds.Kind.WELDED}
     assert by_plan(whole=False) == found
     assert not by_plan(whole=True)
 

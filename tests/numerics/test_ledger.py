@@ -43,7 +43,7 @@ from mbsym.numerics.ledger.entry import (
 )
 from mbsym.numerics.ledger.table import ledger
 from mbsym.numerics.ledger.work import Work
-from mbsym.numerics.planning.kinds import PARTS
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.simulate import simulate
 from mbsym.report.runs.ledger import ledger_lines
@@ -556,9 +556,9 @@ def test_parts_that_nothing_links_are_listed() -> None:
         "  - {name: b, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}\n"
         "loads:\n  - potential: x**2/2 + y**2/2\ninitial: {x: 1, y: 1}\n"
     )
-    found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == PARTS]
+    found = [saving for saving in ledger(mbsym.loads(text)).savings if saving.kind == Kind.PARTS]
     assert [saving.what for saving in found] == [("x", "y")]
     assert found[0].how == Certainty.PROVED
     assert [(item.without, item.taken) for item in found[0].measures] == [(2, 1), (16, 8)]
     linked = text.replace("y**2/2", "y**2/2 + x*y/2")
-    assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == PARTS]
+    assert not [saving for saving in ledger(mbsym.loads(linked)).savings if saving.kind == Kind.PARTS]

@@ -17,7 +17,7 @@ from mbsym.numerics.ledger import table
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, Saving
 from mbsym.numerics.ledger.work import AccuracyGoal, Work
 from mbsym.numerics.planning import model_choice
-from mbsym.numerics.planning.kinds import GRAVITY, MASSES
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.models import Model, emptied, parted
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import Pins, planned
@@ -89,7 +89,7 @@ def test_the_plan_says_the_same(times: float) -> None:
     given = scenario(mbsym.loads(DUMBBELL, ()).system)
     settled = Pins(model=Model(2), method="dop853", tolerance=1e-12)
     plan = planned(given, Accuracy(accuracy), np.linspace(0, TIME, table.TIMES), settled)
-    (item,) = (item for item in plan.items if item.kind == GRAVITY)
+    (item,) = (item for item in plan.items if item.kind == Kind.GRAVITY)
     found = gravity(accuracy)
     assert plan.reached == (found.standing == NOT_NEEDED)
     assert item.chosen == "2"
@@ -145,10 +145,10 @@ def test_a_light_rod_is_left_out_by_the_plan_and_told_by_the_ledger() -> None:
     analysis = mbsym.loads(CHAIN, ())
     plan = planned(scenario(analysis.system), Accuracy(1e-5), np.linspace(0, 2, table.TIMES))
     assert set(plan.model.without) == {"m1", "J1"}
-    (item,) = (item for item in plan.items if item.kind == MASSES)
+    (item,) = (item for item in plan.items if item.kind == Kind.MASSES)
     assert item.what == ("rod",)
     (found,) = table.simpler_model(Work(analysis, wanted=AccuracyGoal(1e-5, 2.0)))
-    assert (found.kind, found.what, found.standing) == (MASSES, ("rod",), NOT_NEEDED)
+    assert (found.kind, found.what, found.standing) == (Kind.MASSES, ("rod",), NOT_NEEDED)
     assert found.measures[0].saved > 0
 
 
@@ -174,7 +174,7 @@ def test_the_run_tells_what_is_needed(tmp_path: Path) -> None:
     (saving,) = (
         one
         for one in json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["ledger"]["savings"]
-        if one["kind"] == GRAVITY
+        if one["kind"] == Kind.GRAVITY
     )
     assert saving["standing"] == NEEDED
     assert saving["error"] > saving["tolerable"]

@@ -27,9 +27,9 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import SCALARS, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function
 from mbsym.numerics.methods import runge_kutta, symplectic
-from mbsym.numerics.methods.interface import BLOW_UP, NOT_SMOOTH, STEP_LIMIT, STUCK, Breakdown, Setting, Unusable, once
+from mbsym.numerics.methods.interface import Breakdown, Cause, Setting, Unusable, once
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, RODAS5P
+from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, RODAS5P, Clock
 from mbsym.numerics.scenario import scenario
 
 FIXED = [name for name, method in METHODS.items() if method.traits.fixed]
@@ -223,7 +223,7 @@ def test_dense_output_of_order_seven(kepler: Dynamics) -> None:
     """The same steps, seen in their middle: a coefficient of the interpolant gone wrong would cost many digits."""
     coarse = start("dop853", kepler, tolerance=1e-9)
     coarse.advance(3.0)
-    start_, length = (float(coarse.clock[place]) for place in (runge_kutta.START, runge_kutta.LAST))
+    start_, length = (float(coarse.clock[place]) for place in (Clock.START, Clock.LAST))
     ends = [start_ + s * length for s in (0.0, 0.3, 0.5, 0.8, 1.0)]
     states = coarse.curve()(np.array(ends)).T
     between = [float(np.abs(state - ellipse(t)).max()) for state, t in zip(states, ends, strict=True)]
@@ -252,7 +252,7 @@ def errors_of(method: Any, lengths: Sequence[float], place: float, end: float = 
         run = method.start(dynamics, Setting(tolerance=1e3, longest=length))
         worst, steps = 0.0, []
         while run.time < end - length / 2:
-            run.clock[runge_kutta.STEP] = length
+            run.clock[Clock.STEP] = length
             steps.append(run.step())
         for step in steps:
             t = step.start + place * (step.end - step.start)
@@ -410,7 +410,7 @@ def test_stiff_systems_take_few_steps(name: str) -> None:
     explicit = start("dop853", dynamics, tolerance=1e-8, step_limit=5000)
     with pytest.raises(Breakdown) as failed:
         explicit.advance(1.0)
-    assert failed.value.kind == STEP_LIMIT
+    assert failed.value.kind == Cause.STEP_LIMIT
     assert 0 < failed.value.time < 0.1
 
 
@@ -438,7 +438,7 @@ def test_a_pole_of_the_solution_is_reported(name: str, recwarn: pytest.WarningsR
     assert half == pytest.approx([4, 16], rel=1e-2)
     with pytest.raises(Breakdown) as failed:
         run.advance(2.0)
-    assert failed.value.kind in (BLOW_UP, STUCK)
+    assert failed.value.kind in (Cause.BLOW_UP, Cause.STUCK)
     assert failed.value.time == pytest.approx(1, abs=0.05)
     assert len(failed.value.state) == 2
     assert np.all(np.isfinite(failed.value.state))
@@ -451,7 +451,7 @@ def test_the_step_limit_is_kept(name: str, pendulum: Dynamics) -> None:
     run = start(name, pendulum, step_limit=50, **setting)
     with pytest.raises(Breakdown) as failed:
         run.advance(100.0)
-    assert failed.value.kind == STEP_LIMIT
+    assert failed.value.kind == Cause.STEP_LIMIT
     assert 0 < failed.value.time < 100
     assert len(failed.value.state) == 4
     assert run.work.steps <= 50
@@ -477,7 +477,7 @@ def test_rodas5p_does_not_step_from_where_a_derivative_is_infinite(force: str) -
     )
     with pytest.raises(Breakdown) as failed:
         start("rodas5p", dynamics_of(text), tolerance=1e-8).advance(1e-4)
-    assert failed.value.kind == NOT_SMOOTH
+    assert failed.value.kind == Cause.NOT_SMOOTH
     assert failed.value.time == 0
     moved = start("dop853", dynamics_of(text), tolerance=1e-8).advance(1e-4)
     assert moved[0] > 1e-5
@@ -498,7 +498,7 @@ def test_what_is_not_finite_just_ahead_is_no_blow_up(name: str) -> None:
     text = text.replace("position: 1", "position: 0")
     with pytest.raises(Breakdown) as failed:
         start(name, dynamics_of(text), tolerance=1e-8).advance(2.0)
-    assert failed.value.kind == STUCK
+    assert failed.value.kind == Cause.STUCK
 
 
 @pytest.mark.parametrize("name", [method.name for method in symplectic.METHODS])
@@ -510,7 +510,7 @@ def test_variational_methods_refuse_forces_without_potential(name: str) -> None:
 def test_a_step_far_too_long_for_the_implicit_equation() -> None:
     with pytest.raises(Breakdown) as failed:
         start("midpoint", dynamics_of(SHIPPED / "double-pendulum.yaml"), step=5.0).advance(1000.0)
-    assert failed.value.kind in (STUCK, BLOW_UP)
+    assert failed.value.kind in (Cause.STUCK, Cause.BLOW_UP)
 
 
 @pytest.mark.parametrize("name", FIXED)

@@ -9,7 +9,7 @@ import mbsym
 from mbsym.algebra.certainty import Certainty
 from mbsym.numerics.ledger.table import skew_plane
 from mbsym.numerics.ledger.work import AccuracyGoal, Work
-from mbsym.numerics.planning.kinds import SKEW
+from mbsym.numerics.planning.kinds import Kind
 
 #: Hangs straight down at first, and is turned at the rate 3 about (0.6, 0.8, 0).
 SWUNG = """
@@ -37,7 +37,7 @@ POINT = (
 
 def directions(text: str, time: float = 3.0) -> list[str]:
     found = list(skew_plane(Work(mbsym.loads(text, ()), wanted=AccuracyGoal(1e-6, time))))
-    assert all((item.kind, item.how) == (SKEW, Certainty.VERIFIED) for item in found)
+    assert all((item.kind, item.how) == (Kind.SKEW, Certainty.VERIFIED) for item in found)
     return [item.why for item in found]
 
 

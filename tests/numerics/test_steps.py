@@ -15,7 +15,7 @@ import mbsym
 from mbsym.expressions.tree import number
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Piece, Setting
+from mbsym.numerics.methods.interface import Breakdown, Cause, Piece, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.scenario import scenario
@@ -224,7 +224,7 @@ def test_a_breakdown_keeps_the_rows_so_far(name: str, pendulum: Dynamics) -> Non
     times = np.linspace(0, 100, 200_001)
     with pytest.raises(Breakdown) as failed:
         run.fill(times)
-    assert failed.value.kind == STEP_LIMIT
+    assert failed.value.kind == Cause.STEP_LIMIT
     kept = failed.value.filled
     count = kept.shape[1]
     assert times[count - 1] <= failed.value.time < times[count] + 1e-12

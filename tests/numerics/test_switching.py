@@ -12,7 +12,7 @@ import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events import switching
 from mbsym.numerics.events.switching import Switching
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Setting
+from mbsym.numerics.methods.interface import Breakdown, Cause, Setting
 from mbsym.numerics.methods.runge_kutta import METHODS as COMPILED
 from mbsym.numerics.scenario import scenario
 
@@ -86,7 +86,7 @@ def test_stiffness_that_comes_late_and_goes_again() -> None:
 
 def test_without_the_change_the_same_motion_takes_a_thousand_times_as_many_steps() -> None:
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
-    with pytest.raises(Breakdown, match=STEP_LIMIT):
+    with pytest.raises(Breakdown, match=Cause.STEP_LIMIT):
         EXPLICIT.start(dynamics, Setting(1e-10, step_limit=2_000_000)).advance(100)
 
 
@@ -172,6 +172,6 @@ def test_a_run_that_begins_stiff_goes_back_to_explicit_steps() -> None:
 def test_the_limit_of_steps_counts_both_methods() -> None:
     dynamics = Dynamics(scenario(mbsym.loads(LATE).system))
     run = Switching(EXPLICIT, IMPLICIT).start(dynamics, Setting(1e-10, step_limit=1500))
-    with pytest.raises(Breakdown, match=STEP_LIMIT):
+    with pytest.raises(Breakdown, match=Cause.STEP_LIMIT):
         run.fill(np.linspace(0, 100, 11))
     assert run.work.steps <= 1500 + switching.WINDOW + switching.TRIAL

@@ -13,7 +13,7 @@ from scipy.special import ellipk
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.events import Watcher
-from mbsym.numerics.methods.interface import STEP_LIMIT, Setting
+from mbsym.numerics.methods.interface import Cause, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.watched import Watched
@@ -138,7 +138,7 @@ def test_a_stop_between_two_rows_and_one_after_the_end() -> None:
 def test_a_run_that_breaks_down_keeps_its_events() -> None:
     run = pendulum(1000, "theta = 0", step_limit=100)
     assert run.ended is not None
-    assert run.ended.kind == STEP_LIMIT
+    assert run.ended.kind == Cause.STEP_LIMIT
     assert run.events is not None
     assert len(run.events) == np.sum(np.arange(1, 999, 2) * QUARTER <= run.times[-1])
 

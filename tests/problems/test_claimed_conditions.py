@@ -25,7 +25,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.words.claims import claim_line
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
@@ -199,7 +199,7 @@ def contradiction(
                 (f"not unstable at {p}" for p in points if not alone(p) and truth(p) not in (UNSTABLE, GROWS)), ""
             )
         stable: tuple[str, ...] = (STABLE,)
-        if result.outcome == EXACT and "asymptotic" not in result.remark:
+        if result.outcome == Outcome.EXACT and "asymptotic" not in result.remark:
             stable += (NEUTRAL,)
         wrong = (p for p in points if not alone(p) and truth(p) in stable)
         return next((f"not necessary at {p}" for p in wrong), "")
@@ -231,9 +231,9 @@ def test_what_is_said_of_a_condition_is_true_everywhere(kind: str) -> None:
             assert not wrong, (one.text, one.relation, one.role, claim_line(one.result), wrong)
             words.append((one.role, one.result.outcome))
     for role in ("", "necessary", "sufficient"):  # the test tests something
-        assert words.count((role, FAILS)) > 0, role
-        assert sum(words.count((role, outcome)) for outcome in (EXACT, BORDERS)) > 3, role
-    assert sum(outcome == FAILS for _, outcome in words) > 15
+        assert words.count((role, Outcome.FAILS)) > 0, role
+        assert sum(words.count((role, outcome)) for outcome in (Outcome.EXACT, Outcome.BORDERS)) > 3, role
+    assert sum(outcome == Outcome.FAILS for _, outcome in words) > 15
 
 
 # --- what was confirmed and is false ---
@@ -248,9 +248,9 @@ def test_a_condition_that_something_differs_from_zero_has_no_direction() -> None
     """K = (a - b)^2: stable for a > b and for b > a; at a = b the solution is q0 + q1 t."""
     found = outcomes("claims_min")
     assert [found[key].outcome for key in (("a > b", "necessary"), ("b > a", "necessary"), ("a > b", ""))] == [
-        FAILS
+        Outcome.FAILS
     ] * 3
-    assert found["a != b", "necessary"].outcome == EXACT
+    assert found["a != b", "necessary"].outcome == Outcome.EXACT
     for key in (("a > b", "necessary"), ("b > a", "necessary")):
         at = {name: Fraction(number) for name, number in found[key].counterexample.at}
         assert at["a"] != at["b"]
@@ -260,24 +260,24 @@ def test_a_condition_that_something_differs_from_zero_has_no_direction() -> None
 def test_foucault_needs_no_slow_turning() -> None:
     """The lowest position is stable in space, however fast the ground turns."""
     found = outcomes("claims_foucault")
-    assert found["l*wz**2 < g", "necessary"].outcome == FAILS
-    assert found["l*wz**2 > g", "necessary"].outcome == FAILS
-    assert found["2*l*wz**2 < g", "necessary"].outcome == FAILS
+    assert found["l*wz**2 < g", "necessary"].outcome == Outcome.FAILS
+    assert found["l*wz**2 > g", "necessary"].outcome == Outcome.FAILS
+    assert found["2*l*wz**2 < g", "necessary"].outcome == Outcome.FAILS
     # In the rotating frame K < 0 beyond it; energy and momentum together prove it, as the motion is stable everywhere.
-    assert found["l*wz**2 > g", "sufficient"].outcome == EXACT
+    assert found["l*wz**2 > g", "sufficient"].outcome == Outcome.EXACT
     assert "Chetaev" in found["l*wz**2 > g", "sufficient"].remark
     # Without a role it is one of the conditions of problem 6: K > 0, Routh's theorem.
-    assert found["l*wz**2 < g", ""].outcome == EXACT
+    assert found["l*wz**2 < g", ""].outcome == Outcome.EXACT
     assert "sufficient" in found["l*wz**2 < g", ""].remark
 
 
 def test_a_spin_with_a_damper_needs_the_greatest_moment() -> None:
     """C > A is necessary (major-axis rule); C > 2 A is no body's, and C < 2 A is every body's but the lamina's."""
     found = outcomes("claims_spin")
-    assert found["C > 2*A", "necessary"].outcome == FAILS
-    assert found["C < A", "necessary"].outcome == FAILS
+    assert found["C > 2*A", "necessary"].outcome == Outcome.FAILS
+    assert found["C < A", "necessary"].outcome == Outcome.FAILS
     # Its border is open: that it is necessary for exponential stability says nothing of it.
-    assert found["C > A", "necessary"].outcome == BORDERS
+    assert found["C > A", "necessary"].outcome == Outcome.BORDERS
     assert "exponential stability" in found["C > A", "necessary"].remark
     assert "triangle inequalities" in found["C < 2*A", "necessary"].remark
 
@@ -287,18 +287,18 @@ def test_a_lamina_spins_stably_about_its_normal() -> None:
     found = outcomes("s_euler_lamina")
     for that in ("A + B - C != 0", "A + B - C > 0", "C > A"):
         result = found[that, "necessary"]
-        assert result.outcome == FAILS, that
+        assert result.outcome == Outcome.FAILS, that
         at = {name: Fraction(number) for name, number in result.counterexample.at}
         assert (at["A"] - at["C"]) * (at["B"] - at["C"]) > 0
         assert at["A"] + at["B"] >= at["C"]
     middle = found["(A - C)*(B - C) > 0", "necessary"]
-    assert (middle.outcome, middle.holds) == (BORDERS, True)
+    assert (middle.outcome, middle.holds) == (Outcome.BORDERS, True)
 
 
 def test_coinciding_frequencies_are_not_excluded() -> None:
     """W1 = -W2: the two tops are mirror images, their frequencies coincide, and the motion stays bounded."""
     (result,) = outcomes("cg_claims").values()
-    assert result.outcome == FAILS
+    assert result.outcome == Outcome.FAILS
     assert result.counterexample is not None
 
 
@@ -314,13 +314,13 @@ def test_at_a_border_where_the_motion_is_stable_a_strict_condition_is_not_called
         ("soft", "mu < 0", "mu <= 0", "asymptotically stable"),  # -x^2 x' takes energy wherever x is not at rest
     ):
         found = outcomes(name)
-        assert found[strict, "necessary"].outcome == BORDERS, name
+        assert found[strict, "necessary"].outcome == Outcome.BORDERS, name
         assert "with equality, too, the motion may be stable" in found[strict, "necessary"].remark
         assert found[strict, "necessary"].counterexample.at_equality
-        assert found[weak, "necessary"].outcome == EXACT, name
-        assert found[weak, "sufficient"].outcome == UNDECIDED, name  # of all parameters of the border
+        assert found[weak, "necessary"].outcome == Outcome.EXACT, name
+        assert found[weak, "sufficient"].outcome == Outcome.UNDECIDED, name  # of all parameters of the border
         assert f"at the given values: there the motion is {there} (" in found[weak, "sufficient"].remark
-    assert outcomes("strict_border")["a != 0", "necessary"].outcome == FAILS
+    assert outcomes("strict_border")["a != 0", "necessary"].outcome == Outcome.FAILS
 
 
 def test_no_root_to_the_left_does_not_mean_no_asymptotic_stability() -> None:
@@ -335,22 +335,22 @@ def test_no_root_to_the_left_does_not_mean_no_asymptotic_stability() -> None:
 def test_what_the_given_values_refute_is_refuted_by_them() -> None:
     """k = w^2 = 1: the isotropic oscillator in turning axes keeps angular momentum; stable whatever w is."""
     found = outcomes("foucault2")
-    assert found["w**2 != k", "necessary"].outcome == FAILS
+    assert found["w**2 != k", "necessary"].outcome == Outcome.FAILS
     assert dict(found["w**2 != k", "necessary"].counterexample.at) == {"k": "1", "w": "1"}
-    assert found["w**2 != k", ""].outcome == EXACT
+    assert found["w**2 != k", ""].outcome == Outcome.EXACT
 
 
 def test_systems_by_A_are_tried() -> None:
     """Vyshnegradsky: p''' + b p'' + a p' + c d p = 0 is stable iff a b > c d."""
     found = outcomes("gov_A")
-    assert {result.outcome for result in found.values()} == {FAILS}
+    assert {result.outcome for result in found.values()} == {Outcome.FAILS}
     for (_, role), result in found.items():
         a, b, c, d = (Fraction(x) for _, x in result.counterexample.at)
         assert (a * b > c * d) is (role == "necessary")
     text = (CASES / "gov_A.yaml").read_text(encoding="utf-8").partition("claims:")[0]
     right = "".join(f"  - {{claim: condition, that: a*b > c*d, as: {role}}}\n" for role in ("necessary", "sufficient"))
     necessary, sufficient = mbsym.loads(text + "claims:\n" + right).claims
-    assert (necessary.holds, sufficient.outcome) == (True, EXACT)
+    assert (necessary.holds, sufficient.outcome) == (True, Outcome.EXACT)
 
 
 def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
@@ -359,7 +359,7 @@ def test_where_nothing_is_stable_a_necessary_condition_says_nothing() -> None:
     assert analysis.stability.verdict.word == "unstable but for border cases"
     for result in analysis.claims:
         if result.claim.role == "necessary":
-            assert (result.outcome, result.holds) == (UNDECIDED, False), result.title
+            assert (result.outcome, result.holds) == (Outcome.UNDECIDED, False), result.title
             assert "border cases are left open" in result.remark
 
 
@@ -369,12 +369,12 @@ def test_where_borders_alone_are_stable_they_refute_and_nothing_else_is_told_of_
     found = outcomes("never_hurwitz")
     assert mbsym.load(CASES / "never_hurwitz.yaml").stability.verdict.word == "unstable but for border cases"
     for condition in ("a > 0", "b > 1", "b**2 > 3"):
-        assert found[condition, "necessary"].outcome == FAILS, condition
+        assert found[condition, "necessary"].outcome == Outcome.FAILS, condition
         at = dict(found[condition, "necessary"].counterexample.at)
         assert at["a"] == "0"
         assert Fraction(at["b"]) ** 2 < 3
     # True, as K is then indefinite or singular, but not shown: nothing is said of what makes the motion stable.
-    assert found["b**2 < 3", "necessary"].outcome == UNDECIDED
+    assert found["b**2 < 3", "necessary"].outcome == Outcome.UNDECIDED
     assert "border cases are left open" in found["b**2 < 3", "necessary"].remark
 
 
@@ -389,9 +389,9 @@ def test_a_whole_that_is_stable_in_every_case_does_not_depend() -> None:
         assert found.numerical.word == "stable"
     claims = outcomes("whole_dep")
     for that in ("a > 0", "a >= 0", "g > 0"):
-        assert claims[that, "sufficient"].outcome == EXACT
+        assert claims[that, "sufficient"].outcome == Outcome.EXACT
         assert "Lagrange-Dirichlet" in claims[that, "sufficient"].remark
-    assert claims["a > 0", "necessary"].outcome == claims["g > 0", "necessary"].outcome == FAILS
+    assert claims["a > 0", "necessary"].outcome == claims["g > 0", "necessary"].outcome == Outcome.FAILS
 
 
 def test_conditions_that_exclude_each_other_leave_nothing_stable() -> None:
@@ -431,7 +431,7 @@ claims:
   - {claim: condition, that: "a <= 0", as: sufficient}
 """
     strict, weak = mbsym.loads(cubic).claims
-    assert (strict.outcome, weak.outcome) == (BORDERS, FAILS)
+    assert (strict.outcome, weak.outcome) == (Outcome.BORDERS, Outcome.FAILS)
     assert "with equality, too, the motion may be stable" in strict.remark
     given = """
 mbsym: 1
@@ -443,7 +443,7 @@ claims:
   - {claim: condition, that: "a >= 0", as: sufficient}
 """
     strict, weak = mbsym.loads(given).claims
-    assert weak.outcome == FAILS
+    assert weak.outcome == Outcome.FAILS
     assert "nothing is proved" not in strict.remark or "nothing is proved in general" in strict.remark
 
 
@@ -467,7 +467,7 @@ claims:
   - {claim: condition, that: n > 1, as: sufficient}
 """
     ).claims
-    assert found.outcome == EXACT
+    assert found.outcome == Outcome.EXACT
 
 
 CART = """mbsym: 1
@@ -489,4 +489,4 @@ claims:
 def test_what_is_stable_by_one_theorem_or_another_is_stable() -> None:
     """With friction all roots but a zero one are to the left, without it Routh's theorem holds: g > 0 suffices."""
     (claim,) = mbsym.loads(CART).claims
-    assert claim.outcome == EXACT
+    assert claim.outcome == Outcome.EXACT

@@ -6,7 +6,7 @@ import pytest
 from conftest import SHIPPED
 
 import mbsym
-from mbsym.problems.claims import DIFFERS, EXACT, FACTOR, NUMERICAL, SCALED, UNDECIDED
+from mbsym.problems.claims import Outcome
 from mbsym.source import to_text, to_yaml
 
 OSCILLATOR = """mbsym: 1
@@ -55,7 +55,7 @@ def test_duffing_with_its_initial_displacement():
             "oscillation, of: m*x_dot**2/2 + m*w**2*x**2/2, order: 0, equals: m*w**2*a**2/2",
         )
     )
-    assert outcomes == [EXACT] * 8
+    assert outcomes == [Outcome.EXACT] * 8
     assert found[0].title == "oscillation of x, order 0"
     assert found[2].title == "oscillation frequency, order 0"
 
@@ -73,7 +73,15 @@ def test_wrong_coefficients_are_refuted():
             "oscillation frequency, order: 0, equals: c",
         )
     )
-    assert outcomes == [SCALED, DIFFERS, SCALED, DIFFERS, SCALED, DIFFERS, DIFFERS]
+    assert outcomes == [
+        Outcome.SCALED,
+        Outcome.DIFFERS,
+        Outcome.SCALED,
+        Outcome.DIFFERS,
+        Outcome.SCALED,
+        Outcome.DIFFERS,
+        Outcome.DIFFERS,
+    ]
     assert str(found[0].factor) == "32/31"
     assert found[1].remark == "in what stands before cos(3*phase)"
     assert str(found[3].difference) == "w"
@@ -91,7 +99,7 @@ def test_another_amplitude_or_phase_is_no_error():
             "oscillation, of: x, order: 1, equals: -k*a**3*sin(three)/(32*w**2)",
         )
     )
-    assert outcomes == [UNDECIDED] * 5
+    assert outcomes == [Outcome.UNDECIDED] * 5
     assert all("another amplitude" in one.remark for one in found)
 
 
@@ -109,7 +117,14 @@ def test_an_amplitude_that_is_determined():
         ),
         loads,
     )
-    assert outcomes == [EXACT, EXACT, EXACT, SCALED, EXACT, SCALED]
+    assert outcomes == [
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.SCALED,
+        Outcome.EXACT,
+        Outcome.SCALED,
+    ]
 
 
 def test_relations_between_parameters_are_used():
@@ -117,7 +132,7 @@ def test_relations_between_parameters_are_used():
         ("oscillation frequency, order: 1, equals: 3*c*a**2/8", "oscillation frequency, order: 1, equals: c*a**2/8"),
         relations="relations: {k: c*w}",
     )
-    assert outcomes == [EXACT, SCALED]
+    assert outcomes == [Outcome.EXACT, Outcome.SCALED]
 
 
 @pytest.mark.parametrize(
@@ -136,7 +151,7 @@ def test_relations_between_parameters_are_used():
 )
 def test_what_cannot_be_compared_is_undecided(claim, reason):
     (outcome,), (found,) = judged((claim,))
-    assert outcome == UNDECIDED
+    assert outcome == Outcome.UNDECIDED
     assert reason in found.remark
 
 
@@ -148,14 +163,14 @@ def test_roots_are_told_from_zero_or_not_at_all():
             "oscillation frequency, order: 0, equals: w + sqrt(2)",
         )
     )
-    assert outcomes == [UNDECIDED, DIFFERS]
+    assert outcomes == [Outcome.UNDECIDED, Outcome.DIFFERS]
     assert "square roots" in found[0].remark
 
 
 def test_without_a_periodic_solution_nothing_is_judged():
     loads = (*DUFFING, "generalized force: {x: -c*x_dot}")
     (outcome,), (found,) = judged(("oscillation, of: x, order: 0, equals: a*cos(phase)",), loads)
-    assert outcome == UNDECIDED
+    assert outcome == Outcome.UNDECIDED
     assert "no pair of imaginary roots" in found.remark
 
 
@@ -187,7 +202,7 @@ def test_slow_manifolds():
     )
     wrong = ("of: u, order: 1, equals: -k**2*(x - y)/c**3 + k*v/c**2", "of: u, order: 2, equals: 0")
     text = LIGHT + "".join(f"  - {{claim: slow manifold, {one}}}\n" for one in (*right, *wrong))
-    assert [one.outcome for one in mbsym.loads(text).claims] == [EXACT] * 5 + [DIFFERS] * 2
+    assert [one.outcome for one in mbsym.loads(text).claims] == [Outcome.EXACT] * 5 + [Outcome.DIFFERS] * 2
 
 
 def test_written_and_read_again():
@@ -226,7 +241,7 @@ def test_deprits_determinant():
     wrong = (f"645*{w}**2 - 541*{w} + 36", f"644*{w}**2 - 542*{w} + 36", "1", "0")
     other = (f"(644*{w}**2 - 541*{w} + 36)*(1 + mu)", f"(644*{w}**2 - 541*{w} + 36)*(1 - 4*mu)")
     found = of_three_bodies(*right, *wrong, *other)
-    assert [one.outcome for one in found] == [FACTOR] * 2 + [DIFFERS] * 4 + [UNDECIDED] * 2
+    assert [one.outcome for one in found] == [Outcome.FACTOR] * 2 + [Outcome.DIFFERS] * 4 + [Outcome.UNDECIDED] * 2
     assert str(found[0].factor) == "16*a**2*m/n**2"
     assert "mu = 1/100" in found[2].remark
     assert "normalisation" in found[6].remark
@@ -248,20 +263,20 @@ claims:
 def test_the_first_lyapunov_coefficient():
     """x'' + x'^3 + w^2 x = 0: a = -3 w^2/8 (J. Guckenheimer & P. Holmes, (3.4.11)).  Its sign is what counts."""
     formulas = {
-        "-3*w**2/8": EXACT,
-        "-3*w**2": FACTOR,
-        "-1": FACTOR,
-        "3*w**2/8": DIFFERS,
-        "w**2 - 2": DIFFERS,
-        "-b": DIFFERS,
-        "-(1 + b**2)": UNDECIDED,
-        "-w**2 - w": UNDECIDED,
+        "-3*w**2/8": Outcome.EXACT,
+        "-3*w**2": Outcome.FACTOR,
+        "-1": Outcome.FACTOR,
+        "3*w**2/8": Outcome.DIFFERS,
+        "w**2 - 2": Outcome.DIFFERS,
+        "-b": Outcome.DIFFERS,
+        "-(1 + b**2)": Outcome.UNDECIDED,
+        "-w**2 - w": Outcome.UNDECIDED,
     }
     claims = "".join(f"  - {{claim: lyapunov coefficient, equals: {one}}}\n" for one in formulas)
     analysis = mbsym.loads(ONE_PAIR + claims + "  - {claim: normal form determinant, equals: 1}\n")
     found = analysis.claims
     assert not analysis.defects
-    assert [one.outcome for one in found] == [*formulas.values(), UNDECIDED]
+    assert [one.outcome for one in found] == [*formulas.values(), Outcome.UNDECIDED]
     assert "opposite" in found[3].remark
     assert "another case" in found[8].remark
 
@@ -276,7 +291,7 @@ def test_a_root_of_a_square_is_not_what_was_squared():
             "oscillation frequency, order: 1, equals: 3*k*sqrt(w**2*c)*a**2/(8*w**2*c**(1/2))",
         )
     )
-    assert outcomes == [UNDECIDED, UNDECIDED, EXACT, EXACT]
+    assert outcomes == [Outcome.UNDECIDED, Outcome.UNDECIDED, Outcome.EXACT, Outcome.EXACT]
 
 
 FALL = """mbsym: 1
@@ -306,6 +321,6 @@ def test_a_slow_manifold_with_a_square_root_is_compared(of, speeds, rate):
     analysis = mbsym.loads(FALL.format(speeds=speeds, rate=rate, claims=claims))
     outcomes = [one.outcome for one in analysis.claims]
     assert not analysis.defects
-    holds = (EXACT, NUMERICAL)
+    holds = (Outcome.EXACT, Outcome.NUMERICAL)
     assert [x in holds for x in outcomes] == [True, True, False, True, False]
-    assert outcomes[2] == outcomes[4] == DIFFERS
+    assert outcomes[2] == outcomes[4] == Outcome.DIFFERS

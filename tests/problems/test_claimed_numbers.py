@@ -15,7 +15,7 @@ from click.testing import CliRunner
 from test_claims import PENDULUM, analysed, judged
 
 import mbsym
-from mbsym.problems.claims import DIFFERS, DIGITS, DOUBLES, TOLERANCE, UNDECIDED
+from mbsym.problems.claims import Outcome
 from mbsym.report.words.claims import claim_line
 from mbsym.source.schema import json_schema
 from mbsym.source.text_writer import to_text
@@ -34,7 +34,7 @@ def test_numbers_of_a_double_precision_program_hold() -> None:
     """Positions and velocities of three points, printed with the 16 digits of doubles."""
     found = mbsym.load(DOUBLE_CASE).claims
     assert len(found) == 9
-    assert {result.outcome for result in found} == {DIGITS, DOUBLES}
+    assert {result.outcome for result in found} == {Outcome.DIGITS, Outcome.DOUBLES}
     for result in found:
         digits = len(result.value.lstrip("-").replace("0.", "", 1).replace(".", ""))
         assert digits >= 17  # as many as were printed, and more
@@ -49,7 +49,7 @@ def test_a_wrong_digit_of_a_double_is_found(place: int) -> None:
         at = [k for k, c in enumerate(number) if c.isdigit() and number[: k + 1].strip("-0.")][place - 1]
         digit = (int(number[at]) + 2) % 10
         text = text.replace(f"equals: {number}", f"equals: {number[:at]}{digit}{number[at + 1 :]}")
-    assert {result.outcome for result in mbsym.loads(text).claims} == {DIFFERS}
+    assert {result.outcome for result in mbsym.loads(text).claims} == {Outcome.DIFFERS}
 
 
 def test_what_doubles_make_of_a_formula_holds() -> None:
@@ -60,27 +60,27 @@ def test_what_doubles_make_of_a_formula_holds() -> None:
     claim = "claim: value, of: theta_ddot, state: {{theta: {}}}, equals: {!r}"
     pairs = list(zip(states, computed, strict=True))
     found = analysed(*(claim.format(state, value) for state, value in pairs)).claims
-    assert {result.outcome for result in found} <= {DIGITS, DOUBLES}
+    assert {result.outcome for result in found} <= {Outcome.DIGITS, Outcome.DOUBLES}
     wrong = analysed(*(claim.format(state, value * (1 + 1e-13)) for state, value in pairs)).claims
-    assert {result.outcome for result in wrong} == {DIFFERS}
+    assert {result.outcome for result in wrong} == {Outcome.DIFFERS}
 
 
 def test_zero_in_doubles_is_not_quite_zero() -> None:
     assert math.cos(math.pi / 2) == 6.123233995736766e-17
     claim = "claim: velocity, of: bob, component: 1, state: {theta: pi/2, theta_dot: 1, l: 1}, equals: "
-    assert judged(claim + "6.123233995736766e-17").outcome == DOUBLES
-    assert judged(claim + "6.123233995736766e-14").outcome == DIFFERS
-    assert judged(claim + "6.12e-17").outcome == DIFFERS  # three digits are no double's
+    assert judged(claim + "6.123233995736766e-17").outcome == Outcome.DOUBLES
+    assert judged(claim + "6.123233995736766e-14").outcome == Outcome.DIFFERS
+    assert judged(claim + "6.12e-17").outcome == Outcome.DIFFERS  # three digits are no double's
 
 
 @pytest.mark.parametrize(
     ("printed", "outcome"),
     [
-        ("0.3333333333333333", DIGITS),
-        ("0.3333333333333332", DOUBLES),
-        ("0.33333333333334", DIFFERS),  # 14 digits
-        ("0.333333333333333332", DIFFERS),  # 18 digits: from better than doubles
-        ("0.33333333333333333333", DIGITS),
+        ("0.3333333333333333", Outcome.DIGITS),
+        ("0.3333333333333332", Outcome.DOUBLES),
+        ("0.33333333333334", Outcome.DIFFERS),  # 14 digits
+        ("0.333333333333333332", Outcome.DIFFERS),  # 18 digits: from better than doubles
+        ("0.33333333333333333333", Outcome.DIGITS),
     ],
 )
 def test_only_the_digits_of_doubles_are_granted_rounding(printed: str, outcome: str) -> None:
@@ -99,25 +99,28 @@ def test_the_derived_value_has_more_digits_than_the_claim() -> None:
 @pytest.mark.parametrize("number", ["0", "-0", "0e1", "0.0", "0.00e1"])
 def test_a_bare_zero_means_zero(number: str) -> None:
     """1/3 is neither 0 nor 0.0 (+- 0.05); what vanishes is all of them."""
-    assert judged(f"{VALUE}equals: {number}").outcome == DIFFERS
-    assert judged(f"claim: velocity, of: bob, component: 1, state: {{theta: 0.1}}, equals: {number}").outcome == DIGITS
+    assert judged(f"{VALUE}equals: {number}").outcome == Outcome.DIFFERS
+    assert (
+        judged(f"claim: velocity, of: bob, component: 1, state: {{theta: 0.1}}, equals: {number}").outcome
+        == Outcome.DIGITS
+    )
     assert judged(f"claim: value, of: m*l/100, state: {{m: 1, l: 1}}, equals: {number}").outcome == (
-        DIGITS if "." in number else DIFFERS  # 0.01 is 0.0, but it is not 0
+        Outcome.DIGITS if "." in number else Outcome.DIFFERS  # 0.01 is 0.0, but it is not 0
     )
 
 
 @pytest.mark.parametrize(
     ("claim", "outcome"),
     [
-        ("equals: 0.333, tolerance: 0.0004", TOLERANCE),
-        ("equals: 0.333, tolerance: 0.0003", DIFFERS),
-        ("equals: 1/3, tolerance: 1e-30", TOLERANCE),
-        ("equals: 0.3333339999, digits: 6", DIFFERS),
-        ("equals: 0.3333329999, digits: 6", TOLERANCE),
-        ("equals: 0.333333999, digits: 5", TOLERANCE),
-        ("equals: 0.3333333333333333, digits: 20", DIFFERS),
-        ("equals: 0, digits: 3", UNDECIDED),
-        ("equals: 0, tolerance: 1", TOLERANCE),
+        ("equals: 0.333, tolerance: 0.0004", Outcome.TOLERANCE),
+        ("equals: 0.333, tolerance: 0.0003", Outcome.DIFFERS),
+        ("equals: 1/3, tolerance: 1e-30", Outcome.TOLERANCE),
+        ("equals: 0.3333339999, digits: 6", Outcome.DIFFERS),
+        ("equals: 0.3333329999, digits: 6", Outcome.TOLERANCE),
+        ("equals: 0.333333999, digits: 5", Outcome.TOLERANCE),
+        ("equals: 0.3333333333333333, digits: 20", Outcome.DIFFERS),
+        ("equals: 0, digits: 3", Outcome.UNDECIDED),
+        ("equals: 0, tolerance: 1", Outcome.TOLERANCE),
     ],
 )
 def test_a_claim_may_say_how_exact_it_is_meant(claim: str, outcome: str) -> None:

@@ -14,19 +14,7 @@ from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
 import mbsym
 from mbsym.algebra import ring
 from mbsym.analysis import Analysis
-from mbsym.problems.claims import (
-    DIFFERS,
-    DIGITS,
-    EQUIVALENT,
-    EXACT,
-    FACTOR,
-    FAILS,
-    NUMERICAL,
-    RELATIONS,
-    SCALED,
-    UNDECIDED,
-    ClaimResult,
-)
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
 from mbsym_cli.main import main
@@ -66,49 +54,52 @@ def judged(claim: str, text: str = PENDULUM) -> ClaimResult:
 @pytest.mark.parametrize(
     ("claim", "outcome"),
     [
-        ("claim: kinetic energy, equals: Io*theta_dot**2/2", EXACT),
-        ("claim: kinetic energy, equals: m*l**2*theta_dot**2/2", DIFFERS),
-        ("claim: force function, equals: m*g*l*cos(theta)", EXACT),
-        ("claim: potential energy, equals: -m*g*l*cos(theta)", EXACT),
-        ("claim: potential energy, equals: m*g*l*sin(theta)", DIFFERS),
-        ("claim: potential energy, equals: m*g*l*(1 - cos(theta))", EQUIVALENT),
-        ("claim: potential energy, equals: -k*cos(theta)", RELATIONS),
-        ("claim: potential energy, equals: 2*m*g*l*sin(half)**2, place: half angles", EQUIVALENT),
-        ("claim: potential energy, equals: -m*g*l*(sqrt((1 + cos(theta))**2) - 1)", NUMERICAL),
-        ("claim: lagrangian, equals: Io*theta_dot**2/2 + m*g*l*cos(twice/2)", EXACT),
-        ("claim: lagrangian, equals: T + m*g*l*cos(theta) + 3*t*theta_dot*cos(theta) + 3*sin(theta)", EQUIVALENT),
-        ("claim: lagrangian, equals: T + m*g*l*cos(theta) + 3*t*theta_dot*cos(theta)", DIFFERS),
-        ("claim: coefficient, of: kinetic energy, at: theta_dot**2, equals: Io/2", EXACT),
-        ("claim: coefficient, of: kinetic energy, at: theta_dot**2, equals: Io", SCALED),
-        ("claim: coefficient, of: kinetic energy, at: theta_dot, equals: 0", EXACT),
-        ("claim: coefficient, of: theta, at: theta_ddot, equals: Io", EXACT),
-        ("claim: mass matrix, entry: [theta, 1], equals: l**2*m + J", EXACT),
-        ("claim: mass matrix, entry: [1, 1], equals: l**2*m - J", DIFFERS),
-        ("claim: linear matrix K, entry: [1, theta], equals: k", RELATIONS),
-        ("claim: linear matrix G, entry: [1, theta], equals: J", DIFFERS),
-        ("claim: subsystem matrix M, entry: [theta, theta], equals: Io", EXACT),
-        ("claim: equation of motion, of: theta, equals: theta_ddot + w2*sin(theta)", FACTOR),
-        ("claim: equation of motion, of: theta, equals: theta_ddot - w2*sin(theta)", DIFFERS),
-        ("claim: characteristic polynomial, variable: p, equals: p**2 + w2", FACTOR),
-        ("claim: characteristic polynomial, variable: p, equals: p**2 + p + w2", DIFFERS),
-        ("claim: angular velocity, of: bob, component: 3, equals: theta_dot", EXACT),
-        ("claim: relative angular velocity, of: bob, component: 1, equals: theta_dot", DIFFERS),
-        ("claim: direction cosine, of: bob, entry: [1, 2], equals: sin(theta)", EXACT),
-        ("claim: direction cosine, of: bob, entry: [2, 1], equals: sin(theta)", SCALED),
-        ("claim: position, of: bob, component: 1, equals: l*sin(theta)", EXACT),
-        ("claim: velocity, of: bob, component: 2, equals: l*theta_dot*sin(theta)", EXACT),
-        ("claim: velocity, of: bob, component: 2, equals: l*theta_dot*cos(theta)", DIFFERS),
-        ("claim: first integral, equals: theta_dot**2 - 2*w2*cos(theta)", EXACT),
-        ("claim: first integral, equals: (theta_dot**2 - 2*w2*cos(theta))**3 + m", EXACT),
-        ("claim: first integral, equals: Io*theta_dot**2 - 2*k*cos(theta)", RELATIONS),
-        ("claim: first integral, equals: theta_dot**2 + 2*w2*cos(theta)", FAILS),
-        ("claim: first integral, equals: m + l", FAILS),
-        ("claim: condition, that: m*g > 0", EXACT),
-        ("claim: condition, that: J + m < 0", FAILS),
-        ("claim: condition, that: J - m > 0", FAILS),
-        ("claim: value, of: theta_ddot, state: {theta: pi/2}, equals: -4.36", DIGITS),
-        ("claim: value, of: theta_ddot, state: {theta: pi/2}, equals: 4.36", DIFFERS),
-        ("claim: value, of: m*l/3, state: initial, equals: 2/3", NUMERICAL),
+        ("claim: kinetic energy, equals: Io*theta_dot**2/2", Outcome.EXACT),
+        ("claim: kinetic energy, equals: m*l**2*theta_dot**2/2", Outcome.DIFFERS),
+        ("claim: force function, equals: m*g*l*cos(theta)", Outcome.EXACT),
+        ("claim: potential energy, equals: -m*g*l*cos(theta)", Outcome.EXACT),
+        ("claim: potential energy, equals: m*g*l*sin(theta)", Outcome.DIFFERS),
+        ("claim: potential energy, equals: m*g*l*(1 - cos(theta))", Outcome.EQUIVALENT),
+        ("claim: potential energy, equals: -k*cos(theta)", Outcome.RELATIONS),
+        ("claim: potential energy, equals: 2*m*g*l*sin(half)**2, place: half angles", Outcome.EQUIVALENT),
+        ("claim: potential energy, equals: -m*g*l*(sqrt((1 + cos(theta))**2) - 1)", Outcome.NUMERICAL),
+        ("claim: lagrangian, equals: Io*theta_dot**2/2 + m*g*l*cos(twice/2)", Outcome.EXACT),
+        (
+            "claim: lagrangian, equals: T + m*g*l*cos(theta) + 3*t*theta_dot*cos(theta) + 3*sin(theta)",
+            Outcome.EQUIVALENT,
+        ),
+        ("claim: lagrangian, equals: T + m*g*l*cos(theta) + 3*t*theta_dot*cos(theta)", Outcome.DIFFERS),
+        ("claim: coefficient, of: kinetic energy, at: theta_dot**2, equals: Io/2", Outcome.EXACT),
+        ("claim: coefficient, of: kinetic energy, at: theta_dot**2, equals: Io", Outcome.SCALED),
+        ("claim: coefficient, of: kinetic energy, at: theta_dot, equals: 0", Outcome.EXACT),
+        ("claim: coefficient, of: theta, at: theta_ddot, equals: Io", Outcome.EXACT),
+        ("claim: mass matrix, entry: [theta, 1], equals: l**2*m + J", Outcome.EXACT),
+        ("claim: mass matrix, entry: [1, 1], equals: l**2*m - J", Outcome.DIFFERS),
+        ("claim: linear matrix K, entry: [1, theta], equals: k", Outcome.RELATIONS),
+        ("claim: linear matrix G, entry: [1, theta], equals: J", Outcome.DIFFERS),
+        ("claim: subsystem matrix M, entry: [theta, theta], equals: Io", Outcome.EXACT),
+        ("claim: equation of motion, of: theta, equals: theta_ddot + w2*sin(theta)", Outcome.FACTOR),
+        ("claim: equation of motion, of: theta, equals: theta_ddot - w2*sin(theta)", Outcome.DIFFERS),
+        ("claim: characteristic polynomial, variable: p, equals: p**2 + w2", Outcome.FACTOR),
+        ("claim: characteristic polynomial, variable: p, equals: p**2 + p + w2", Outcome.DIFFERS),
+        ("claim: angular velocity, of: bob, component: 3, equals: theta_dot", Outcome.EXACT),
+        ("claim: relative angular velocity, of: bob, component: 1, equals: theta_dot", Outcome.DIFFERS),
+        ("claim: direction cosine, of: bob, entry: [1, 2], equals: sin(theta)", Outcome.EXACT),
+        ("claim: direction cosine, of: bob, entry: [2, 1], equals: sin(theta)", Outcome.SCALED),
+        ("claim: position, of: bob, component: 1, equals: l*sin(theta)", Outcome.EXACT),
+        ("claim: velocity, of: bob, component: 2, equals: l*theta_dot*sin(theta)", Outcome.EXACT),
+        ("claim: velocity, of: bob, component: 2, equals: l*theta_dot*cos(theta)", Outcome.DIFFERS),
+        ("claim: first integral, equals: theta_dot**2 - 2*w2*cos(theta)", Outcome.EXACT),
+        ("claim: first integral, equals: (theta_dot**2 - 2*w2*cos(theta))**3 + m", Outcome.EXACT),
+        ("claim: first integral, equals: Io*theta_dot**2 - 2*k*cos(theta)", Outcome.RELATIONS),
+        ("claim: first integral, equals: theta_dot**2 + 2*w2*cos(theta)", Outcome.FAILS),
+        ("claim: first integral, equals: m + l", Outcome.FAILS),
+        ("claim: condition, that: m*g > 0", Outcome.EXACT),
+        ("claim: condition, that: J + m < 0", Outcome.FAILS),
+        ("claim: condition, that: J - m > 0", Outcome.FAILS),
+        ("claim: value, of: theta_ddot, state: {theta: pi/2}, equals: -4.36", Outcome.DIGITS),
+        ("claim: value, of: theta_ddot, state: {theta: pi/2}, equals: 4.36", Outcome.DIFFERS),
+        ("claim: value, of: m*l/3, state: initial, equals: 2/3", Outcome.NUMERICAL),
     ],
 )  # fmt: skip
 def test_every_kind_is_told_apart_from_its_errors(claim: str, outcome: str) -> None:
@@ -130,9 +121,9 @@ def test_a_difference_is_exactly_that() -> None:
 
 def test_a_factor_matters_only_where_the_quantity_is_not_zero() -> None:
     twice = judged("claim: kinetic energy, equals: Io*theta_dot**2")
-    assert (twice.outcome, str(twice.factor), twice.holds, twice.refuted) == (SCALED, "2", False, True)
+    assert (twice.outcome, str(twice.factor), twice.holds, twice.refuted) == (Outcome.SCALED, "2", False, True)
     scaled = judged("claim: mass matrix, entry: [1, 1], equals: m*Io/l**2")
-    assert (scaled.outcome, str(scaled.factor), scaled.refuted) == (SCALED, "m/l**2", True)
+    assert (scaled.outcome, str(scaled.factor), scaled.refuted) == (Outcome.SCALED, "m/l**2", True)
     equation = judged("claim: equation of motion, of: theta, equals: theta_ddot + w2*sin(theta)")
     assert (str(equation.factor), equation.holds, equation.refuted) == ("1/(m*l**2 + J)", True, False)
 
@@ -140,17 +131,17 @@ def test_a_factor_matters_only_where_the_quantity_is_not_zero() -> None:
 @pytest.mark.parametrize(
     ("printed", "outcome", "right"),
     [
-        ("1.66173165676", DIGITS, 12),
-        ("1.66", DIGITS, 3),
-        ("1.7", DIGITS, 2),
-        ("2", DIGITS, 1),
-        ("0.2e1", DIGITS, 1),
-        ("1.67", DIFFERS, 2),
-        ("1.8", DIFFERS, 1),
-        ("1.660", DIFFERS, 3),
-        ("-1.66", DIFFERS, 0),
-        ("-5.4", DIFFERS, 0),
-        ("16.6", DIFFERS, 0),
+        ("1.66173165676", Outcome.DIGITS, 12),
+        ("1.66", Outcome.DIGITS, 3),
+        ("1.7", Outcome.DIGITS, 2),
+        ("2", Outcome.DIGITS, 1),
+        ("0.2e1", Outcome.DIGITS, 1),
+        ("1.67", Outcome.DIFFERS, 2),
+        ("1.8", Outcome.DIFFERS, 1),
+        ("1.660", Outcome.DIFFERS, 3),
+        ("-1.66", Outcome.DIFFERS, 0),
+        ("-5.4", Outcome.DIFFERS, 0),
+        ("16.6", Outcome.DIFFERS, 0),
     ],
 )
 def test_numbers_hold_to_the_digits_printed(printed: str, outcome: str, right: int) -> None:
@@ -161,19 +152,24 @@ def test_numbers_hold_to_the_digits_printed(printed: str, outcome: str, right: i
 
 def test_states_are_initial_or_given() -> None:
     # l theta' cos(theta) with l = 2: at the initial state 3 cos(pi/6), else what is not named is zero.
-    assert judged("claim: velocity, of: bob, component: 1, state: initial, equals: 2.598").outcome == DIGITS
-    assert judged("claim: velocity, of: bob, component: 1, state: {theta_dot: 1.5}, equals: 3.0").outcome == DIGITS
-    assert judged("claim: velocity, of: bob, component: 1, state: {theta: 0.1}, equals: 0").outcome == DIGITS
-    assert judged("claim: velocity, of: bob, component: 1, state: {theta_dot: 1, l: 7}, equals: 7.00").outcome == DIGITS
+    assert judged("claim: velocity, of: bob, component: 1, state: initial, equals: 2.598").outcome == Outcome.DIGITS
+    assert (
+        judged("claim: velocity, of: bob, component: 1, state: {theta_dot: 1.5}, equals: 3.0").outcome == Outcome.DIGITS
+    )
+    assert judged("claim: velocity, of: bob, component: 1, state: {theta: 0.1}, equals: 0").outcome == Outcome.DIGITS
+    assert (
+        judged("claim: velocity, of: bob, component: 1, state: {theta_dot: 1, l: 7}, equals: 7.00").outcome
+        == Outcome.DIGITS
+    )
 
 
 def test_what_cannot_be_derived_is_undecided_with_the_reason() -> None:
     text = PENDULUM.replace("g: 9.81", "")
     missing = judged("claim: value, of: g, state: initial, equals: 1", text=text)
-    assert (missing.outcome, missing.remark) == (UNDECIDED, "no number is given for g")
+    assert (missing.outcome, missing.remark) == (Outcome.UNDECIDED, "no number is given for g")
     text = PENDULUM.replace("motion: {theta: 0}\n", "")
     unmoved = judged("claim: linear matrix K, entry: [1, 1], equals: m", text=text)
-    assert unmoved.outcome == UNDECIDED
+    assert unmoved.outcome == Outcome.UNDECIDED
     assert "unperturbed motion" in unmoved.remark
     assert not unmoved.holds
     assert not unmoved.refuted
@@ -191,16 +187,16 @@ def test_claims_change_no_result() -> None:
     found = results(claiming, range(1, 8))
     assert len(found.pop("claims")) == 3
     assert found == plain
-    assert [result.outcome for result in first] == [EQUIVALENT, FAILS, DIFFERS]
+    assert [result.outcome for result in first] == [Outcome.EQUIVALENT, Outcome.FAILS, Outcome.DIFFERS]
 
 
 def test_abbreviations_may_be_angles_or_values_and_use_earlier_ones() -> None:
     text = PENDULUM.replace(
         "half: theta/2", "half: theta/2, third: half - theta/6, all: 2*half + third - twice/6, c: cos(all)"
     )
-    assert judged("claim: potential energy, equals: -m*g*l*c", text=text).outcome == EXACT
-    assert judged("claim: potential energy, equals: -m*g*l*cos(3*third)", text=text).outcome == EXACT
-    assert judged("claim: potential energy, equals: -m*g*l*cos(3*half)", text=text).outcome == DIFFERS
+    assert judged("claim: potential energy, equals: -m*g*l*c", text=text).outcome == Outcome.EXACT
+    assert judged("claim: potential energy, equals: -m*g*l*cos(3*third)", text=text).outcome == Outcome.EXACT
+    assert judged("claim: potential energy, equals: -m*g*l*cos(3*half)", text=text).outcome == Outcome.DIFFERS
 
 
 def test_conditions_are_found_among_those_of_problem_6() -> None:
@@ -209,17 +205,21 @@ def test_conditions_are_found_among_those_of_problem_6() -> None:
     conditions = [item for part in mbsym.loads(text).stability.subsystems for item in part.conditions if item[2] == ">"]
     assert conditions
     label, formula, _ = conditions[0]
-    for that, outcome in ((f"{formula} > 0", EXACT), (f"0 < 7*({formula})", EXACT), (f"{formula} < 0", FAILS)):
+    for that, outcome in (
+        (f"{formula} > 0", Outcome.EXACT),
+        (f"0 < 7*({formula})", Outcome.EXACT),
+        (f"{formula} < 0", Outcome.FAILS),
+    ):
         (result,) = mbsym.loads(f'{text}\nclaims:\n  - {{claim: condition, that: "{that}"}}\n').claims
         assert result.outcome == outcome, that
-        assert (label in result.remark) == (outcome == EXACT)
+        assert (label in result.remark) == (outcome == Outcome.EXACT)
 
 
 def test_a_condition_that_is_not_necessary_gets_a_counterexample() -> None:
     path = SHIPPED / "gravity-gradient.yaml"
     text = path.read_text(encoding="utf-8")
     (result,) = mbsym.loads(f"{text}\nclaims:\n  - {{claim: condition, that: C > 7*A}}\n").claims
-    assert (result.outcome, result.refuted) == (FAILS, True)
+    assert (result.outcome, result.refuted) == (Outcome.FAILS, True)
     assert "not necessary" in result.remark
     assert result.counterexample is not None
     values = dict(result.counterexample.at)
@@ -233,7 +233,7 @@ def test_a_condition_that_is_not_necessary_gets_a_counterexample() -> None:
 def test_the_printed_formulas_of_the_satellite_hold() -> None:
     analysis = mbsym.load(SHIPPED / "satellite.yaml")
     assert len(analysis.claims) == 44
-    assert {result.outcome for result in analysis.claims} == {EXACT}
+    assert {result.outcome for result in analysis.claims} == {Outcome.EXACT}
     text = (SHIPPED / "satellite.yaml").read_text(encoding="utf-8")
     for right, wrong, about in (
         ("equals: 3*f + d,", "equals: 3*f - d,", "subsystem matrix K [sigma, sigma]"),
@@ -306,10 +306,10 @@ def test_growing_abbreviations_end_in_a_reason_and_cost_the_others_nothing() -> 
         "claim: kinetic energy, equals: Io*theta_dot**2/2",
         text=text,
     )
-    assert [result.outcome for result in found.claims[:2]] == [UNDECIDED, UNDECIDED]
-    assert found.claims[3].outcome == EXACT
+    assert [result.outcome for result in found.claims[:2]] == [Outcome.UNDECIDED, Outcome.UNDECIDED]
+    assert found.claims[3].outcome == Outcome.EXACT
     assert found.energy.cyclic == ()
-    assert all(result.remark for result in found.claims if result.outcome == UNDECIDED)
+    assert all(result.remark for result in found.claims if result.outcome == Outcome.UNDECIDED)
 
 
 def test_many_costly_claims_are_bounded_together(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -318,8 +318,8 @@ def test_many_costly_claims_are_bounded_together(monkeypatch: pytest.MonkeyPatch
     claim = "claim: first integral, equals: (theta_dot + cos(theta) + m + l + J + g)**16"
     found = analysed(*[claim] * 60)
     outcomes = [result.outcome for result in found.claims]
-    judged = outcomes.index(UNDECIDED)
+    judged = outcomes.index(Outcome.UNDECIDED)
     assert 1 < judged < 40
-    assert outcomes == [FAILS] * judged + [UNDECIDED] * (60 - judged)
+    assert outcomes == [Outcome.FAILS] * judged + [Outcome.UNDECIDED] * (60 - judged)
     assert found.ring.work < found.ring.work_budget
     assert str(found.energy.kinetic_energy) == "(m*l**2 + J)*theta_dot**2/2"

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.problems.claims import DIGITS, EXACT, FAILS, NUMERICAL, UNDECIDED, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = ROOT / "systems"
@@ -42,7 +42,13 @@ def test_quantities_hold_in_general_or_on_the_constraints() -> None:
         "position, of: particle, component: 2, equals: y",
         "mass matrix, entry: [x, x], equals: m",
     )
-    assert [result.outcome for result in results] == [EXACT, EXACT, NUMERICAL, EXACT, EXACT]
+    assert [result.outcome for result in results] == [
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.NUMERICAL,
+        Outcome.EXACT,
+        Outcome.EXACT,
+    ]
     assert [bool(result.remark) for result in results] == [False, True, True, False, False]
     wrong = judged(
         "cartesian-pendulum",
@@ -65,10 +71,17 @@ def test_equations_vanish_along_every_motion() -> None:
         f"{equation} x_ddot*x + y_ddot*y - x_dot**2 + y_dot**2",
         f"{equation} x - x",
     )
-    assert (right.outcome, alone.outcome) == (EXACT, EXACT)  # linear in accelerations: proved in the ring
+    assert (right.outcome, alone.outcome) == (
+        Outcome.EXACT,
+        Outcome.EXACT,
+    )  # linear in accelerations: proved in the ring
     assert "constraints alone" in alone.remark
     assert not right.remark.startswith("it follows")
-    assert [signs.outcome, wrong_alone.outcome, nothing.outcome] == [FAILS, FAILS, UNDECIDED]
+    assert [signs.outcome, wrong_alone.outcome, nothing.outcome] == [
+        Outcome.FAILS,
+        Outcome.FAILS,
+        Outcome.UNDECIDED,
+    ]
     assert signs.counterexample is not None
     yaw, other = judged(
         "chaplygin-sleigh",
@@ -77,7 +90,7 @@ def test_equations_vanish_along_every_motion() -> None:
         "equation of motion, of: theta, equals: (J + m*a**2)*theta_ddot - m*a*theta_dot*(x_dot*cos(theta)"
         " + y_dot*sin(theta))",
     )
-    assert (yaw.outcome, other.outcome) == (EXACT, FAILS)
+    assert (yaw.outcome, other.outcome) == (Outcome.EXACT, Outcome.FAILS)
 
 
 def test_integrals_are_kept_with_the_constraint_forces() -> None:
@@ -87,7 +100,7 @@ def test_integrals_are_kept_with_the_constraint_forces() -> None:
         "first integral, equals: m*(x_dot**2 + y_dot**2) + J*theta_dot**2",
         "first integral, equals: x_dot*sin(theta) - y_dot*cos(theta)",
     )
-    assert [energy.outcome, wrong.outcome, tied.outcome] == [EXACT, FAILS, FAILS]
+    assert [energy.outcome, wrong.outcome, tied.outcome] == [Outcome.EXACT, Outcome.FAILS, Outcome.FAILS]
     assert wrong.counterexample is not None
     assert "contains none" in tied.remark
     # A momentum that the open tree keeps, and the constrained body does not.
@@ -120,7 +133,13 @@ def test_conditions_are_those_of_problem_6_or_refuted_at_exact_parameters() -> N
         "condition, as: sufficient, that: w**2 > g/r",
     )
     # Without w^2 > g/(4 r), with equality even, w^2 < g/(3 r): the disc falls.
-    assert [result.outcome for result in results] == [EXACT, EXACT, FAILS, FAILS, UNDECIDED]
+    assert [result.outcome for result in results] == [
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.FAILS,
+        Outcome.FAILS,
+        Outcome.UNDECIDED,
+    ]
     assert results[2].counterexample is not None
     assert ("the motion", "unstable (Lyapunov's first method)") in results[2].counterexample.shows
     (necessary,) = judged("cartesian-pendulum", "condition, as: necessary, that: g > L")
@@ -141,10 +160,10 @@ def test_numbers_of_the_four_bar_are_those_published() -> None:
     *right, wrong, inconsistent = judged("four-bar", *claims, off, beside)
     assert all(result.holds for result in right)
     assert wrong.refuted
-    assert inconsistent.outcome == UNDECIDED
+    assert inconsistent.outcome == Outcome.UNDECIDED
     assert "does not keep" in inconsistent.remark
     (rough,) = judged("four-bar", f"value, of: q1_ddot, state: {{{state}}}, equals: 0.0048758")
-    assert rough.outcome == DIGITS
+    assert rough.outcome == Outcome.DIGITS
 
 
 def test_matrices_in_speeds_are_those_in_coordinates() -> None:
@@ -178,7 +197,7 @@ def test_a_number_of_the_pendulum_by_hand() -> None:
     """x'' = lambda x, y'' = lambda y - g with lambda = (g y - v^2)/L^2 = -9: x'' = -5.4."""
     state = "x: 0.6, y: -0.8, x_dot: 0.8, y_dot: 0.6, L: 1, m: 1, g: 10"
     (result,) = judged("cartesian-pendulum", f"value, of: x_ddot, state: {{{state}}}, equals: -5.4")
-    assert result.outcome == DIGITS
+    assert result.outcome == Outcome.DIGITS
 
 
 WHEEL = """mbsym: 1
@@ -211,5 +230,5 @@ claims:
 
 def test_integrals_without_velocities() -> None:
     """x + r f of a wheel that rolls on a line, and x + y of c x' = -k (x - y), c y' = k (x - y), are constant."""
-    assert [one.outcome for one in mbsym.loads(WHEEL).claims] == [EXACT, FAILS]
-    assert [one.outcome for one in mbsym.loads(LIGHT).claims] == [UNDECIDED]
+    assert [one.outcome for one in mbsym.loads(WHEEL).claims] == [Outcome.EXACT, Outcome.FAILS]
+    assert [one.outcome for one in mbsym.loads(LIGHT).claims] == [Outcome.UNDECIDED]

@@ -8,7 +8,7 @@ from test_canonical_checks import TOP
 
 import mbsym
 from mbsym import DescriptionError
-from mbsym.problems.claims import EXACT, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.source.yaml_writer import to_yaml
 
 POLE = (SHIPPED / "cart-pole.yaml").read_text()
@@ -40,7 +40,7 @@ def test_lagranges_top() -> None:
         'claim: first integral, equals: "p_theta"',
     )
     assert [one.holds for one in found] == [True, False] * 4 + [True, True, False]
-    assert {one.outcome for one in found[:8:2]} == {EXACT}
+    assert {one.outcome for one in found[:8:2]} == {Outcome.EXACT}
     # By hand: H claimed - H = -2 m g l cos(theta); R claimed - R = A theta'^2/2.
     assert str(found[1].difference) == "-2*m*l*g*cos(theta)"
     assert str(found[7].difference) == "A*theta_dot**2/2"
@@ -61,7 +61,7 @@ RIGHT = (
 
 def test_the_balance_system_of_astrom_and_murray() -> None:
     found = judged(POLE, *RIGHT)
-    assert [one.outcome for one in found] == [EXACT] * len(RIGHT), [(one.title, one.outcome) for one in found]
+    assert [one.outcome for one in found] == [Outcome.EXACT] * len(RIGHT), [(one.title, one.outcome) for one in found]
     wrong = judged(POLE, RIGHT[0].replace("equals: 1", "equals: -1"), RIGHT[4].replace("m**2", "m"), RIGHT[6] + "0")
     assert [one.holds for one in wrong] == [False] * 3
     assert found[2].title == "state matrix B [p_dot, F]"

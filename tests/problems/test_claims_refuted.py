@@ -16,18 +16,7 @@ from conftest import SHIPPED, at_values, compiled_latex, needs_pdflatex
 from test_claims import PENDULUM, analysed, judged
 
 import mbsym
-from mbsym.problems.claims import (
-    BORDERS,
-    DIFFERS,
-    EQUIVALENT,
-    EXACT,
-    FACTOR,
-    FAILS,
-    NUMERICAL,
-    RELATIONS,
-    SCALED,
-    ClaimResult,
-)
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.report.latex.report import render as latex
 from mbsym.report.results_json import results
 from mbsym.report.words.claims import claim_line
@@ -91,9 +80,9 @@ def test_a_wrong_factor_never_reads_as_holding() -> None:
     assert [line.word for line in lines] == ["refuted", "refuted", "held"]
     written = results(analysis, range(1, 8))["claims"]
     assert [(one["word"], one["outcome"], one["factor"]) for one in written] == [
-        ("refuted", SCALED, "2"),
-        ("refuted", SCALED, "-1"),
-        ("held", FACTOR, "1/(m*l**2 + J)"),
+        ("refuted", Outcome.SCALED, "2"),
+        ("refuted", Outcome.SCALED, "-1"),
+        ("held", Outcome.FACTOR, "1/(m*l**2 + J)"),
     ]
     for one in written:
         assert ("holds" in one["outcome"]) == (one["word"] == "held")
@@ -113,7 +102,12 @@ def test_a_wrong_factor_never_reads_as_holding() -> None:
 )
 def test_a_factor_that_may_vanish_is_told(claim: str, factor: str, remark: str) -> None:
     result = judged(claim)
-    assert (result.outcome, str(result.factor), result.remark, result.holds) == (FACTOR, factor, remark, True)
+    assert (result.outcome, str(result.factor), result.remark, result.holds) == (
+        Outcome.FACTOR,
+        factor,
+        remark,
+        True,
+    )
 
 
 # --- what a difference is compared with ---
@@ -135,20 +129,20 @@ def test_a_factor_that_may_vanish_is_told(claim: str, factor: str, remark: str) 
 )
 def test_a_difference_is_what_is_wrong_and_no_more(claim: str, factor: str | None, parts: dict[str, str]) -> None:
     result = judged(claim)
-    assert result.outcome == DIFFERS
+    assert result.outcome == Outcome.DIFFERS
     assert (None if result.factor is None else str(result.factor)) == factor
     assert {str(part.factor): str(part.difference) for part in result.parts} == parts
 
 
 def test_a_polynomial_is_compared_with_the_multiple_that_agrees() -> None:
     result = judged("claim: characteristic polynomial, variable: p, equals: p**2 + p/3 + w2")
-    assert (result.outcome, str(result.factor)) == (DIFFERS, "1/(m*l**2 + J)")
+    assert (result.outcome, str(result.factor)) == (Outcome.DIFFERS, "1/(m*l**2 + J)")
     assert [(part.power, str(part.difference)) for part in result.parts] == [(1, "1/3")]
     line = claim_line(result)
     assert line.outcome == "differs (compared with 1/(m*l**2 + J) times derived)"
     assert line.lines == ("at p**1: claimed - factor*derived = 1/3",)
     # A root too many is no factor that may be dropped.
-    assert judged("claim: characteristic polynomial, variable: p, equals: p*(p**2 + w2)").outcome == DIFFERS
+    assert judged("claim: characteristic polynomial, variable: p, equals: p*(p**2 + w2)").outcome == Outcome.DIFFERS
 
 
 # --- first integrals ---
@@ -171,14 +165,14 @@ def test_a_refuted_integral_shows_its_rate_and_a_state() -> None:
     assert "det" not in latex(analysed(claim), range(1, 8)).partition("section*{Claims}")[2]
     # The control: the integral itself has neither.
     right = judged("claim: first integral, equals: theta_dot**2 - 2*w2*cos(theta)")
-    assert (right.outcome, right.counterexample, right.difference) == (EXACT, None, None)
+    assert (right.outcome, right.counterexample, right.difference) == (Outcome.EXACT, None, None)
 
 
 def test_where_the_rate_is_too_long_there_is_still_a_state() -> None:
     """Six coordinates: no closed form of M^-1 f; that x_A' is not constant is seen at the state that is told."""
     text = (SHIPPED / "tethered-satellites.yaml").read_text(encoding="utf-8").partition("\nclaims:")[0]
     (result,) = mbsym.loads(text + "\nclaims:\n  - {claim: first integral, equals: x_A_dot}\n", (3,)).claims
-    assert (result.outcome, result.difference) == (FAILS, None)
+    assert (result.outcome, result.difference) == (Outcome.FAILS, None)
     assert result.counterexample is not None
     state = ", ".join(f"{name}: {value}" for name, value in result.counterexample.at)
     rate = dict(result.counterexample.shows)["dI/dt"]
@@ -191,9 +185,9 @@ def test_where_the_rate_is_too_long_there_is_still_a_state() -> None:
 def test_a_counterexample_keeps_relations_and_given_numbers() -> None:
     """k = m g l: with k in the claim, k is what the relation gives, and the claim holds on it."""
     claim = "claim: first integral, equals: Io*theta_dot**2 {} 2*k*cos(theta)"
-    assert judged(claim.format("-")).outcome == RELATIONS
+    assert judged(claim.format("-")).outcome == Outcome.RELATIONS
     result = judged(claim.format("+"))
-    assert result.outcome == FAILS
+    assert result.outcome == Outcome.FAILS
     at = {name: float(Fraction(value)) for name, value in result.counterexample.at}
     k = at["m"] * at["g"] * at["l"]
     # d/dt (Io theta'^2 + 2 k cos) = 2 theta' (Io theta'' - k sin) = -4 k sin(theta) theta'.
@@ -212,7 +206,7 @@ def test_conditions_are_refuted_by_parameters() -> None:
     """Stable exactly for k1 > 0 and k2 > 0."""
     stronger, other = conditions("that: k1 > k2", "that: k1 + k2 > 1")
     for result, fails in ((stronger, lambda a, b: a <= b), (other, lambda a, b: a + b <= 1)):
-        assert (result.outcome, result.refuted) == (FAILS, True)
+        assert (result.outcome, result.refuted) == (Outcome.FAILS, True)
         assert result.remark == "it is not necessary for stability"
         at = {name: Fraction(value) for name, value in result.counterexample.at}
         assert at["k1"] > 0
@@ -224,9 +218,9 @@ def test_conditions_are_refuted_by_parameters() -> None:
     assert line.lines[0].startswith("for example at m = ")
     # The controls: conditions that are right, and one that is weaker than what is needed: it follows from both.
     for result in conditions("that: k1 > 0", "as: necessary, that: 3*k2 > 0"):
-        assert result.outcome == EXACT
+        assert result.outcome == Outcome.EXACT
     (weaker,) = conditions("as: necessary, that: k1 + k2 > 0")
-    assert (weaker.outcome, weaker.refuted, weaker.counterexample) == (BORDERS, False, None)
+    assert (weaker.outcome, weaker.refuted, weaker.counterexample) == (Outcome.BORDERS, False, None)
     assert weaker.remark.startswith("it follows from v0 of x and v0 of y")
 
 
@@ -236,17 +230,17 @@ def test_sufficient_conditions_of_one_place_count_together() -> None:
         "as: sufficient, that: k1 > 0, place: two",
         "as: sufficient, that: k2 > 0, place: two",
     )
-    assert (alone.outcome, alone.remark) == (FAILS, "it is not sufficient for stability")
+    assert (alone.outcome, alone.remark) == (Outcome.FAILS, "it is not sufficient for stability")
     at = {name: Fraction(value) for name, value in alone.counterexample.at}
     assert at["k1"] > 0 > at["k2"]
     assert dict(alone.counterexample.shows)["the motion"].startswith("unstable")
-    assert [result.outcome for result in both] == [EXACT, EXACT]
+    assert [result.outcome for result in both] == [Outcome.EXACT, Outcome.EXACT]
     (stronger,) = conditions("as: sufficient, that: k1 > 1 - k2*0")
     assert stronger.refuted
     # Stronger than needed is no error in a sufficient condition, and an error in a necessary one.
     text = SPRINGS.replace("k2: real", "k2: positive")
-    assert conditions("as: sufficient, that: k1 > k2", text=text)[0].outcome == EXACT
-    assert conditions("as: necessary, that: k1 > k2", text=text)[0].outcome == FAILS
+    assert conditions("as: sufficient, that: k1 > k2", text=text)[0].outcome == Outcome.EXACT
+    assert conditions("as: necessary, that: k1 > k2", text=text)[0].outcome == Outcome.FAILS
 
 
 def test_a_counterexample_is_a_body_and_keeps_assumptions() -> None:
@@ -268,11 +262,11 @@ def test_a_motion_stable_in_first_approximation_only_is_told_as_that() -> None:
     """K > 0 is sufficient, not necessary: gyroscopic forces stabilise without it in the first approximation."""
     text = (SHIPPED / "orbital-gyrostat.yaml").read_text(encoding="utf-8").partition("\nclaims:")[0]
     (necessary,) = conditions("as: necessary, that: B - A + h > 0", text=text)
-    assert necessary.outcome == FAILS
+    assert necessary.outcome == Outcome.FAILS
     assert necessary.remark == "it is not necessary for stability in the first approximation"
     assert dict(necessary.counterexample.shows)["the motion"] == "gyroscopically stabilised only"
     (either,) = conditions("that: B - A + h > 0", text=text)
-    assert either.outcome == EXACT
+    assert either.outcome == Outcome.EXACT
 
 
 def test_the_role_of_a_condition_is_written_and_read() -> None:
@@ -291,22 +285,22 @@ def test_the_role_of_a_condition_is_written_and_read() -> None:
 @pytest.mark.parametrize(
     ("claim", "outcome", "where"),
     [
-        ("equation of motion, of: r, equals: m*(r_ddot - r*phi_dot**2 + mu/r**2)", EXACT, "r > 0"),
-        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**2", FACTOR, "r > 0"),
-        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 - mu/r**2", DIFFERS, ""),
-        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**3", DIFFERS, ""),
-        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu*r/sqrt(r**2)**3", FACTOR, ""),
-        ("equation of motion, of: phi, equals: r*phi_ddot + 2*r_dot*phi_dot", FACTOR, ""),
-        ("force function, equals: mu*m/r", EXACT, "r > 0"),
-        ("force function, equals: -mu*m/r", DIFFERS, ""),  # true for r < 0 only: a wrong sign
-        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/r", EXACT, "r > 0"),
-        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/sqrt(r**2)", EXACT, ""),
-        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 4*mu/r", FAILS, ""),
-        ("first integral, equals: r**2*phi_dot", EXACT, ""),
-        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(s**2)/s", EXACT, "s > 0"),
-        ("coefficient, of: kinetic energy, at: r_dot**2, equals: -m/2*sqrt(n**2)/n", EXACT, ""),
-        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(n**2)/n", SCALED, ""),  # by -1
-        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(exp(s)**2)/exp(s)", NUMERICAL, ""),
+        ("equation of motion, of: r, equals: m*(r_ddot - r*phi_dot**2 + mu/r**2)", Outcome.EXACT, "r > 0"),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**2", Outcome.FACTOR, "r > 0"),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 - mu/r**2", Outcome.DIFFERS, ""),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu/r**3", Outcome.DIFFERS, ""),
+        ("equation of motion, of: r, equals: r_ddot - r*phi_dot**2 + mu*r/sqrt(r**2)**3", Outcome.FACTOR, ""),
+        ("equation of motion, of: phi, equals: r*phi_ddot + 2*r_dot*phi_dot", Outcome.FACTOR, ""),
+        ("force function, equals: mu*m/r", Outcome.EXACT, "r > 0"),
+        ("force function, equals: -mu*m/r", Outcome.DIFFERS, ""),  # true for r < 0 only: a wrong sign
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/r", Outcome.EXACT, "r > 0"),
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 2*mu/sqrt(r**2)", Outcome.EXACT, ""),
+        ("first integral, equals: r_dot**2 + r**2*phi_dot**2 - 4*mu/r", Outcome.FAILS, ""),
+        ("first integral, equals: r**2*phi_dot", Outcome.EXACT, ""),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(s**2)/s", Outcome.EXACT, "s > 0"),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: -m/2*sqrt(n**2)/n", Outcome.EXACT, ""),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(n**2)/n", Outcome.SCALED, ""),  # by -1
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(exp(s)**2)/exp(s)", Outcome.NUMERICAL, ""),
     ],
 )  # fmt: skip
 def test_what_holds_for_one_sign_is_told_to(claim: str, outcome: str, where: str) -> None:
@@ -353,7 +347,7 @@ def test_parameters_that_follow_keep_their_declared_signs() -> None:
 def test_a_border_of_a_condition_is_told() -> None:
     for weak, strict in (("k1 >= 0", "k1 > 0"), ("0 <= k1", "0 < k1")):
         border, inside = conditions(f"that: {weak}", f"that: {strict}")
-        assert border.outcome == inside.outcome == EXACT
+        assert border.outcome == inside.outcome == Outcome.EXACT
         assert border.remark.endswith(", but for the case of equality")
         assert "equality" not in inside.remark
 
@@ -363,7 +357,7 @@ def test_what_always_holds_is_not_sufficient_for_that() -> None:
     hill = SPRINGS.partition("  - {name: b")[0].replace("k1: real, k2: real", "k: positive")
     hill += "loads:\n  - potential: -k*x**4\nmotion: {x: 0}\n"
     (result,) = conditions("as: sufficient, that: k > 0", text=hill)
-    assert (result.outcome, result.holds) == (FAILS, False)
+    assert (result.outcome, result.holds) == (Outcome.FAILS, False)
     assert dict(result.counterexample.shows)["the motion"] == "unstable (converse of Lagrange-Dirichlet)"
 
 
@@ -371,12 +365,12 @@ def test_denominators_count_by_their_signs() -> None:
     """k1/a^2 > 0 is k1 > 0 wherever it makes sense; k1/a > 0 is not."""
     text = SPRINGS.replace("k2: real}", "k2: real, a: real}")
     even, odd = conditions("that: k1/a**2 > 0", "that: k1/a > 0", text=text)
-    assert (even.outcome, odd.outcome) == (EXACT, FAILS)
+    assert (even.outcome, odd.outcome) == (Outcome.EXACT, Outcome.FAILS)
 
 
 def test_only_sufficient_conditions_of_a_place_count_together() -> None:
     one, other = conditions("as: sufficient, that: k1 > 0, place: two", "as: necessary, that: k2 > 0, place: two")
-    assert (one.outcome, other.outcome) == (FAILS, EXACT)
+    assert (one.outcome, other.outcome) == (Outcome.FAILS, Outcome.EXACT)
 
 
 TURNTABLE = """
@@ -425,22 +419,30 @@ def test_the_time_is_told_where_it_matters() -> None:
 def test_a_polynomial_is_compared_by_its_highest_power() -> None:
     """Io p^2 + m g l times 2 or times 3 would do equally well."""
     result = judged("claim: characteristic polynomial, variable: p, equals: 2*Io*p**2 + 3*m*g*l")
-    assert (result.outcome, str(result.factor)) == (DIFFERS, "2")
+    assert (result.outcome, str(result.factor)) == (Outcome.DIFFERS, "2")
     assert [(part.power, str(part.difference)) for part in result.parts] == [(0, "m*l*g")]
 
 
 def test_a_factor_that_may_be_infinite_is_told() -> None:
     result = judged(EQUATION + "(Io*theta_ddot + m*g*l*sin(theta))/cos(theta)")
-    assert (result.outcome, result.remark) == (FACTOR, "where cos(theta) is not 0")
+    assert (result.outcome, result.remark) == (Outcome.FACTOR, "where cos(theta) is not 0")
 
 
 @pytest.mark.parametrize(
     ("ratio", "outcome", "where"),
     [
-        ("s*sqrt(1/s**2)", NUMERICAL, "for s > 0 (it does not for s < 0)"),  # under a root, in a reciprocal
-        ("sqrt(s**2)/s*sqrt(r**2)/r", EXACT, "for r > 0, s > 0 (it need not with other signs)"),  # also for both < 0
-        ("(sqrt(s**2)/s + sqrt(r**2)/r)/2", EXACT, "for r > 0, s > 0 (it need not with other signs)"),
-        ("(-sqrt(q**2)/q)", EXACT, ""),  # q <= 0
+        (
+            "s*sqrt(1/s**2)",
+            Outcome.NUMERICAL,
+            "for s > 0 (it does not for s < 0)",
+        ),  # under a root, in a reciprocal
+        (
+            "sqrt(s**2)/s*sqrt(r**2)/r",
+            Outcome.EXACT,
+            "for r > 0, s > 0 (it need not with other signs)",
+        ),  # also for both < 0
+        ("(sqrt(s**2)/s + sqrt(r**2)/r)/2", Outcome.EXACT, "for r > 0, s > 0 (it need not with other signs)"),
+        ("(-sqrt(q**2)/q)", Outcome.EXACT, ""),  # q <= 0
     ],
 )
 def test_signs_under_roots_that_are_harder(ratio: str, outcome: str, where: str) -> None:
@@ -451,16 +453,28 @@ def test_signs_under_roots_that_are_harder(ratio: str, outcome: str, where: str)
 @pytest.mark.parametrize(
     ("claim", "outcome", "where"),
     [
-        ("kinetic energy, equals: Io*theta_dot*sqrt(theta_dot**2)/2", EXACT, "theta_dot"),
-        ("potential energy, equals: -m*g*l*sqrt(cos(theta)**2)", EXACT, "cos(theta)"),
-        ("potential energy, equals: -m*g*l*sqrt(1 - sin(theta)**2)", EXACT, "cos(theta)"),
-        ("direction cosine, of: bob, entry: [1, 2], equals: sqrt(1 - cos(theta)**2)", NUMERICAL, "sin(theta)"),
-        ("direction cosine, of: bob, entry: [1, 2], equals: sin(atan(tan(theta)))", NUMERICAL, "cos(theta)"),
-        ("direction cosine, of: bob, entry: [1, 2], equals: sin(sqrt(theta**2))", NUMERICAL, "theta"),
-        ("angular velocity, of: bob, component: 3, equals: sqrt(theta_dot**2)", EXACT, "theta_dot"),
-        ("angular velocity, of: bob, component: 3, equals: -sqrt(theta_dot**2)", DIFFERS, ""),
-        ("equation of motion, of: theta, equals: theta_ddot + w2*sqrt(sin(theta)**2)", NUMERICAL, "sin(theta)"),
-        ("direction cosine, of: bob, entry: [1, 1], equals: sqrt(cos(theta)**2 + 1e-30)", DIFFERS, ""),
+        ("kinetic energy, equals: Io*theta_dot*sqrt(theta_dot**2)/2", Outcome.EXACT, "theta_dot"),
+        ("potential energy, equals: -m*g*l*sqrt(cos(theta)**2)", Outcome.EXACT, "cos(theta)"),
+        ("potential energy, equals: -m*g*l*sqrt(1 - sin(theta)**2)", Outcome.EXACT, "cos(theta)"),
+        (
+            "direction cosine, of: bob, entry: [1, 2], equals: sqrt(1 - cos(theta)**2)",
+            Outcome.NUMERICAL,
+            "sin(theta)",
+        ),
+        (
+            "direction cosine, of: bob, entry: [1, 2], equals: sin(atan(tan(theta)))",
+            Outcome.NUMERICAL,
+            "cos(theta)",
+        ),
+        ("direction cosine, of: bob, entry: [1, 2], equals: sin(sqrt(theta**2))", Outcome.NUMERICAL, "theta"),
+        ("angular velocity, of: bob, component: 3, equals: sqrt(theta_dot**2)", Outcome.EXACT, "theta_dot"),
+        ("angular velocity, of: bob, component: 3, equals: -sqrt(theta_dot**2)", Outcome.DIFFERS, ""),
+        (
+            "equation of motion, of: theta, equals: theta_ddot + w2*sqrt(sin(theta)**2)",
+            Outcome.NUMERICAL,
+            "sin(theta)",
+        ),
+        ("direction cosine, of: bob, entry: [1, 1], equals: sqrt(cos(theta)**2 + 1e-30)", Outcome.DIFFERS, ""),
     ],
 )
 def test_velocities_and_sines_have_signs_too(claim: str, outcome: str, where: str) -> None:
@@ -480,19 +494,19 @@ def test_velocities_and_sines_have_signs_too(claim: str, outcome: str, where: st
 )
 def test_a_number_is_no_integral(integral: str, remark: str) -> None:
     result = judged(f"claim: first integral, equals: {integral}")
-    assert (result.outcome, result.remark) == (FAILS, remark)
+    assert (result.outcome, result.remark) == (Outcome.FAILS, remark)
 
 
 @pytest.mark.parametrize(
     ("claim", "outcome"),
     [
-        ("kinetic energy, equals: T + 3*theta_dot", DIFFERS),
-        ("kinetic energy, equals: T + m", DIFFERS),
-        ("potential energy, equals: m - m*g*l*cos(theta)", EQUIVALENT),
-        ("potential energy, equals: t**2 - m*g*l*cos(theta)", EQUIVALENT),
-        ("potential energy, equals: theta_dot*theta - m*g*l*cos(theta)", DIFFERS),
-        ("force function, equals: m*g*l*cos(theta) + t*theta_dot + theta", DIFFERS),
-        ("lagrangian, equals: T + m*g*l*cos(theta) + t*theta_dot + theta", EQUIVALENT),
+        ("kinetic energy, equals: T + 3*theta_dot", Outcome.DIFFERS),
+        ("kinetic energy, equals: T + m", Outcome.DIFFERS),
+        ("potential energy, equals: m - m*g*l*cos(theta)", Outcome.EQUIVALENT),
+        ("potential energy, equals: t**2 - m*g*l*cos(theta)", Outcome.EQUIVALENT),
+        ("potential energy, equals: theta_dot*theta - m*g*l*cos(theta)", Outcome.DIFFERS),
+        ("force function, equals: m*g*l*cos(theta) + t*theta_dot + theta", Outcome.DIFFERS),
+        ("lagrangian, equals: T + m*g*l*cos(theta) + t*theta_dot + theta", Outcome.EQUIVALENT),
     ],
 )
 def test_only_a_lagrangian_is_one_with_a_total_derivative_added(claim: str, outcome: str) -> None:
@@ -500,14 +514,14 @@ def test_only_a_lagrangian_is_one_with_a_total_derivative_added(claim: str, outc
     result = judged(f"claim: {claim}")
     assert result.outcome == outcome
     word, said, _ = shown(f"claim: {claim}")
-    assert word == ("held" if outcome == EQUIVALENT else "refuted")
+    assert word == ("held" if outcome == Outcome.EQUIVALENT else "refuted")
     assert "the equations of motion are the same" in said or "by a constant" in said
 
 
 def test_a_factor_may_hold_velocities() -> None:
     """An equation times theta' sin(theta) says the same wherever that is not zero."""
     result = judged(EQUATION + "(theta_ddot + w2*sin(theta))*sin(theta)*theta_dot")
-    assert (result.outcome, result.remark) == (FACTOR, "where sin(theta) and theta_dot are not 0")
+    assert (result.outcome, result.remark) == (Outcome.FACTOR, "where sin(theta) and theta_dot are not 0")
 
 
 def test_an_integral_that_is_huge_at_some_states_is_not_refuted_by_them() -> None:
@@ -521,7 +535,7 @@ def test_an_integral_that_is_huge_at_some_states_is_not_refuted_by_them() -> Non
         "loads:\n  - uniform gravity: {vector: [0, 0, -g]}\n  - damper: {coordinate: z, coefficient: c}\n"
         f"claims:\n{lines}"
     ).claims
-    assert [one.outcome for one in found] == [EXACT, FAILS]
+    assert [one.outcome for one in found] == [Outcome.EXACT, Outcome.FAILS]
 
 
 def test_an_integral_is_refuted_where_numbers_are_tied_by_a_relation() -> None:
@@ -535,4 +549,4 @@ def test_an_integral_is_refuted_where_numbers_are_tied_by_a_relation() -> None:
         "motion: {q: a}\nrelations: {g: R*W**2*cos(a)}\n"
         "claims:\n  - {claim: first integral, equals: R*q_dot**2/2 - R*W**2*sin(q)**2/2 + g*cos(q)}\n"
     ).claims
-    assert result.outcome == FAILS
+    assert result.outcome == Outcome.FAILS

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import mbsym
-from mbsym.problems.claims import DIGITS, EXACT, FAILS, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 
 BALL = (Path(__file__).parents[2] / "systems" / "rolling-sphere-speeds.yaml").read_text(encoding="utf-8")
 OMEGA_X, OMEGA_Y = (f"(p*{e}1 + q*{e}2 + s*{e}3)" for e in ("alpha", "beta"))
@@ -29,24 +29,30 @@ def judged(*claims: str) -> list[ClaimResult]:
 @pytest.mark.parametrize(
     ("claim", "outcome"),
     [
-        (f"first integral, equals: m*r*{OMEGA_Y}", EXACT),
-        (f"first integral, equals: m*r*{OMEGA_Y} + x", FAILS),
-        ("first integral, equals: p**2 + q**2 + s**2", EXACT),
-        ("first integral, equals: alpha1*beta1 + alpha2*beta2 + alpha3*beta3", EXACT),  # it is known beforehand
-        ("first integral, equals: alpha1", FAILS),
-        ("equation of motion, of: p, equals: p_dot", EXACT),
-        ("equation of motion, of: p, equals: J*p_dot + m*r*q", FAILS),
-        ("equation of motion, of: alpha1, equals: alpha1_dot - (alpha2*s - alpha3*q)", EXACT),  # e' = e x omega
-        ("equation of motion, of: alpha1, equals: alpha1_dot + (alpha2*s - alpha3*q)", FAILS),
-        ("acceleration, of: p, equals: 0", EXACT),
-        ("acceleration, of: q, equals: p*s", FAILS),
-        (f"acceleration, of: x, equals: r*0*{OMEGA_Y}", EXACT),
+        (f"first integral, equals: m*r*{OMEGA_Y}", Outcome.EXACT),
+        (f"first integral, equals: m*r*{OMEGA_Y} + x", Outcome.FAILS),
+        ("first integral, equals: p**2 + q**2 + s**2", Outcome.EXACT),
+        (
+            "first integral, equals: alpha1*beta1 + alpha2*beta2 + alpha3*beta3",
+            Outcome.EXACT,
+        ),  # it is known beforehand
+        ("first integral, equals: alpha1", Outcome.FAILS),
+        ("equation of motion, of: p, equals: p_dot", Outcome.EXACT),
+        ("equation of motion, of: p, equals: J*p_dot + m*r*q", Outcome.FAILS),
+        (
+            "equation of motion, of: alpha1, equals: alpha1_dot - (alpha2*s - alpha3*q)",
+            Outcome.EXACT,
+        ),  # e' = e x omega
+        ("equation of motion, of: alpha1, equals: alpha1_dot + (alpha2*s - alpha3*q)", Outcome.FAILS),
+        ("acceleration, of: p, equals: 0", Outcome.EXACT),
+        ("acceleration, of: q, equals: p*s", Outcome.FAILS),
+        (f"acceleration, of: x, equals: r*0*{OMEGA_Y}", Outcome.EXACT),
     ],
 )
 def test_a_claim_is_decided_along_the_motion(claim: str, outcome: str) -> None:
     (result,) = judged(claim)
     assert result.outcome == outcome, result.remark
-    assert (result.counterexample is not None) == (outcome == FAILS and not claim.endswith("alpha1"))
+    assert (result.counterexample is not None) == (outcome == Outcome.FAILS and not claim.endswith("alpha1"))
 
 
 def test_quantities_hold_where_the_constraints_do() -> None:
@@ -56,7 +62,7 @@ def test_quantities_hold_where_the_constraints_do() -> None:
         f"kinetic energy, equals: {energy.replace('r**2', 'r')}",
         "mass matrix, entry: [p, p], equals: J",
     )
-    assert [right.holds, wrong.refuted, mass.outcome] == [True, True, EXACT]
+    assert [right.holds, wrong.refuted, mass.outcome] == [True, True, Outcome.EXACT]
     assert right.remark
 
 
@@ -66,5 +72,5 @@ def test_a_number_of_the_ball() -> None:
         f"value, of: q_dot, state: {{{STATE}}}, equals: 0.0",
         f"value, of: q_dot, state: {{{STATE}}}, equals: 0.5",
     )
-    assert right.outcome == DIGITS
+    assert right.outcome == Outcome.DIGITS
     assert wrong.refuted

@@ -13,7 +13,7 @@ from __future__ import annotations
 import pytest
 
 import mbsym
-from mbsym.problems.claims import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 
 POINT = """
 mbsym: 1
@@ -70,22 +70,22 @@ FRAME = SHAFT.replace("ci: nonnegative, ce: nonnegative, w: positive", "ci: posi
     "  - generalized force: {x: -ce*(x_dot - w*y), y: -ce*(y_dot + w*x)}\n", ""
 )
 TRUE = [
-    (POINT, "w < sqrt(k/m)", "necessary", EXACT),
-    (POINT, "w < sqrt(k/m)", "sufficient", EXACT),
-    (POINT, "w <= sqrt(k/m)", "necessary", EXACT),
-    (POINT, "w*sqrt(m)/sqrt(k) < 1", "necessary", EXACT),
-    (POINT, "1/w > sqrt(m/k)", "sufficient", EXACT),
-    (HILL, "g >= sqrt(k1) + sqrt(k2)", "necessary", EXACT),
-    (HILL, "g > sqrt(k1) + sqrt(k2)", "necessary", BORDERS),
-    (HILL, "g > sqrt(k1) + sqrt(k2)", "sufficient", EXACT),
-    (HILL, "g > sqrt(k1 + k2 + 2*sqrt(k1*k2))", "sufficient", EXACT),
-    (HILL, "g > sqrt(k1 + k2)", "necessary", EXACT),
-    (ZIEGLER, "P*l/k <= 7/2 - sqrt(2)", "necessary", EXACT),
-    (ZIEGLER, "P*l/k < 7/2 - sqrt(2)", "necessary", BORDERS),
-    (FRAME, "w > -sqrt(k/m)", "necessary", BORDERS),
-    (FRAME, "w >= -sqrt(k/m)", "necessary", EXACT),
-    (FRAME, "w <= sqrt(k/m)", "necessary", EXACT),
-    (SHAFT, "ci*w*sqrt(m/k) < ci + ce", "necessary", BORDERS),
+    (POINT, "w < sqrt(k/m)", "necessary", Outcome.EXACT),
+    (POINT, "w < sqrt(k/m)", "sufficient", Outcome.EXACT),
+    (POINT, "w <= sqrt(k/m)", "necessary", Outcome.EXACT),
+    (POINT, "w*sqrt(m)/sqrt(k) < 1", "necessary", Outcome.EXACT),
+    (POINT, "1/w > sqrt(m/k)", "sufficient", Outcome.EXACT),
+    (HILL, "g >= sqrt(k1) + sqrt(k2)", "necessary", Outcome.EXACT),
+    (HILL, "g > sqrt(k1) + sqrt(k2)", "necessary", Outcome.BORDERS),
+    (HILL, "g > sqrt(k1) + sqrt(k2)", "sufficient", Outcome.EXACT),
+    (HILL, "g > sqrt(k1 + k2 + 2*sqrt(k1*k2))", "sufficient", Outcome.EXACT),
+    (HILL, "g > sqrt(k1 + k2)", "necessary", Outcome.EXACT),
+    (ZIEGLER, "P*l/k <= 7/2 - sqrt(2)", "necessary", Outcome.EXACT),
+    (ZIEGLER, "P*l/k < 7/2 - sqrt(2)", "necessary", Outcome.BORDERS),
+    (FRAME, "w > -sqrt(k/m)", "necessary", Outcome.BORDERS),
+    (FRAME, "w >= -sqrt(k/m)", "necessary", Outcome.EXACT),
+    (FRAME, "w <= sqrt(k/m)", "necessary", Outcome.EXACT),
+    (SHAFT, "ci*w*sqrt(m/k) < ci + ce", "necessary", Outcome.BORDERS),
 ]
 FALSE = [
     (FRAME, "w < sqrt(k/m)", "sufficient"),
@@ -113,5 +113,5 @@ def test_what_is_true_of_roots_is_proved(text: str, that: str, role: str, outcom
 
 @pytest.mark.parametrize(("text", "that", "role"), FALSE)
 def test_what_is_false_of_roots_is_not(text: str, that: str, role: str) -> None:
-    assert claimed(text, that, role).outcome in (FAILS, UNDECIDED)
+    assert claimed(text, that, role).outcome in (Outcome.FAILS, Outcome.UNDECIDED)
     assert not claimed(text, that, role).holds

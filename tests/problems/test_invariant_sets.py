@@ -255,7 +255,7 @@ def test_a_wrong_sign_in_the_equations_is_seen():
     """The integrals, and so the sets, are those of other equations: what is not invariant is never called so."""
     loaded = mbsym.load("systems/clebsch-poisson.yaml")
     known = [x.formula.polynomial for x in loaded.integrals]
-    field, transfer = vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations, known)
+    field, transfer = vector_field(loaded.form, loaded.equations, known)
     known = [(x.name, transfer.fraction(x.formula.polynomial)[0]) for x in loaded.integrals]
     signs = {x.name: x.sign for x in loaded.system.parameters}
     further = field.numerators[3] + field.generator("r") * field.generator("gamma3")  # gamma1' with a term too many

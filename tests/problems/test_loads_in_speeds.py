@@ -32,7 +32,7 @@ def _body(load: str, orientation: str = IN_VECTORS) -> mbsym.Analysis:
 
 
 def _is(found, right, text):
-    scene = found.speed_form.scene(bodies=False)
+    scene = found.form.scene(bodies=False)
     return found.ring.is_zero(right.polynomial - scene.lower(parsed(text)))
 
 

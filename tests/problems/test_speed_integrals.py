@@ -4,8 +4,7 @@ import pytest
 from test_speeds import CARRIED, GYROSTAT, PLATE, POISSON, SPEEDS, expected, load
 
 from mbsym.problems.checks import EXACT
-from mbsym.problems.claims import DIFFERS, FACTOR, FAILS
-from mbsym.problems.claims import EXACT as HOLDS
+from mbsym.problems.claims import Outcome
 
 
 def test_the_three_classical_integrals_of_a_heavy_gyrostat(tmp_path):
@@ -75,13 +74,16 @@ claims:
 """
 
 
-@pytest.mark.parametrize(("k", "sign", "outcome"), [("2", "-", HOLDS), ("2", "+", FAILS), ("k", "-", FAILS)])
+@pytest.mark.parametrize(
+    ("k", "sign", "outcome"),
+    [("2", "-", Outcome.EXACT), ("2", "+", Outcome.FAILS), ("k", "-", Outcome.FAILS)],
+)
 def test_kovalevskayas_integral(tmp_path, k, sign, outcome):
     """With xi = (p + i q)^2 - nu (gamma1 + i gamma2):  xi' = -i r xi  for A = B = 2 C, by hand."""
     found = load(tmp_path, KOVALEVSKAYA.format(k=k, sign=sign))
     (claim,) = found.claims
     assert claim.outcome == outcome
-    assert (claim.difference is None) == (outcome == HOLDS)
+    assert (claim.difference is None) == (outcome == Outcome.EXACT)
 
 
 CLAIMS = """
@@ -103,7 +105,22 @@ claims:
   - {claim: first integral, equals: gamma1**2 + gamma2**2}
   - {claim: first integral, equals: p*(gamma1**2 + gamma2**2 + gamma3**2 - 1) + A}
 """
-OUTCOMES = [FACTOR, DIFFERS, HOLDS, DIFFERS, HOLDS, DIFFERS, DIFFERS, HOLDS, DIFFERS, HOLDS, HOLDS, HOLDS, FAILS, FAILS]
+OUTCOMES = [
+    Outcome.FACTOR,
+    Outcome.DIFFERS,
+    Outcome.EXACT,
+    Outcome.DIFFERS,
+    Outcome.EXACT,
+    Outcome.DIFFERS,
+    Outcome.DIFFERS,
+    Outcome.EXACT,
+    Outcome.DIFFERS,
+    Outcome.EXACT,
+    Outcome.EXACT,
+    Outcome.EXACT,
+    Outcome.FAILS,
+    Outcome.FAILS,
+]
 
 
 def test_claims_hold_and_fail_as_they_should(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -12,13 +13,14 @@ from flint import ctx, fmpq
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.invariant import invariant_sets_of
+from mbsym.analysis.polynomial import integrals_of, setting
 from mbsym.problems.vector_field import vector_field
 
 
 def _field(path):
     loaded = mbsym.load(path)
     known = [x.formula.polynomial for x in loaded.integrals]
-    return vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations, known), loaded
+    return vector_field(loaded.form, loaded.equations, known), loaded
 
 
 def test_clebsch_is_the_field_of_the_book():
@@ -115,14 +117,53 @@ bodies:
 loads:
   - uniform gravity: {vector: [g, 0, 0]}
 """
+POINT = """
+mbsym: 1
+name: a point
+parameters: {{k: positive, h: positive, a: positive, g: real}}
+bodies:
+  - {{name: P, attached to: 0, connection point: [{place}], mass: 1, coordinates: [{names}]}}
+loads:
+  - potential: {potential}
+"""
+#: Kepler's problem in a uniform field; two centres at rest; a wave whose length is a parameter.
+KEPLER = POINT.format(place="x, y, z", names="x, y, z", potential="-k/sqrt(x**2 + y**2 + z**2) + g*z")
+CENTRES = POINT.format(
+    place="x, y, 0", names="x, y", potential="-k/sqrt((x - a)**2 + y**2) - h/sqrt((x + a)**2 + y**2)"
+)
+WAVE = POINT.format(place="x, 0, 0", names="x", potential="-k*cos(x/a)")
+#: A pendulum that a spring with a length of its own ties to a wall.
+TIED = """
+mbsym: 1
+name: a pendulum on a spring
+parameters: {m: positive, l: positive, a: positive, k: positive, s: positive}
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [l, 0, 0], mass: m}
+loads:
+  - potential: k*(sqrt(l**2 + a**2 - 2*a*l*cos(x)) - s)**2/2
+"""
 
 
-@pytest.mark.parametrize("text", [TODA, OPEN, MORSE, DRIVEN, ROLLED, Path("systems/heavy-top.yaml").read_text()])
+@pytest.mark.parametrize(
+    "text",
+    [
+        TODA,
+        OPEN,
+        MORSE,
+        DRIVEN,
+        ROLLED,
+        KEPLER,
+        CENTRES,
+        WAVE,
+        TIED,
+        Path("systems/heavy-top.yaml").read_text(),
+    ],
+)
 def test_it_is_the_equations_of_motion(text):
     """M u' = f with u' out of the field, in the ring; g' along a straight line of the configurations, in balls."""
     loaded = mbsym.loads(text)
-    ring, form, equations = loaded.ring, loaded.speed_form, loaded.equations
-    field, transfer = vector_field(loaded.system, ring, form, equations, driven=True)
+    ring, equations = loaded.ring, loaded.equations
+    field, transfer = vector_field(loaded.form, equations, driven=True)
     n = len(equations.forcing)
     rates, den = [transfer.back(p) for p in field.numerators[:n]], transfer.back(field.denominator)
     for row, f in zip(equations.mass_matrix.polynomials, equations.forcing, strict=True):
@@ -130,7 +171,7 @@ def test_it_is_the_equations_of_motion(text):
     for relation in field.relations:
         assert field.reduced(field.derivative(relation)) == 0
         assert ring.evaluate(transfer.back(relation), {x: fmpq(k, 7) for k, x in enumerate(ring.names())}).contains(0)
-    if form is None:
+    if not loaded.system.speeds:
         with ctx.workprec(400):
             state = {name: fmpq(k + 3, 7) for k, name in enumerate(ring.names())}
             step = fmpq(1, 10**40)
@@ -151,13 +192,13 @@ def test_it_is_the_equations_of_motion(text):
 def test_exponentials_have_one_relation():
     """exp(x - y) exp(y - z) exp(z - x) = 1; on a line there is none; 1/exp is a variable, no denominator."""
     loaded = mbsym.loads(TODA)
-    field, _ = vector_field(loaded.system, loaded.ring, None, loaded.equations)
+    field, _ = vector_field(loaded.form, loaded.equations)
     one, two, three = map(field.generator, ("exp(x - y)", "exp(y - z)", "exp(z - x)"))
     assert field.relations == (one * two * three - 1,)
     loaded = mbsym.loads(OPEN)
-    assert vector_field(loaded.system, loaded.ring, None, loaded.equations)[0].relations == ()
+    assert vector_field(loaded.form, loaded.equations)[0].relations == ()
     loaded = mbsym.loads(MORSE)
-    field, _ = vector_field(loaded.system, loaded.ring, None, loaded.equations)
+    field, _ = vector_field(loaded.form, loaded.equations)
     up, down = (field.generator(name) for name in field.variables if name.startswith("exp("))
     assert up * down - 1 in field.relations
     assert not any(field.denominator.degrees()[k] for k in field.places if "exp" in field.context.names()[k])
@@ -176,13 +217,23 @@ def test_exponentials_have_one_relation():
         ("exp(sqrt(3)*x - y)", "constant sqrt(3) occurs"),
         ("exp(t*x)", "the time occurs"),
         ("exp(exp(x))", "function exp occurs"),
+        (
+            "sqrt(x) + sqrt(y) + sqrt(x*y)",
+            "sqrt(x*y), sqrt(y), sqrt(x): it is not shown that no product of what stands under these roots is a square",
+        ),
+        (
+            "sqrt(2 - 2*cos(x))",
+            "sqrt(2*(1 - cos(x))): it is not shown that no product of what stands under these roots is a square",
+        ),
+        ("sqrt(1 + sqrt(1 + x**2))", "sqrt(sqrt(x**2 + 1) + 1) occurs"),
+        ("sin(x) + cos(a*x)", "functions of each other"),
     ],
 )
 def test_what_is_left_is_refused_with_its_reason(potential, why):
     text = OPEN.replace("exp(x - y) + exp(y - z)", potential).replace("bodies:", "parameters: {a: real}\nbodies:")
     loaded = mbsym.loads(text)
     with pytest.raises(NoClosedForm, match=re.escape(why)):
-        vector_field(loaded.system, loaded.ring, None, loaded.equations)
+        vector_field(loaded.form, loaded.equations)
 
 
 def test_todas_integrals():
@@ -196,6 +247,82 @@ def test_todas_integrals():
     henon = x * y * z - x * b - y * c - z * a
     assert field.derivative(henon) == 0
     assert found.generators[-1].polynomial in (henon, -henon)
+
+
+def _integrals(text, values=None):
+    there = setting(mbsym.loads(text), values)
+    return integrals_of(there, 3), there.field
+
+
+def test_a_root_has_its_square_and_its_reciprocal():
+    """r' = (x x' + ...)/r, as r/(x^2 + ...) is 1/r: no denominator; where the leading coefficient is none, p is one."""
+    loaded = mbsym.loads(KEPLER)
+    field, _ = vector_field(loaded.form, loaded.equations)
+    r, w = (field.generator(f"{x}x**2 + y**2 + z**2)") for x in ("sqrt(", "1/("))
+    x, y, z = map(field.generator, "xyz")
+    assert field.relations == (r**2 - x**2 - y**2 - z**2, w * (x**2 + y**2 + z**2) - 1)
+    assert field.denominator.is_constant()
+    assert field.reduced(r**3 * w) == r
+    loaded = mbsym.loads(TIED)
+    field, _ = vector_field(loaded.form, loaded.equations)
+    l, a, r, c = map(field.generator, ("l", "a", field.variables[1], "cos(x)"))
+    assert field.reduced(r**2) == l**2 + a**2 - 2 * a * l * c
+    assert len(field.relations) == 2
+
+
+def test_laplaces_vector_and_what_a_uniform_field_leaves_of_it():
+    """v x L - k r/|r| (P. S. Laplace); with g: its z component + g (x^2 + y^2)/2 (P. J. Redmond, 1964), no other."""
+    found, field = _integrals(KEPLER, {"g": Fraction(0)})
+    k, u, v, w, r, x, y, z, inverse = map(field.generator, ("k", *field.variables))
+    components = [
+        v * (x * v - y * u) - w * (z * u - x * w) - k * x * r * inverse,
+        w * (y * w - z * v) - u * (x * v - y * u) - k * y * r * inverse,
+        u * (z * u - x * w) - v * (y * w - z * v) - k * z * r * inverse,
+    ]
+    assert all(field.reduced(field.derivative(one)) == 0 for one in components)
+    new = [one.polynomial for one in found.new]
+    assert found.complete
+    assert all(any(one in (f, -f) for f in new) for one in components)
+    assert (found.independent, len(new)) == (5, 5)  # problem 7, for any g, has the energy and L_z
+    found, field = _integrals(KEPLER)
+    k, g, u, v, w, r, x, y, z, inverse = map(field.generator, ("k", "g", *field.variables))
+    by_hand = 2 * (u * (z * u - x * w) - v * (y * w - z * v) - k * z * r * inverse) - g * (x**2 + y**2)
+    assert found.complete
+    assert [one.polynomial in (by_hand, -by_hand) for one in found.new] == [True]
+
+
+def test_two_centres_keep_eulers_integral():
+    """(r1 x v)(r2 x v) - 2 a (k (x - a)/r1 - h (x + a)/r2), (L. Euler, 1760); another sign is refuted."""
+    loaded = mbsym.loads(CENTRES)
+    field, _ = vector_field(loaded.form, loaded.equations)
+    k, h, a, u, v, x, y = map(field.generator, ("k", "h", "a", "x_dot", "y_dot", "x", "y"))
+    near, far = (field.generator(f"sqrt(x**2 + y**2 {sign} 2*a*x + a**2)") for sign in "-+")
+    for sign in (1, -1):
+        turning = ((x - a) * v - y * u) * ((x + a) * v - y * u)
+        top = turning * near * far - 2 * a * (k * (x - a) * far - sign * h * (x + a) * near)
+        bottom = near * far
+        rate = field.reduced(field.derivative(top) * bottom - top * field.derivative(bottom))
+        assert (rate == 0) is (sign == 1)
+    assert field.reduced(near**2 - far**2) == -4 * a * x
+
+
+def test_a_root_of_a_unit_vector_is_refused():
+    """On the sphere gamma1^2 + gamma2^2 = (1 - gamma3)(1 + gamma3): what is no square there is not looked at."""
+    text = Path("systems/kirchhoff.yaml").read_text().split("values:")[0]
+    loaded = mbsym.loads(
+        text.replace("(k1*gamma1**2 + k2*gamma2**2 + k3*gamma3**2)/2", "(k1 + k2 + k3)*sqrt(2 + gamma1)")
+    )
+    with pytest.raises(NoClosedForm, match=r"sqrt\(gamma1 \+ 2\) occurs"):
+        vector_field(loaded.form, loaded.equations)
+
+
+def test_a_spring_with_a_length_of_its_own_leaves_the_energy():
+    """m l^2 x'^2/2 + k (r - s)^2/2 with r^2 = l^2 + a^2 - 2 a l cos x, and nothing else up to degree 3."""
+    found, field = _integrals(TIED)
+    m, l, a, k, s, v, r, c = map(field.generator, ("m", "l", "a", "k", "s", "x_dot", field.variables[1], "cos(x)"))
+    (one,) = found.generators
+    assert found.complete
+    assert one.polynomial in (sign * (m * l**2 * v**2 - 2 * k * (a * l * c + s * r)) for sign in (1, -1))
 
 
 def test_a_driven_oscillator_has_the_energy_of_its_difference_from_the_forced_motion():
@@ -214,18 +341,20 @@ def test_a_driven_oscillator_has_the_energy_of_its_difference_from_the_forced_mo
 def test_in_speeds_an_angle_is_a_pair():
     """m (v' - r w) = m g cos(phi): the field of ROLLED by hand."""
     loaded = mbsym.loads(ROLLED)
-    field, _ = vector_field(loaded.system, loaded.ring, loaded.speed_form, loaded.equations)
+    field, _ = vector_field(loaded.form, loaded.equations)
     assert field.variables == ("v", "w", "r", "sin(phi)", "cos(phi)")
     g, v, w, r, s, c = map(field.generator, ("g", *field.variables))
     by_hand = [r * w + g * c, -r * v - g * s, 0 * r, r * c, -r * s]
     assert [p - q * field.denominator for p, q in zip(field.numerators, by_hand, strict=True)] == [0] * 5
 
 
-def test_problem_ten_takes_no_exponentials():
+def test_problem_ten_takes_no_exponentials_and_no_roots():
     """grad K in e = exp(x) and x apart would have no zero where there is an equilibrium."""
     analysis = mbsym.loads(TODA)
     with pytest.raises(NoClosedForm, match=r"exp\(x - y\)"):
         invariant_sets_of(analysis)
+    with pytest.raises(NoClosedForm, match=r"sqrt\(x\*\*2 \+ y\*\*2 \+ z\*\*2\)"):
+        invariant_sets_of(mbsym.loads(KEPLER))
     with pytest.raises(NoClosedForm, match=r"sin\(phi\), cos\(phi\)"):
         invariant_sets_of(mbsym.loads(ROLLED))
 

@@ -31,7 +31,7 @@ from mbsym.analysis import Analysis
 from mbsym.expressions.tree import ZERO
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.system import MotionEntry
-from mbsym.problems.integrals import residual, total_rate
+from mbsym.problems.integrals import total_rate
 
 FUNCTIONS = ("sin", "cos", "sqrt")
 
@@ -77,7 +77,7 @@ def put(formula: Formula, **values: Formula | int) -> Formula:
 
 def residuals(a: Analysis) -> list[Formula]:
     """M q'' - f."""
-    return [Formula(a.ring, residual(a.scene, a.equations, i)) for i in range(len(a.system.coordinates))]
+    return list(a.equations.equalities(a.system.coordinates))
 
 
 def linear_equation(a: Analysis, name: str) -> Formula:

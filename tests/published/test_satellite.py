@@ -31,7 +31,6 @@ from mbsym.expressions.tree import ZERO
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.loads import ForceFunction
 from mbsym.model.system import System
-from mbsym.problems.integrals import residual
 from mbsym.problems.knowledge import definition_in_parameters
 
 POINTS = reference("satellite-points")
@@ -299,7 +298,7 @@ def state(point: dict[str, Any], nu: Fraction | None = None) -> dict[str, fmpq]:
 
 
 def residuals(a: Analysis) -> list[Formula]:
-    return [Formula(a.ring, residual(a.scene, a.equations, i)) for i in range(5)]
+    return list(a.equations.equalities(a.system.coordinates))
 
 
 def is_at(a: Analysis, formula: Formula, values: dict[str, fmpq], text: str, digits: int = 28) -> bool:

@@ -21,7 +21,7 @@ from mbsym.analysis import Analysis
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import accelerated
-from mbsym.problems.claims import DIFFERS, DIGITS, EXACT, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 
 FILE = SHIPPED / "tethered-satellites.yaml"
 TEXT = FILE.read_text(encoding="utf-8")
@@ -189,7 +189,7 @@ def claims_at(analysis: Analysis, place: str) -> list[ClaimResult]:
 
 def test_the_printed_kinetic_energy_is_refuted_and_the_slips_are_named(tether: Analysis) -> None:
     (result,) = claims_at(tether, "eq. (3)")
-    assert result.outcome == DIFFERS
+    assert result.outcome == Outcome.DIFFERS
     assert result.refuted
     first, second = result.parts
     # c18 theta1'(alpha1' + theta1') should be c18 theta1' alpha1': c3 holds this term already.
@@ -224,7 +224,7 @@ def repaired(text: str) -> str:
 
 def test_with_both_slips_corrected_the_kinetic_energy_holds_exactly(tether: Analysis) -> None:
     (result,) = claims_at(mbsym.loads(repaired(TEXT)), "eq. (3)")
-    assert (result.outcome, result.parts, result.refuted) == (EXACT, (), False)
+    assert (result.outcome, result.parts, result.refuted) == (Outcome.EXACT, (), False)
 
 
 @pytest.mark.parametrize(
@@ -242,20 +242,20 @@ def test_another_planted_slip_is_named_with_its_repair(symbol: str, wrong: str, 
     assert line.count(wrong) == 1
     slip = line.replace(wrong, right)
     (result,) = claims_at(mbsym.loads(text.replace(line, slip)), "eq. (3)")
-    assert result.outcome == DIFFERS
+    assert result.outcome == Outcome.DIFFERS
     repairs = [dict(part.repairs) for part in result.parts]
     assert all(symbol in found for found in repairs)
     assert len({name for found in repairs for name in found}) <= 2  # c20 and c26 stand before the same products
     # With the repair added the claim holds: what was found is what had been planted.
     (change,) = {str(found[symbol]) for found in repairs}
     (mended,) = claims_at(mbsym.loads(text.replace(line, f"{slip} + ({change})")), "eq. (3)")
-    assert mended.outcome == EXACT
+    assert mended.outcome == Outcome.EXACT
 
 
 def test_positions_and_the_first_equation_hold(tether: Analysis) -> None:
     for place in ("eq. (11)", "eq. (12)", "eq. (13)"):
         (result,) = claims_at(tether, place)
-        assert result.outcome == EXACT, place
+        assert result.outcome == Outcome.EXACT, place
 
 
 def test_printed_numbers_hold_to_their_digits_but_for_the_velocity_of_b(tether: Analysis) -> None:
@@ -265,7 +265,7 @@ def test_printed_numbers_hold_to_their_digits_but_for_the_velocity_of_b(tether: 
         (result,) = claims_at(tether, place)
         assert Fraction(result.claim.printed) == Fraction(str(printed[key]))
         assert abs(Fraction(result.value) - Fraction(derived[key])) < Fraction(1, 10**9)
-        assert result.outcome == (DIFFERS if key == "xdot_B" else DIGITS)
+        assert result.outcome == (Outcome.DIFFERS if key == "xdot_B" else Outcome.DIGITS)
     assert claims_at(tether, "Table 2, x_B'")[0].digits == 0
 
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 import windows
+from click.testing import CliRunner
 from conftest import SHIPPED, TESTS
 from PIL import Image
 
@@ -24,16 +25,17 @@ import mbsym
 from mbsym.numerics.positions import positions
 from mbsym.picture.looking import projection
 from mbsym.picture.values import Picture
-from mbsym.report.figures.animation_gif import MOST, TALL, WIDE, animation_gif
+from mbsym.report.figures.animation import MOST, TALL, WIDE, animation_gif, animation_mp4
 from mbsym.report.figures.figures import figures
 from mbsym.report.figures.motion_figure import view
 from mbsym.report.html.report import asked_motion
 from mbsym.report.language import Language
 from mbsym.report.targets import TARGETS
 from mbsym.report.viewer.motion import Motion, motion_of, moving_picture, run_sentences
-from mbsym.report.viewer.page import animation_page
+from mbsym.report.viewer.page import AFTER, KEYS, NEEDED, WORDS, animation_page
 from mbsym.simulation import Simulation
 from mbsym.studies.simulate.files import motion_files
+from mbsym_cli.main import main
 from tests.report.readers import unreadable
 
 
@@ -235,6 +237,22 @@ def test_the_policy_lets_the_page_run_as_it_is(opened: Callable[..., Any]) -> No
     assert shown.title() == attack
 
 
+def test_the_viewer_has_its_words_from_the_page_in_its_language(opened: Callable[..., Any]) -> None:
+    """Each that its sources ask for, and no other; in every language that reports have."""
+    sources = (TESTS.parent / "editor/src/picture").glob("*.ts")
+    asked = {word for one in sources for word in re.findall(r'\bsay\("([^"]*)"\)', one.read_text(encoding="utf-8"))}
+    assert asked == set(WORDS)
+    for name in ("ru", "es"):
+        told = {word: Language(name).say(word) for word in (*WORDS, KEYS, NEEDED, AFTER)}
+        assert [word for word, said in told.items() if said == word] == []
+    whole = run("double-pendulum", 6)
+    system = replace(whole.system, language="es")
+    shown = opened(animation_page(replace(whole, scenario=replace(whole.scenario, system=system))))
+    shown.get_by_role("button", name="Pausa").wait_for()
+    assert shown.locator("html").get_attribute("lang") == "es"
+    assert shown.get_by_role("button", name="Ejes", exact=True).count() == 1
+
+
 # --- other consumers ---
 
 
@@ -254,6 +272,45 @@ def test_the_gif_is_a_film() -> None:
     assert np.max(np.abs(frames[0] - frames[1])) > 100
     paths = frames[2][60:]  # coloured lines, below the words
     assert np.count_nonzero(np.ptp(paths, axis=2) > 60) > 200
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg")
+def test_the_video_plays_everywhere(tmp_path: Path) -> None:
+    """H.264 or MPEG-4 in mp4, its index in front; as many frames as were drawn, the first one as in the GIF."""
+    raw = animation_mp4(run("double-pendulum", 6))
+    assert raw == animation_mp4(run("double-pendulum", 6))
+    assert raw[4:8] == b"ftyp"
+    assert raw.index(b"moov") < raw.index(b"mdat")
+    (tmp_path / "film.mp4").write_bytes(raw)
+    words = [
+        "ffmpeg",
+        "-loglevel",
+        "error",
+        "-i",
+        str(tmp_path / "film.mp4"),
+        "-f",
+        "rawvideo",
+        "-pix_fmt",
+        "rgb24",
+        "-",
+    ]
+    frames = np.frombuffer(subprocess.run(words, capture_output=True, check=True).stdout, dtype=np.uint8)
+    film = frames.reshape(-1, TALL, WIDE, 3).astype(int)
+    assert len(film) == len(run("double-pendulum", 6).trajectory.times)
+    with Image.open(BytesIO(animation_gif(run("double-pendulum", 6)))) as gif:
+        assert np.mean(np.abs(film[0] - np.asarray(gif.convert("RGB"), dtype=int))) < 4
+    assert np.max(np.abs(film[0] - film[-1])) > 100
+
+
+def test_without_ffmpeg_a_video_is_refused_before_anything_is_integrated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    words = ["simulate", str(SHIPPED / "double-pendulum.yaml"), "--format", "mp4", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 2
+    assert "--format: error[no-ffmpeg]: ffmpeg makes mp4, and there is none on the path" in done.stderr
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.skipif(shutil.which("pdftoppm") is None, reason="no pdftoppm")

@@ -359,3 +359,17 @@ def test_nothing_is_told_of_independent_velocities_where_there_are_none() -> Non
     assert "The constraints determine all velocities: nothing is left to be integrated." in text
     assert "(of )" not in re.sub(r"<[^>]+>", "", text)
     assert "without multipliers" not in text
+
+
+def test_no_piece_of_an_equation_is_wider_than_the_column_beside_the_picture() -> None:
+    """Of a rolling disc: lines end inside of wide brackets, too, and in front of what stands on the right; words have
+    room around them, under dots as well."""
+    page = page_of(derived(SHIPPED / "rolling-disc.yaml"), (1, 2, 3))
+    finding = page[page.index("Equations") : page.index("Self-check")]
+    pieces = [re.sub("<[^>]*>|\u2061|\u2062", "", one) for one in re.findall(r"<math>(.*?)</math>", finding)]
+    assert len(pieces) > 25
+    assert max(map(len, pieces)) <= 36
+    assert "=λ1" in pieces
+    latex = TARGETS["latex"].render(derived(SHIPPED / "rolling-disc.yaml"), (3,))
+    assert r"r\, \dot{\mathit{spin}}" in latex
+    assert not re.search(r"[a-z] \\d+ot\{\\mathit", latex)

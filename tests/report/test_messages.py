@@ -260,14 +260,19 @@ def properties(part: object) -> Iterator[str]:
 
 def of_runs() -> Iterator[str]:
     """Kinds of savings, shares of bounds, ways to q'', how runs end, what methods are called."""
-    named = {key: value for key, value in vars(kinds).items() if key.isupper() and isinstance(value, str)}
-    yield from (value for key, value in named.items() if key not in ("FINENESS", "KERNEL"))  # never told
+    yield from (kind for kind in kinds.Kind if kind not in (kinds.Kind.FINENESS, kinds.Kind.KERNEL))  # never told
     yield from (plan.MODEL, plan.INTEGRATION, plan.ARITHMETIC, EXTENDED, ARTICULATED, FACTORISED)
-    yield from (interface.BLOW_UP, interface.SINGULAR, interface.STEP_LIMIT, interface.STUCK, interface.UNDEFINED)
     yield from (
-        interface.SINGULAR_CONSTRAINTS,
-        interface.OUT_OF_REACH,
-        interface.NOT_SMOOTH,
+        interface.Cause.BLOW_UP,
+        interface.Cause.SINGULAR,
+        interface.Cause.STEP_LIMIT,
+        interface.Cause.STUCK,
+        interface.Cause.UNDEFINED,
+    )
+    yield from (
+        interface.Cause.SINGULAR_CONSTRAINTS,
+        interface.Cause.OUT_OF_REACH,
+        interface.Cause.NOT_SMOOTH,
         sides.OUTSIDE,
         sides.SWITCHING,
         "energy",

@@ -701,12 +701,20 @@ def test_without_any_code_reports_say_why(tmp_path):
 
 
 def test_an_alternative_is_one_inequality() -> None:
-    """p > 0 and f != 0 together are p f^2 > 0, whatever the sign of f."""
+    """p > 0 and f != 0 together are p f^2 > 0, whatever the sign of f; where there is no other they are told as two."""
     ring = analysis_of("heavy-top.yaml").ring
-    p, f = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g"))
+    p, f, q = (ring.context.gen(ring.index("parameter", name)) for name in ("m", "g", "l"))
     required = Requirement("a", p * f**2, Condition("inequality", p, nonzero=(f,)))
-    (one,) = cases(ring, [Case((), (required,), Verdict("unstable"))], Labels())
-    assert [(item.formula.polynomial, item.relation) for item in one.any_of] == [(p * f**2, ">")]
+    other = Requirement("b", q, Condition("inequality", q))
+
+    def told(*any_of: Requirement) -> list[list[tuple[object, str]]]:
+        (one,) = cases(ring, [Case((), any_of, Verdict("unstable"))], Labels())
+        return [[(x.formula.polynomial, x.relation) for x in some] for some in (one.all_of, one.any_of)]
+
+    assert told(required, other) == [[], [(p * f**2, ">"), (q, ">")]]
+    assert told(required) == [[(p, ">"), (f, "!=")], []]
+    without = Requirement("c", p, Condition("inequality", p))
+    assert told(required, other, without) == [[], [(q, ">"), (p, ">")]]  # which p f^2 > 0 implies
 
 
 def test_a_short_formula_of_many_terms_is_counted() -> None:

@@ -6,7 +6,6 @@ Needs the extra ``robots`` (``make robots`` installs it); without it these tests
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -46,10 +45,10 @@ def test_a_robot(name: str, tmp_path: Path) -> None:
     text = agreement.urdf_files()[file].read_text(encoding="utf-8")
     converted = convert(text, floating)
     (tmp_path / "robot.yaml").write_text(converted.yaml, encoding="utf-8")
-    started = time.monotonic()
-    done = warm.run(["run", "robot.yaml", "--out", "reports", "--quiet"], cwd=tmp_path, timeout=4 * MINUTE)
+    done = warm.run(
+        ["run", "robot.yaml", "--out", "reports", "--quiet"], cwd=tmp_path, timeout=10 * MINUTE, processor=MINUTE
+    )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert time.monotonic() - started < MINUTE
     for report, most in REPORTS.items():
         size = (tmp_path / "reports" / report).stat().st_size
         assert size > 1_000

@@ -14,7 +14,7 @@ import mbsym
 from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import text as written
 from mbsym.model.constraints import Coincide, Relation
-from mbsym.problems.claims import DIFFERS, EXACT
+from mbsym.problems.claims import Outcome
 from mbsym.report.targets import TARGETS
 from mbsym.source import read, to_text
 from mbsym.source.robots import Converted, convert, is_robot
@@ -80,6 +80,9 @@ def test_symbols_have_the_printed_values() -> None:
     assert values == {
         "g": "9.81", "p2z": "2", "c2z": "0.5", "m2": "2", "J2xx": "0.1", "J2yy": "0.1", "J2zz": "0.01", "b1": "0.7",
     }  # fmt: skip
+    meanings = {one.name: one.meaning for one in named.parameters}
+    assert meanings["p2z"] == "origin of rod <1> on its carrier along z"
+    assert meanings["c2z"] == "mass centre of rod <1> along z"
 
 
 @pytest.mark.parametrize(
@@ -202,6 +205,7 @@ def test_what_is_a_robot() -> None:
 
 
 #: Its mass is pi at a density of 6.
+POINT = '<inertial pos="0 0 -1" mass="1" diaginertia="1 1 1"/>'
 BALL = '<body name="b"><joint axis="0 1 0"/><geom size="0.5"/></body>'
 
 
@@ -286,10 +290,46 @@ def test_a_template_is_told_to_be_one() -> None:
     assert complaints_of(text) == [("unsupported", 3)]
 
 
-def test_misspelled_elements_do_not_go_by_in_silence() -> None:
-    assert "unknown element <orign> in <joint>" in converted(PENDULUM.replace("<origin rpy", "<orign rpy")).left_out
-    made = converted(PENDULUM.replace("<mass value", "<mas value"))
-    assert "unknown element <mas> in <inertial>" in made.left_out
+@pytest.mark.parametrize(
+    ("old", "new", "what", "meant"),
+    [
+        ("<origin rpy", "<orign rpy", "element <orign> in <joint>", "origin"),
+        ("<mass value", "<mas value", "element <mas> in <inertial>", "mass"),
+        ('damping="', 'dampng="', "attribute 'dampng' of <dynamics>", "damping"),
+        ('ixy="', 'Ixy="', "attribute 'Ixy' of <inertia>", "ixy"),
+        (' xyz="0 0 -0.5"', ' XYZ="0 0 -0.5"', "attribute 'XYZ' of <origin>", "xyz"),
+    ],
+)
+def test_what_is_misspelt_in_urdf_is_complained_about_with_a_guess(old: str, new: str, what: str, meant: str) -> None:
+    assert old in PENDULUM
+    complaints = Complaints()
+    assert convert(PENDULUM.replace(old, new, 1), complaints) is None
+    found = next(one for one in complaints.items if one.code == "unknown-key")
+    assert what in found.message
+    assert found.hint == f"did you mean '{meant}'?"
+
+
+def test_what_urdf_files_have_of_their_own_is_left_out_by_name() -> None:
+    """Both stand in files of robots that are sold; neither is a slip of the pen."""
+    text = PENDULUM.replace('<link name="world"/>', '<link name="world"><collision_checking/></link>')
+    made = converted(text.replace("<dynamics ", '<dynamics gear_damping="2" '))
+    assert "unknown element <collision_checking> in <link>" in made.left_out
+    assert "unknown attribute 'gear_damping' of <dynamics>" in made.left_out
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ('<mass value="2"/>', '<mass value="2"/>\n<mass value="3"/>', "repeated-key"),
+        ("<dynamics ", '<dynamics damping="9"/>\n<dynamics ', "repeated-key"),
+        ("<axis ", '<axis xyz="1 0 0"/>\n<axis ', "repeated-key"),
+        ('value="2"', 'value="1_0"', "bad-number"),
+        ('value="2"', 'value="\u0662"', "bad-number"),
+    ],
+)
+def test_of_two_elements_where_one_holds_none_is_taken(old: str, new: str, code: str) -> None:
+    assert old in PENDULUM
+    assert [one for one, _ in complaints_of(PENDULUM.replace(old, new, 1))] == [code]
 
 
 @pytest.mark.parametrize(
@@ -315,6 +355,81 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
     assert found.hint == f"did you mean '{meant}'?"
     assert found.span is not None
     assert found.span.line == 2
+
+
+@pytest.mark.parametrize(
+    ("body", "after", "codes"),
+    [
+        (f"<body><joint name='j'/>{POINT}</body><body><joint name='j'/>{POINT}</body>", "", ["repeated-name"]),
+        (f"<body><joint/>{POINT}{POINT}</body>", "", ["repeated-key"]),
+        ("<body><joint/>" + POINT.replace("/>", ' fullinertia="1 1 1 0 0 0"/>') + "</body>", "", ["conflicting-keys"]),
+        (
+            f"<body><joint name='j'/>{POINT}</body>",
+            "<equality><joint joint1='j' polycoeff='1 2'/></equality>",
+            ["unknown-key"],
+        ),
+    ],
+)
+def test_what_mujoco_refuses_is_refused(body: str, after: str, codes: list[str]) -> None:
+    """A joint's name twice, two inertias, a tensor told twice, a slip in a tie."""
+    assert [code for code, _ in complaints_of(mujoco("", body, after))] == codes
+
+
+@pytest.mark.parametrize(
+    ("flag", "gone"),
+    [
+        ("damper", ["damper"]),
+        ("spring", ["spring"]),
+        ("passive", ["damper", "spring"]),
+        ("equality", ["constraints"]),
+        ("constraint", ["constraints", "limits"]),
+        ("limit", ["limits"]),
+        ("gravity", ["gravity"]),
+    ],
+)
+def test_what_flags_switch_off_is_off(flag: str, gone: list[str]) -> None:
+    option = f'<compiler angle="radian"/><option><flag {flag}="disable"/></option>'
+    body = f'<body><joint name="j" damping="3" stiffness="4" range="-1 1"/>{POINT}</body>'
+    after = '<equality><joint joint1="j" polycoef="0.5"/></equality>'
+    words = ("damper", "spring", "constraints", "limits", "gravity")
+    plain, switched = (
+        converted(mujoco(before, body, after)).yaml for before in (option.replace(flag, "energy"), option)
+    )
+    assert all(f"{word}:" in plain for word in words)
+    assert [word for word in words if f"{word}:" not in switched] == gone
+
+
+def test_a_class_may_switch_off_a_tie() -> None:
+    """As MuJoCo has it: the class of a tie is that of <equality>."""
+    before = '<default><default class="off"><equality active="false"/></default></default>'
+    body = f'<body><joint name="j"/>{POINT}</body>'
+    made = converted(mujoco(before, body, '<equality><joint class="off" joint1="j"/></equality>'))
+    assert "constraints:" not in made.yaml
+    assert "inactive constraint (<joint>)" in made.left_out
+
+
+def test_a_tie_is_of_the_joint_of_its_name_and_of_no_nameless_one() -> None:
+    """The joint ``elbow`` is q1; the nameless one in the body ``elbow``, with another reference, is q3."""
+    bodies = [
+        f'<body name="upper"><joint name="elbow" ref="30"/>{POINT}</body>',
+        f'<body name="lower"><joint name="x"/>{POINT}</body>',
+        f'<body name="elbow"><joint ref="60"/>{POINT}</body>',
+    ]
+    after = '<equality><joint joint1="elbow" joint2="x"/></equality>'
+    assert "relation: q1 - pi/6 = (1)*(q2)" in converted(mujoco("", "".join(bodies), after)).yaml
+
+
+def test_a_joint_s_name_stands_once_in_urdf_and_a_floating_joint_s_damping_is_told() -> None:
+    text = PENDULUM.replace(
+        "</robot>",
+        """<link name="more"/><joint name="pivot&#10;x: y" type="fixed">
+<parent link="world"/><child link="more"/></joint></robot>""",
+    )
+    assert "repeated-name" in [code for code, _ in complaints_of(text)]
+    free = PENDULUM.replace('type="revolute"', 'type="floating"')
+    assert "damping of a floating joint" in converted(free).left_out
+    loop = PENDULUM.replace("</robot>", '<loop_joint name="l" type="revolute"/></robot>')
+    assert "joint that closes a loop (<loop_joint>)" in converted(loop).left_out
 
 
 def test_of_ties_all_that_is_wrong_is_told_and_once() -> None:
@@ -423,7 +538,14 @@ def test_links_without_mass_are_frames_that_can_be_named() -> None:
         " + 0.055*(q1_dot + q2_dot)**2}",
     )
     analysis = mbsym.loads(made.yaml + "claims:\n" + "".join(f"  - {claim}\n" for claim in claims))
-    assert [one.outcome for one in analysis.claims] == [EXACT, EXACT, EXACT, DIFFERS, EXACT, EXACT]
+    assert [one.outcome for one in analysis.claims] == [
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.EXACT,
+        Outcome.DIFFERS,
+        Outcome.EXACT,
+        Outcome.EXACT,
+    ]
     assert made.still == ("f",)
     assert made.joints == ("s", "e")
     assert [body.name for body in analysis.system.bodies if body.shapes] == ["camera"]
@@ -445,7 +567,7 @@ def test_named_sites_and_bodies_without_mass_are_frames_and_other_sites_are_list
         "  - {claim: position, of: flag, component: 1, equals: -3*sin(q1)}\n"
         "  - {claim: position, of: home, component: 3, equals: 1}\n"
     )
-    assert [one.outcome for one in mbsym.loads(text).claims] == [EXACT] * 3
+    assert [one.outcome for one in mbsym.loads(text).claims] == [Outcome.EXACT] * 3
     freed, _ = read(converted(SITES, floating=True).yaml, "p.yaml")
     assert freed is not None
     assert [body.name for body in freed.bodies if "x" in body.coordinates] == ["b frame 1"]
@@ -499,7 +621,7 @@ def test_every_joint_that_something_can_drive_has_its_torque_as_an_input() -> No
     (one,) = system.inputs
     assert (one.name, one.meaning) == ("tau_x_dot_joint", "torque in joint x-dot, at most 40 N*m")
     claim = "{{claim: equation of motion, of: q1, equals: 0.6*q1_ddot + 0.7*q1_dot + 9.81*sin(q1) {} tau_x_dot_joint}}"
-    assert outcomes(made.yaml, claim.format("-"), claim.format("+")) == [EXACT, DIFFERS]
+    assert outcomes(made.yaml, claim.format("-"), claim.format("+")) == [Outcome.EXACT, Outcome.DIFFERS]
     assert "inputs:" not in converted(PENDULUM, inputs=False).yaml
 
 
@@ -537,7 +659,7 @@ def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
         f"{{claim: kinetic energy, equals: {energy} + 0.15*q1_dot**2 + 0.35*q2_dot**2}}",
         f"{{claim: kinetic energy, equals: {energy}}}",
         "{claim: force function, equals: 9.81*(0.5*cos(q1) - 2*q2*cos(q1))}",
-    ) == [EXACT, DIFFERS, EXACT]
+    ) == [Outcome.EXACT, Outcome.DIFFERS, Outcome.EXACT]
     assert not any("armature" in one for one in made.left_out)
 
 
@@ -569,7 +691,7 @@ def test_joints_that_mimic_others_follow_them() -> None:
             "{claim: equation of motion, of: q1,"
             " equals: 4.5*q1_ddot + 1.25*q1_dot + 3*9.81*0.5*2*sin(1 - 2*q1) - tau_j1}",
         )
-        == [EXACT] * 3
+        == [Outcome.EXACT] * 3
     )
     assert not any("mimic" in one for one in made.left_out)
     limited = GRIPPER.replace('<dynamics damping="5"/>', '<dynamics damping="5"/><limit lower="0" upper="1"/>')
@@ -579,9 +701,11 @@ def test_joints_that_mimic_others_follow_them() -> None:
 def test_a_joint_that_only_leads_has_a_coordinate_and_one_that_follows_nothing_that_moves_is_at_its_offset() -> None:
     """The first finger without mass: 2 T = 3.5 q'^2.  A follower of the fixed joint stands at 1 + 2*0 all the time."""
     light = GRIPPER.replace('<inertial><mass value="1"/></inertial>', "")
-    assert outcomes(converted(light).yaml, "{claim: kinetic energy, equals: 1.75*q1_dot**2}") == [EXACT]
+    assert outcomes(converted(light).yaml, "{claim: kinetic energy, equals: 1.75*q1_dot**2}") == [Outcome.EXACT]
     fixed = GRIPPER.replace('<mimic joint="j2" multiplier="4"/>', '<mimic joint="p" multiplier="2" offset="1"/>')
-    assert outcomes(converted(fixed).yaml, "{claim: position, of: f3, component: 1, equals: 0.5*sin(1)}") == [EXACT]
+    assert outcomes(converted(fixed).yaml, "{claim: position, of: f3, component: 1, equals: 0.5*sin(1)}") == [
+        Outcome.EXACT
+    ]
     assert "angles: [1]" in converted(fixed).yaml
 
 
@@ -622,7 +746,7 @@ def test_a_joint_with_ref_has_it_as_its_coordinate_where_it_is_straight() -> Non
         converted(mujoco("", body)).yaml,
         "{claim: position, of: a, component: 3, equals: -cos(q1 - pi/6)/2}",
         "{claim: position, of: b, component: 1, equals: (q2 - 0.25)*cos(q1 - pi/6)}",
-    ) == [EXACT, EXACT]
+    ) == [Outcome.EXACT, Outcome.EXACT]
 
 
 def test_the_total_mass_may_be_set() -> None:
@@ -658,7 +782,7 @@ def test_what_stands_in_frames_is_placed_relative_to_them() -> None:
             "{claim: position, of: tip, component: 3, equals: 2 - 2*cos(q1)}",
             "{claim: position, of: c, component: 2, equals: (q2 - 1)*sin(q1)}",
         )
-        == [EXACT] * 4
+        == [Outcome.EXACT] * 4
     )
     inside = FRAMES.replace("<site", '<joint name="x"/><site')
     assert complaints_of(mujoco("", inside))[0][0] == "unsupported"

@@ -393,13 +393,13 @@ def test_too_many_bodies_are_one_complaint() -> None:
     "value", ["'" + "@;" * 9_990 + "'", "'" + "é " * 9_000 + "'", "(" * 9_000, "'" + "a b " * 4_000 + "'", "1/" * 9_000]
 )
 def test_hostile_values_are_refused_in_a_moment(value: str) -> None:
-    began = time.perf_counter()
+    began = time.process_time()
     system, complaints = read(
         f"mbsym: 1\nname: x\nparameters:\n  p0: {value}\n  p1: 1\nvalues: {{p1: {value}}}\n", "x.yaml"
     )
     assert system is None
     assert len(complaints.items) <= MAX_COMPLAINTS
-    assert time.perf_counter() - began < 2
+    assert time.process_time() - began < 2
 
 
 def test_what_is_shown_moves_no_cursor() -> None:

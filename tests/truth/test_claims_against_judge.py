@@ -26,7 +26,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.analysis.judge import Judge
 from mbsym.problems import stability
-from mbsym.problems.claims import BORDERS, FAILS, ClaimResult
+from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.problems.claims.regions import Inequality, Region
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
@@ -126,10 +126,10 @@ class Case:
             holds = RELATIONS[relation](gap)
             if result.holds and role == "sufficient" and holds and verdict.word is Word.UNSTABLE:
                 yield f"unstable with it at {point}"
-            exempt = result.outcome == BORDERS and gap == 0
+            exempt = result.outcome == Outcome.BORDERS and gap == 0
             if result.holds and role == "necessary" and not holds and not exempt and is_stable(verdict):
                 yield f"stable without it at {point}"
-        if result.outcome == FAILS and result.counterexample is not None:
+        if result.outcome == Outcome.FAILS and result.counterexample is not None:
             at = {name: Fraction(x) for name, x in result.counterexample.at}
             judge = self.analysis.trials
             again = judge._verdict_at(at)
@@ -235,6 +235,6 @@ claims:
 """
     needed, enough = mbsym.loads(text).claims
     assert "cyclic there only drift away" in str(needed.remark)
-    assert enough.outcome == FAILS
+    assert enough.outcome == Outcome.FAILS
     assert enough.counterexample is not None
     assert "cyclic there only" in str(enough.counterexample.shows[-1][1])

@@ -15,7 +15,7 @@ import mbsym
 from mbsym.numerics.accuracy import ErrorEstimate
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown
+from mbsym.numerics.methods.interface import Breakdown, Cause
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
@@ -89,7 +89,7 @@ def test_a_stiff_chain_of_six_has_a_reference_within_its_error_of_the_closed_for
 @needs_extended
 def test_implicit_references_are_within_their_error_of_the_closed_form(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_slow(search: Any) -> Reference:
-        raise Breakdown(STEP_LIMIT, "planted", 0.0, np.empty(0))
+        raise Breakdown(Cause.STEP_LIMIT, "planted", 0.0, np.empty(0))
 
     monkeypatch.setattr(reference_search, "WAYS", ((too_slow, 0.1), (reference_search._implicit, 1.0)))
     with mpmath.workdps(45):

@@ -4,6 +4,7 @@ import { make } from "../elements.js";
 import { told } from "./playing.js";
 import type { State } from "./program.js";
 import type { Coordinate, Equilibria, Modes, Picture } from "./types.js";
+import { say } from "./words.js";
 
 export class Sliders {
   readonly element = make("div", { class: "viewer-sliders" });
@@ -74,12 +75,12 @@ export function equilibriaList(found: Equilibria, choose: (k: number) => void): 
     const values = Object.entries(one.texts).map(([name, text]) => `${name} = ${text}`);
     const free = one.free.map((name) => `${name} any`);
     const angles = one.otherAngles ? `; in other angles of ${one.otherAngles}, which no slider shows` : "";
-    const text = `${one.family ? "of a family: " : ""}${[...values, ...free].join(", ") || "any position"}${angles}`;
+    const text = `${one.family ? say("of a family: ") : ""}${[...values, ...free].join(", ") || say("any position")}${angles}`;
     const theorem = one.verdict.theorems.length > 0 ? ` (${one.verdict.theorems.join(", ")})` : "";
     const button = make("button", { type: "button", "aria-pressed": "false", disabled: one.otherAngles !== "", click: () => choose(k) }, text);
     return make("li", {}, button, make("span", { class: "viewer-verdict" }, `${one.verdict.verdict}${theorem}`));
   });
-  const whole = found.complete ? "The list is complete." : "The list may be incomplete.";
+  const whole = found.complete ? say("The list is complete.") : say("The list may be incomplete.");
   const turning = Object.entries(found.turning).map(([name, rate]) => `${name} turns at ${told(rate)}.`);
   return make(
     "div",
@@ -100,8 +101,8 @@ export function valuesTable(picture: Picture): HTMLElement {
     make("tr", {}, make("th", { scope: "row" }, label), make("td", {}, `${told(value)}${unit ? ` ${unit}` : ""}`), make("td", {}, meaning));
   const given = picture.parameters.map((one) => row(one.label, one.value, one.unit, one.given ? one.meaning : `stands in: no value is given. ${one.meaning}`));
   const start = picture.coordinates.flatMap((one) => [
-    row(one.label, one.value, one.unit, picture.atZero.includes(one.name) ? "no initial value is given" : "initial value"),
-    row(`d${one.label}/dt`, one.velocity, time ? `${one.unit || "1"}/${time}` : "", "initial velocity"),
+    row(one.label, one.value, one.unit, picture.atZero.includes(one.name) ? say("no initial value is given") : say("initial value")),
+    row(`d${one.label}/dt`, one.velocity, time ? `${one.unit || "1"}/${time}` : "", say("initial velocity")),
   ]);
   return make("div", { class: "viewer-words" }, make("table", {}, make("tbody", {}, ...given, ...start)));
 }

@@ -3,6 +3,7 @@
 import { make } from "../elements.js";
 import { inks } from "./inks.js";
 import { told, type Track } from "./playing.js";
+import { say } from "./words.js";
 
 export class Traces {
   readonly element: HTMLElement;
@@ -39,7 +40,7 @@ export class Traces {
     const unit = motion.units.energy ? ` ${motion.units.energy}` : "";
     const drift = motion.drift[k];
     this.reading.textContent =
-      `kinetic ${told(motion.kinetic[k])}${unit} (line), energy ${told(motion.energy[k])}${unit} (its change dashed), ` +
+      `${say("kinetic energy (line)")} ${told(motion.kinetic[k])}${unit}, ${say("energy (its change dashed)")} ${told(motion.energy[k])}${unit}, ` +
       `${motion.driftOf} ${drift === null || drift === undefined ? "–" : drift === 0 ? "0" : drift.toExponential(1)}`;
     const ratio = window.devicePixelRatio || 1;
     const [wide, tall] = [canvas.clientWidth, canvas.clientHeight];

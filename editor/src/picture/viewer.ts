@@ -11,6 +11,7 @@ import { Stage } from "./stage.js";
 import { Traces } from "./traces.js";
 import type { Shown } from "./drawing.js";
 import type { Coordinate, Equilibria, Modes, Motion, Picture } from "./types.js";
+import { say } from "./words.js";
 import "./viewer.css";
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -41,10 +42,10 @@ export class Viewer {
   private readonly reduced = matchMedia("(prefers-reduced-motion: reduce)");
   private readonly sliders = new Sliders((name, value) => this.slid(name, value));
   private readonly traces = new Traces((t) => this.go(t));
-  private readonly play = make("button", { type: "button", class: "viewer-play", "aria-keyshortcuts": "Space" }, "Play");
-  private readonly scrub = make("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time" });
+  private readonly play = make("button", { type: "button", class: "viewer-play", "aria-keyshortcuts": "Space" }, say("Play"));
+  private readonly scrub = make("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": say("Time") });
   private readonly clock = make("output", { class: "viewer-clock" });
-  private readonly speed = make("select", { "aria-label": "Speed" });
+  private readonly speed = make("select", { "aria-label": say("Speed") });
   private readonly bar = make("div", { class: "viewer-bar", hidden: true }, this.play, this.scrub, this.clock, this.speed);
   private readonly said = make("p", { class: "viewer-said", "aria-live": "polite" });
   private readonly sections: Record<"coordinates" | "motion" | "modes" | "equilibria" | "values" | "words", HTMLDetailsElement>;
@@ -54,12 +55,12 @@ export class Viewer {
     const section = (title: string, open: boolean, ...inside: Node[]) =>
       make("details", { open, class: "viewer-section" }, make("summary", {}, title), ...inside);
     this.sections = {
-      coordinates: section("Coordinates", true, this.sliders.element),
-      motion: section("Motion", true),
-      modes: section("Linear modes", false),
-      equilibria: section("Equilibria", false),
-      values: section("Values", false),
-      words: section("In words", false),
+      coordinates: section(say("Coordinates"), true, this.sliders.element),
+      motion: section(say("Motion"), true),
+      modes: section(say("Linear modes"), false),
+      equilibria: section(say("Equilibria"), false),
+      values: section(say("Values"), false),
+      words: section(say("In words"), false),
     };
     for (const name of ["motion", "modes", "equilibria"] as const) this.sections[name].hidden = true;
     this.sections.words.addEventListener("toggle", () => this.tell(true));
@@ -69,7 +70,7 @@ export class Viewer {
     const eye = this.stage.eye;
     const press = (words: string, label: string, does: () => void) => make("button", { type: "button", "aria-label": label, title: label, click: does }, words);
     const corner = make("div", { class: "viewer-corner" },
-      press("+", "Closer", () => eye.closer(1.2)), press("−", "Further", () => eye.closer(1 / 1.2)), press("⌂", "First view", () => eye.reset()));
+      press("+", say("Closer"), () => eye.closer(1.2)), press("−", say("Further"), () => eye.closer(1 / 1.2)), press("⌂", say("First view"), () => eye.reset()));
     if (!this.stage.broken) this.stage.element.append(corner);
     const main = make("div", { class: "viewer-main" }, this.stage.element, this.bar, ...(this.stage.broken ? [] : [this.switches()]), this.said);
     host.replaceChildren(make("div", { class: "viewer" }, main, make("div", { class: "viewer-side" }, ...Object.values(this.sections))));
@@ -110,10 +111,10 @@ export class Viewer {
     const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
     const stays = (column: (number | null)[]) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12);
     if (this.track.times.length > 1 && Object.values(motion.coordinates).every(stays)) {
-      first.unshift("No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another.");
+      first.unshift(say("No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another."));
     }
     const lines = (sentences: string[]) => sentences.map((text) => make("p", { class: "viewer-soft" }, text));
-    const how = make("details", { class: "viewer-how" }, make("summary", {}, "How it was computed"), ...lines(motion.sentences));
+    const how = make("details", { class: "viewer-how" }, make("summary", {}, say("How it was computed")), ...lines(motion.sentences));
     this.fill("motion", this.traces.element, ...lines([...first, ...motion.doubts]), how);
     const { track, poses } = this;
     if (poses && track.times.length > 1) {
@@ -136,7 +137,7 @@ export class Viewer {
     const { picture } = this;
     if (!picture) return;
     this.swings = modes.modes.map((mode) => new Swing(modes, mode, picture));
-    const size = make("input", { type: "range", min: 0, max: 2, step: 0.05, value: 1, "aria-label": "Amplitude" });
+    const size = make("input", { type: "range", min: 0, max: 2, step: 0.05, value: 1, "aria-label": say("Amplitude") });
     size.addEventListener("input", () => {
       this.amplitude = Number(size.value);
       this.stage.wanted();
@@ -243,7 +244,7 @@ export class Viewer {
 
   private run(on: boolean): void {
     this.going = on;
-    this.play.textContent = on ? "Pause" : "Play";
+    this.play.textContent = on ? say("Pause") : say("Play");
     this.play.setAttribute("aria-pressed", String(on));
     this.stage.wanted();
   }
@@ -333,14 +334,14 @@ export class Viewer {
 
   private switches(): HTMLElement {
     const names: [keyof Shown, string, string][] = [
-      ["names", "Names", "Names of bodies"],
-      ["frames", "Axes", "Axes of bodies: the first red, the second green, the third blue"],
-      ["arrows", "Forces", "Forces and torques of loads"],
-      ["paths", "Paths", "Paths of mass centres"],
-      ["inertia", "Inertia", "Ellipsoids of inertia, of rods and in the plane, too"],
+      ["names", say("Names"), say("Names of bodies")],
+      ["frames", say("Axes"), say("Axes of bodies: the first red, the second green, the third blue")],
+      ["arrows", say("Forces"), say("Forces and torques of loads")],
+      ["paths", say("Paths"), say("Paths of mass centres")],
+      ["inertia", say("Inertia"), say("Ellipsoids of inertia, of rods and in the plane, too")],
     ];
     const { shown } = this.stage.drawing;
-    return make("div", { class: "viewer-switches", role: "group", "aria-label": "Shown in the picture" }, ...names.map(([name, text, title]) => {
+    return make("div", { class: "viewer-switches", role: "group", "aria-label": say("Shown in the picture") }, ...names.map(([name, text, title]) => {
       const button = make("button", { type: "button", title, "aria-pressed": String(shown[name]) }, text);
       button.addEventListener("click", () => {
         shown[name] = !shown[name];

@@ -12,7 +12,12 @@ zero where the rows keep the rank r, and a pivot vanishes only where all rows to
 does not depend on the choice, so that nothing jumps where the choice changes, and derivatives are those of the
 solution.
 
-Only rows take part in this that follow from others.  lambda itself is not unique: of all solutions the least is given.
+Exchanges of all rows cost much code.  Of more than MOST_DEPENDENT that hang together each is taken in its turn, where
+what the rows before leave of it is more than FAINT of its kind, until r are taken.  So a pivot may be as small as FAINT
+where the largest would not be; then as many digits are lost.  Where fewer than r are taken all rows lose their rank.
+
+Only rows take part in this that follow from others.  lambda itself is not unique: of all solutions the least is given,
+but of rows in turn the one without those that were not taken.
 
 Source: Golub & Van Loan, Matrix Computations, 4th ed. 2013, 4.2.8 (symmetric pivoting of semidefinite matrices).
 """
@@ -27,8 +32,14 @@ from mbsym.algebra.program import Node, Program
 from mbsym.mechanics.constraints.rows import RowName
 from mbsym.mechanics.factorisation import Elimination
 
-#: Of more rows that hang together only independent ones are used: the code would be long.
+#: More rows that hang together are taken in turn: with exchanges the code would be long.
 MOST_DEPENDENT = 24
+
+#: Of still more only independent ones are used, which may be dependent elsewhere.
+MOST_IN_TURN = 40
+
+#: The least pivot of rows in turn, as a part of the row's kind.
+FAINT = Fraction(1, 10**5)
 
 #: Of two pivots that are as good as each other the first one stays, whatever the roundings.
 FIRST = Fraction(1) + Fraction(1, 2**30)
@@ -60,18 +71,18 @@ def counted_anew(
 ) -> tuple[list[int], list[tuple[Dependent, ...]]]:
     """The rows of ``order`` that equations are made of, and the sets counted by their places among these.
 
-    Sets of more than MOST_DEPENDENT rows are left with the ``independent`` ones, of which nothing follows any more.
+    The ``independent`` ones of sets of more than MOST_DEPENDENT rows come first: they are good where they were chosen.
+    Sets of more than MOST_IN_TURN are left with these, of which nothing follows any more.
     """
-    long = {i for sets in kinds for one in sets if len(one.rows) > MOST_DEPENDENT for i in one.rows}
+    long = {i for sets in kinds for one in sets if len(one.rows) > MOST_IN_TURN for i in one.rows}
     rows = [i for i in order if i not in long or i in independent]
-    return rows, [
-        tuple(
-            Dependent(tuple(sorted(rows.index(i) for i in one.rows)), one.rank)
-            for one in sets
-            if not long & {*one.rows}
-        )
-        for sets in kinds
-    ]
+    places = {i: place for place, i in enumerate(rows)}
+
+    def counted(one: Dependent) -> Dependent:
+        behind = {*one.rows} - {*independent} if len(one.rows) > MOST_DEPENDENT else ()
+        return Dependent(tuple(places[i] for i in sorted(one.rows, key=lambda i: (i in behind, places[i]))), one.rank)
+
+    return rows, [tuple(counted(one) for one in sets if not long & {*one.rows}) for sets in kinds]
 
 
 def measured(name: RowName) -> Hashable:
@@ -112,7 +123,7 @@ class Compliance:
             sizes[kinds[i]] = sizes.get(kinds[i], program.zero) + matrix[i][i]
         rest = [right[i] - self._paired(x, own) for i, x in zip(tied, columns, strict=True)]
         self._second = _Chosen(program, block, rest, [sizes[kinds[i]] for i in tied], dependent)
-        self.owners = tuple((i,) for i in loose) + tuple(one.rows for one in dependent for _ in range(one.rank))
+        self.owners = tuple((i,) for i in loose) + tuple(one.rows for one in dependent for _ in range(_pivots_of(one)))
 
     def _paired(self, x: Sequence[Node], y: Sequence[Node]) -> Node:
         total = self.program.zero
@@ -136,6 +147,11 @@ class Compliance:
         return tuple(found[i] for i in range(len(found)))
 
 
+def _pivots_of(one: Dependent) -> int:
+    """Of rows in turn each has one, and one more vanishes where too few are taken."""
+    return one.rank if len(one.rows) <= MOST_DEPENDENT else len(one.rows) + 1
+
+
 class _Chosen:
     """A x = b with the largest pivots of each set of rows, which stand one after another."""
 
@@ -153,19 +169,40 @@ class _Chosen:
         self._exchanges: list[tuple[int, int, Node]] = []
         self._taken: list[int] = []
         self._left: list[tuple[range, list[int]]] = []  # of each set the places of its pivots, and those without
+        self._pivots: list[Node] = []
         start = 0
         for one in sets:
             end = start + len(one.rows)
+            if len(one.rows) > MOST_DEPENDENT:
+                self._take_in_turn(range(start, end), one.rank)
+                start = end
+                continue
             for k in range(start, start + one.rank):
                 for i in range(k + 1, end):
                     self._exchange(k, i, [*range(k, n)])
                 self._eliminate(k, [*range(k + 1, end), *range(end, n)])
+                self._pivots.append(self._a[k][k])
             self._left.append((range(start, start + one.rank), [*range(start + one.rank, end)]))
             start = end
 
     @property
     def pivots(self) -> tuple[Node, ...]:
-        return tuple(self._a[k][k] for k in self._taken)
+        return tuple(self._pivots)
+
+    def _take_in_turn(self, rows: range, rank: int) -> None:
+        """Each row that is not taken is left out by the factor 0, and has its size for a pivot."""
+        program, a, count = self.program, self._a, self.program.zero
+        for k in rows:
+            enough = program.exceeds(a[k][k], program.number(FAINT) * self._sizes[k])
+            taken = enough * program.exceeds(program.number(Fraction(2 * rank - 1, 2)), count)
+            count = count + taken
+            a[k][k] = taken * a[k][k] + (program.one - taken) * self._sizes[k]
+            self._b[k] = taken * self._b[k]
+            for i in range(k + 1, len(a)):
+                a[i][k] = a[k][i] = taken * a[i][k]
+            self._eliminate(k, [*range(k + 1, len(a))])
+            self._pivots.append(a[k][k])
+        self._pivots.append(program.exceeds(count, program.number(Fraction(2 * rank - 1, 2))) * self._sizes[rows.start])
 
     def _exchange(self, k: int, i: int, active: Sequence[int]) -> None:
         """Rows k and i exchanged where i has the larger pivot."""

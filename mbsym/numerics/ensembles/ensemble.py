@@ -23,7 +23,7 @@ from mbsym.numerics.ensembles.parametrised import Parametrised
 from mbsym.numerics.ensembles.side_by_side import TABLEAUX, Fate, SideBySide, compiled
 from mbsym.numerics.ensembles.variation import Members
 from mbsym.numerics.kernels.interface import Code
-from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, Breakdown, Narrow, Run, Setting, met_by
+from mbsym.numerics.methods.interface import LARGEST, Breakdown, Cause, Narrow, Run, Setting, met_by
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
@@ -350,5 +350,5 @@ class OneByOne:
         if np.all(fine):
             return rows
         first = int(np.argmin(fine))
-        self.fates[member] = Fate(member, BLOW_UP, float(times[first]))
+        self.fates[member] = Fate(member, Cause.BLOW_UP, float(times[first]))
         return rows[:, :first]

@@ -8,6 +8,7 @@ formulas are those of ``mbsym.numerics.methods.marching``, whose stages are used
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import IntEnum
 from fractions import Fraction
 from math import log
 
@@ -132,12 +133,9 @@ def library(code: Code, drivers: str, lanes: int) -> Library:
 __all__ = ["DOUBLE", "INTEGER", "Lanes", "library", "wide_scalar"]
 
 
-#: Rows of ``clock``: a vector each.
-TIME, CARRY, START, LAST, STEP, PREVIOUS, NEXT, STEPS, REJECTED, FRESH, CAREFUL, INFINITE, DEAD = range(13)
-ROWS = 13
-
-#: Numbers that all members share.
-RELATIVE, ABSOLUTE, LONGEST = range(3)
+#: Rows of ``clock``: a vector each; numbers that all members share.
+Clock = IntEnum("Clock", "TIME CARRY START LAST STEP PREVIOUS NEXT STEPS REJECTED FRESH CAREFUL INFINITE DEAD", start=0)
+Shared = IntEnum("Shared", "RELATIVE ABSOLUTE LONGEST", start=0)
 
 #: What a driver returns.
 DONE, PAUSED = 0, 1
@@ -206,7 +204,8 @@ class _Adaptive:
         self.fresh = f.slot(self.kind, size)
         self.candidate, self.change = f.slot(self.kind, size), f.slot(self.kind, size)
         self.relative, self.absolute, self.longest = (
-            f.splatted(f.load(DOUBLE, f["shared"], place)) for place in (RELATIVE, ABSOLUTE, LONGEST)
+            f.splatted(f.load(DOUBLE, f["shared"], place))
+            for place in (Shared.RELATIVE, Shared.ABSOLUTE, Shared.LONGEST)
         )
 
     def row(self, place: int) -> Value:
@@ -225,7 +224,7 @@ class _Adaptive:
         f.jump(again)
         f.place(again)
         self._emit()
-        active = f.below(self.row(NEXT), "<", f.infinity())
+        active = f.below(self.row(Clock.NEXT), "<", f.infinity())
         f.branch(f.anywhere(active), going, done)
         f.place(done)
         f.leave(DONE)
@@ -245,37 +244,37 @@ class _Adaptive:
     def _aim(self, lane: int) -> None:
         """The next time at which a lane is shown; none where it is dead or done."""
         f = self.f
-        f.store(f.infinity_of_one(), DOUBLE, f["clock"], NEXT * f.lanes + lane)
+        f.store(f.infinity_of_one(), DOUBLE, f["clock"], Clock.NEXT * f.lanes + lane)
         index = f.load(INTEGER, f["index"], lane)
         with (
-            f.when(f.load(DOUBLE, f["clock"], DEAD * f.lanes + lane).compare("<=", 0)),
+            f.when(f.load(DOUBLE, f["clock"], Clock.DEAD * f.lanes + lane).compare("<=", 0)),
             f.when(index.compare("<", f["last"])),
         ):
-            f.store(f.load(DOUBLE, f["times"], index), DOUBLE, f["clock"], NEXT * f.lanes + lane)
+            f.store(f.load(DOUBLE, f["times"], index), DOUBLE, f["clock"], Clock.NEXT * f.lanes + lane)
 
     def _emit(self) -> None:
         """States at times that steps have reached, by dense output."""
         f = self.f
-        due = f.below(self.row(NEXT), "<=", self.row(TIME))
+        due = f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))
         with f.when(f.anywhere(due)):
             self._prepare()
             more, over = f.label(), f.label()
             f.jump(more)
             f.place(more)
-            due = f.below(self.row(NEXT), "<=", self.row(TIME))
-            self._between((self.row(NEXT) - self.row(START)) / self.row(LAST))
+            due = f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))
+            self._between((self.row(Clock.NEXT) - self.row(Clock.START)) / self.row(Clock.LAST))
             for lane in range(f.lanes):
                 with f.when(f.bit(due, lane)):
                     self._write(lane)
-            f.branch(f.anywhere(f.below(self.row(NEXT), "<=", self.row(TIME))), more, over)
+            f.branch(f.anywhere(f.below(self.row(Clock.NEXT), "<=", self.row(Clock.TIME))), more, over)
             f.place(over)
 
     def _prepare(self) -> None:
         """The terms of dense output of the last step (``Tableau.dense``)."""
         f, s, k, old = self.f, self.s, self.f["k"], self.f["old"]
-        h = self.row(LAST)
+        h = self.row(Clock.LAST)
         for place, row in enumerate(self.tableau.extra):
-            s.stage(old, k, row, self.stages + 1 + place, self.row(START), h)
+            s.stage(old, k, row, self.stages + 1 + place, self.row(Clock.START), h)
         for i in f.each(self.size):
             change = f.load(self.kind, f["x"], i) - f.load(self.kind, old, i)
             first, last = h * f.load(self.kind, k, i), h * f.load(self.kind, k, i + self.stages * self.size)
@@ -312,25 +311,25 @@ class _Adaptive:
     def _bury(self, active: Value, again: str) -> None:
         """Lanes whose steps have become too small are dead."""
         f = self.f
-        step, least = self.row(STEP), f.magnitude(self.row(TIME)) * _LEAST
+        step, least = self.row(Clock.STEP), f.magnitude(self.row(Clock.TIME)) * _LEAST
         low = f.select(f.below(least, ">", Fraction(1, 10**200)), least, Fraction(1, 10**200))
         stuck = f.without(active, f.below(step, ">", low))
         with f.when(f.anywhere(stuck)):
-            self.set(DEAD, f.select(stuck, 1, self.row(DEAD)))
-            self.set(NEXT, f.select(stuck, f.infinity(), self.row(NEXT)))
+            self.set(Clock.DEAD, f.select(stuck, 1, self.row(Clock.DEAD)))
+            self.set(Clock.NEXT, f.select(stuck, f.infinity(), self.row(Clock.NEXT)))
             f.jump(again)
             f.place(f.label())  # what follows is never reached
 
     def _try(self, active: Value) -> None:
         f, s, k, tableau = self.f, self.s, self.f["k"], self.tableau
-        x, time = f["x"], self.row(TIME)
-        step = f.select(active, self.row(STEP), 0)
+        x, time = f["x"], self.row(Clock.TIME)
+        step = f.select(active, self.row(Clock.STEP), 0)
         # The last slope of an accepted step is the first of the next; it is copied late: dense output needs both.
-        fresh = f.below(self.row(FRESH), ">", 0)
+        fresh = f.below(self.row(Clock.FRESH), ">", 0)
         for i in f.each(self.size):
             last, first = f.load(self.kind, k, i + self.stages * self.size), f.load(self.kind, k, i)
             f.store(f.select(fresh, last, first), self.kind, k, i)
-        self.set(FRESH, 0)
+        self.set(Clock.FRESH, 0)
         for place, row in enumerate(tableau.stages[1:], 1):
             s.stage(x, k, row, place, time, step)
         for i in f.each(self.size):
@@ -385,10 +384,10 @@ class _Adaptive:
         power = f.lanewise("exp", f.lanewise("log", error) * Fraction(-1, self.tableau.order)) * Fraction(SAFETY)
         shrink = f.select(f.below(power, ">", Fraction(SHRINKAGE)), power, Fraction(SHRINKAGE))
         shrink = f.select(usable, shrink, Fraction(1, 10))
-        self.set(STEP, f.select(bad, step * shrink, self.row(STEP)))
-        self.set(REJECTED, self.row(REJECTED) + f.select(bad, 1, 0))
-        self.set(INFINITE, f.select(bad, f.select(usable, 0, 1), self.row(INFINITE)))
-        self.set(CAREFUL, f.select(bad, 1, self.row(CAREFUL)))
+        self.set(Clock.STEP, f.select(bad, step * shrink, self.row(Clock.STEP)))
+        self.set(Clock.REJECTED, self.row(Clock.REJECTED) + f.select(bad, 1, 0))
+        self.set(Clock.INFINITE, f.select(bad, f.select(usable, 0, 1), self.row(Clock.INFINITE)))
+        self.set(Clock.CAREFUL, f.select(bad, 1, self.row(Clock.CAREFUL)))
 
     def _accept(self, good: Value, error: Value, step: Value, time: Value) -> None:
         f, s, x = self.f, self.s, self.f["x"]
@@ -401,19 +400,19 @@ class _Adaptive:
             larger = f.value(f.mask, f"and {f.mask} {good.text}, {f.below(largest, '<', size).text}")
             f.store(f.select(larger, size, largest), self.kind, f["sizes"], i)
             f.store(f.select(good, f.load(self.kind, f["carry"], i), carried), self.kind, f["carry"], i)
-        self.set(START, f.select(good, time, self.row(START)))
-        self.set(LAST, f.select(good, step, self.row(LAST)))
-        carried = self.row(CARRY)
-        new = add_compensated(f, self.kind, f["clock"], f.at(self.kind, f["clock"], CARRY), TIME, step)
-        self.set(TIME, f.select(good, new, time))
-        self.set(CARRY, f.select(good, self.row(CARRY), carried))
+        self.set(Clock.START, f.select(good, time, self.row(Clock.START)))
+        self.set(Clock.LAST, f.select(good, step, self.row(Clock.LAST)))
+        carried = self.row(Clock.CARRY)
+        new = add_compensated(f, self.kind, f["clock"], f.at(self.kind, f["clock"], Clock.CARRY), Clock.TIME, step)
+        self.set(Clock.TIME, f.select(good, new, time))
+        self.set(Clock.CARRY, f.select(good, self.row(Clock.CARRY), carried))
         if not self.tableau.first_same_as_last:
             s.state_argument(x)
-            s.evaluate(self.row(TIME), self.fresh)
+            s.evaluate(self.row(Clock.TIME), self.fresh)
             self._kept_slope(good)
-        self.set(FRESH, f.select(good, 1, 0))
-        self.set(INFINITE, f.select(good, 0, self.row(INFINITE)))
-        self.set(STEPS, self.row(STEPS) + f.select(good, 1, 0))
+        self.set(Clock.FRESH, f.select(good, 1, 0))
+        self.set(Clock.INFINITE, f.select(good, 0, self.row(Clock.INFINITE)))
+        self.set(Clock.STEPS, self.row(Clock.STEPS) + f.select(good, 1, 0))
         self._grow(good, error, step)
 
     def _grow(self, good: Value, error: Value, step: Value) -> None:
@@ -423,14 +422,14 @@ class _Adaptive:
         alpha = Fraction(1, self.tableau.order) - integral * Fraction(3, 4)
         floor = Fraction(1, 10**10)
         size = f.lanewise("log", f.select(f.below(error, ">", floor), error, floor))
-        factor = f.lanewise("exp", self.row(PREVIOUS) * integral - size * alpha) * Fraction(SAFETY)
-        limit = f.select(f.below(self.row(CAREFUL), "!=", 0), 1, Fraction(GROWTH))
+        factor = f.lanewise("exp", self.row(Clock.PREVIOUS) * integral - size * alpha) * Fraction(SAFETY)
+        limit = f.select(f.below(self.row(Clock.CAREFUL), "!=", 0), 1, Fraction(GROWTH))
         factor = f.select(f.below(factor, "<", limit), factor, limit)
         factor = f.select(f.below(factor, ">", Fraction(SHRINKAGE)), factor, Fraction(SHRINKAGE))
         grown = step * factor
         grown = f.select(f.below(grown, "<", self.longest), grown, self.longest)
-        self.set(STEP, f.select(good, grown, self.row(STEP)))
+        self.set(Clock.STEP, f.select(good, grown, self.row(Clock.STEP)))
         lower = Fraction(log(1e-4))
         kept = f.select(f.below(size, ">", lower), size, lower)
-        self.set(PREVIOUS, f.select(good, kept, self.row(PREVIOUS)))
-        self.set(CAREFUL, f.select(good, 0, self.row(CAREFUL)))
+        self.set(Clock.PREVIOUS, f.select(good, kept, self.row(Clock.PREVIOUS)))
+        self.set(Clock.CAREFUL, f.select(good, 0, self.row(Clock.CAREFUL)))

@@ -24,17 +24,9 @@ import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.ensemble_text import (
-    ABSOLUTE,
-    DEAD,
-    INFINITE,
-    LONGEST,
     PAUSED,
-    PREVIOUS,
-    REJECTED,
-    RELATIVE,
-    ROWS,
-    STEP,
-    STEPS,
+    Clock,
+    Shared,
     adaptive_text,
     fixed_text,
     library,
@@ -42,7 +34,7 @@ from mbsym.numerics.ensembles.ensemble_text import (
 )
 from mbsym.numerics.kernels.interface import FLOAT64, Code, Kernel
 from mbsym.numerics.kernels.llvm import Library, kernel
-from mbsym.numerics.methods.interface import BLOW_UP, LARGEST, STEP_LIMIT, STUCK, Setting
+from mbsym.numerics.methods.interface import LARGEST, Cause, Setting
 from mbsym.numerics.methods.magnitudes import Magnitudes, Variables, first_steps, magnitudes, variables
 from mbsym.numerics.methods.runge_kutta import OPERATIONS_AT_A_TIME
 from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address, aligned
@@ -50,7 +42,7 @@ from mbsym.numerics.methods.tableaux import DOP853, RK4, RK45, Tableau, address,
 #: The methods that run side by side.
 TABLEAUX = {tableau.name: tableau for tableau in (DOP853, RK45, RK4)}
 
-_WHY = (BLOW_UP, STUCK, STEP_LIMIT)
+_WHY = (Cause.BLOW_UP, Cause.STUCK, Cause.STEP_LIMIT)
 
 
 @dataclass(frozen=True)
@@ -139,14 +131,14 @@ class SideBySide:
         self.old = aligned(shape, float)
         self.old[:] = self.x
         self.k = aligned((self.groups, rows_of(made.tableau) * made.size, made.lanes), float)
-        self.clock = aligned((self.groups, ROWS, made.lanes), float)
+        self.clock = aligned((self.groups, len(Clock), made.lanes), float)
         self.index = aligned((self.groups, made.lanes), np.int64)
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         relative = max(tolerance, 4 * float(np.finfo(float).eps))
         self.shared = aligned(3, float)
-        self.shared[[RELATIVE, ABSOLUTE]] = relative, tolerance
-        self.shared[LONGEST] = 1e30 if setting.longest is None else setting.longest
-        self.clock[:, PREVIOUS] = log(1e-4)
+        self.shared[[Shared.RELATIVE, Shared.ABSOLUTE]] = relative, tolerance
+        self.shared[Shared.LONGEST] = 1e30 if setting.longest is None else setting.longest
+        self.clock[:, Clock.PREVIOUS] = log(1e-4)
         starts, parameters = self._flat(self.x), self._flat(self.p)
         rhs = kernel(made.code, FLOAT64)
 
@@ -159,7 +151,7 @@ class SideBySide:
         floor = known.floor(tolerance, float(np.finfo(float).eps))
         self.sizes[:] = _grouped(np.maximum(np.abs(starts), floor), made.lanes)
         steps, slopes = first_steps(rates, made.tableau.order, known, begin, starts, tolerance, relative)
-        self.clock[:, STEP] = np.minimum(steps, self.shared[LONGEST]).reshape(self.groups, made.lanes)
+        self.clock[:, Clock.STEP] = np.minimum(steps, self.shared[Shared.LONGEST]).reshape(self.groups, made.lanes)
         self.k[:, : made.size] = _grouped(slopes, made.lanes)
         self.evaluations += 2 * self.members
 
@@ -193,7 +185,9 @@ class SideBySide:
         """(accepted, rejected) of every member, so far; of fixed steps, those that were made."""
         if not self.made.tableau.errors:
             return np.full(self.members, self._fixed_steps), np.zeros(self.members)
-        accepted, rejected = (self.clock[:, place].reshape(-1)[: self.members] for place in (STEPS, REJECTED))
+        accepted, rejected = (
+            self.clock[:, place].reshape(-1)[: self.members] for place in (Clock.STEPS, Clock.REJECTED)
+        )
         return accepted, rejected
 
     _fixed_steps = 0
@@ -223,8 +217,8 @@ class SideBySide:
             pointers += [address(self.shared), address(times), address(out) + 8 * group * made.lanes]
             while self._driver(*pointers, 0, rows, width, budget) == PAUSED and not self.stopped.is_set():
                 clock = self.clock[group]
-                over = clock[STEPS] + clock[REJECTED] >= self.setting.step_limit
-                clock[DEAD, over] = 3
+                over = clock[Clock.STEPS] + clock[Clock.REJECTED] >= self.setting.step_limit
+                clock[Clock.DEAD, over] = 3
 
         self._everywhere(work)
 
@@ -297,16 +291,16 @@ class SideBySide:
         when = float(times[first])
         if not self.made.tableau.errors:
             self.x[group, :, lane] = np.nan
-            return Fate(member, BLOW_UP, when)
+            return Fate(member, Cause.BLOW_UP, when)
         clock = self.clock[group, :, lane]
         size = float(np.max(np.abs(self.x[group, :, lane])))
         steep = float(np.max(np.abs(self.k[group, : self.made.size, lane])))
-        kind = STEP_LIMIT if clock[DEAD] == 3 else STUCK
-        if kind == STUCK and (clock[INFINITE] or not size < LARGEST or not steep < LARGEST):
-            kind = BLOW_UP
-        if clock[DEAD]:
+        kind = Cause.STEP_LIMIT if clock[Clock.DEAD] == 3 else Cause.STUCK
+        if kind == Cause.STUCK and (clock[Clock.INFINITE] or not size < LARGEST or not steep < LARGEST):
+            kind = Cause.BLOW_UP
+        if clock[Clock.DEAD]:
             when = min(when, max(float(clock[0]), 0.0))
-        clock[DEAD] = max(1.0, clock[DEAD])
+        clock[Clock.DEAD] = max(1.0, clock[Clock.DEAD])
         return Fate(member, kind, when)
 
 

@@ -31,8 +31,8 @@ from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import (
     COUNTS,
-    STEP_LIMIT,
     Breakdown,
+    Cause,
     Change,
     Method,
     Run,
@@ -213,7 +213,7 @@ class SwitchingRun(Stepping):
         """Looks, every so many steps, whether the other method is the better one, and turns to it if it is."""
         if self.work.steps + self.work.rejected >= self._setting.step_limit:
             steps = Message("[[count]] steps", count=self.work.steps)
-            raise Breakdown(STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
+            raise Breakdown(Cause.STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
         made = self.work.steps - self._since[0]
         if made < WINDOW * self._patience:
             return

@@ -22,7 +22,7 @@ from mbsym.model.system import Body, Inertia, Rotation, Tensor, acceleration_nam
 from mbsym.model.welded import lumped
 from mbsym.numerics.ledger.entry import OPERATIONS, SECONDS, Measure, Saving
 from mbsym.numerics.ledger.work import Symbols, Work, changed_bodies, moving_names
-from mbsym.numerics.planning.kinds import AXES, GRAVITY, MASSLESS, POINTS, TURNS, WELDED
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.scenario import PRECISION, Scenario
 
 
@@ -39,7 +39,7 @@ def massless_bodies(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, heavy, symbols)
     why = Message("structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(MASSLESS, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.MASSLESS, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def welded_bodies(work: Work) -> Iterator[Saving]:
@@ -59,7 +59,7 @@ def welded_bodies(work: Work) -> Iterator[Saving]:
         "no coordinate moves them against [[carriers]]: m, m c and the tensor add up there, once, by Steiner's theorem",
         carriers=carriers,
     )
-    yield Saving(WELDED, tuple(found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.WELDED, tuple(found), why, Certainty.PROVED, measures)
 
 
 def point_masses(work: Work) -> Iterator[Saving]:
@@ -79,7 +79,7 @@ def point_masses(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, extended, symbols)
     why = Message("structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(POINTS, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.POINTS, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def unused_axes(work: Work) -> Iterator[Saving]:
@@ -100,7 +100,7 @@ def unused_axes(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = Message("structural: a turn that is not there is the identity matrix, and is never multiplied")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(AXES, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.AXES, _in_order(work, found), why, Certainty.PROVED, measures)
 
 
 def constant_rotations(work: Work) -> Iterator[Saving]:
@@ -122,7 +122,7 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = Message("the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1")
     measures = work.right_hand_sides(other, changing=symbols.names)
-    yield Saving(TURNS, tuple(found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.TURNS, tuple(found), why, Certainty.PROVED, measures)
 
 
 def gravity_orders(work: Work) -> Iterator[Saving]:
@@ -155,7 +155,9 @@ def gravity_orders(work: Work) -> Iterator[Saving]:
                 kept=f"{kept:.1e}",
             )
             how = Certainty.ESTIMATED
-        yield Saving(GRAVITY, (Message("terms of the field above order [[order]]", order=order),), why, how, measures)
+        yield Saving(
+            Kind.GRAVITY, (Message("terms of the field above order [[order]]", order=order),), why, how, measures
+        )
 
 
 def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | None:

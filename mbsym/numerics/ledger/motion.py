@@ -19,7 +19,7 @@ from mbsym.model.system import INERTIAL, System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, SECONDS, TERMS, Measure, Saving
 from mbsym.numerics.ledger.work import INSTRUCTION, Work, holds
-from mbsym.numerics.planning.kinds import CYCLIC, DROPPED, PARTS, PLANE, RESTING
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.separable import separated
@@ -55,7 +55,7 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
         Measure("operations of the right-hand side at these values", OPERATIONS, before, after),
         Measure("seconds of writing the right-hand side", SECONDS, seconds, spent),
     )
-    kind = PLANE if normal else RESTING
+    kind = Kind.PLANE if normal else Kind.RESTING
     yield Saving(kind, found.names, why, found.reduction.how, measures)
 
 
@@ -80,7 +80,7 @@ def separate_parts(work: Work) -> Iterator[Saving]:
         ),
     )
     why = Message("the blocks of M between them vanish, and none occurs in the accelerations of another")
-    yield Saving(PARTS, tuple(" and ".join(part.names) for part in parts), why, Certainty.PROVED, measures)
+    yield Saving(Kind.PARTS, tuple(" and ".join(part.names) for part in parts), why, Certainty.PROVED, measures)
 
 
 def _written(scenario: Scenario) -> Dynamics:
@@ -122,7 +122,7 @@ def cyclic_coordinates(work: Work) -> Iterator[Saving]:
         "a quadrature; told, not used: mbsym simulate integrates them"
     )
     measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
-    yield Saving(CYCLIC, found, why, Certainty.PROVED, measures)
+    yield Saving(Kind.CYCLIC, found, why, Certainty.PROVED, measures)
 
 
 def _undriven(work: Work) -> set[str]:
@@ -153,14 +153,14 @@ def dropped_parameters(work: Work) -> Iterator[Saving]:
     unread = [name for name in used if name not in live]
     if unread:
         why = Message("liveness: no instruction that q'' needs reads it")
-        yield Saving(DROPPED, tuple(unread), why, Certainty.PROVED, _dropped(work, used, unread))
+        yield Saving(Kind.DROPPED, tuple(unread), why, Certainty.PROVED, _dropped(work, used, unread))
     read = [name for name in used if name in live]
     by_reason: dict[tuple[str, Certainty], list[str]] = {}
     for name in _without_influence(work, read):
         by_reason.setdefault(_reason(work, name), []).append(name)
     for (reason, how), found in by_reason.items():
         measures = _dropped(work, used, found)[: 1 if reason == FACTOR else 2]
-        yield Saving(DROPPED, tuple(found), reason, how, measures)
+        yield Saving(Kind.DROPPED, tuple(found), reason, how, measures)
 
 
 def _dropped(work: Work, used: Sequence[str], found: Sequence[str]) -> tuple[Measure, ...]:

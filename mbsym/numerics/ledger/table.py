@@ -31,32 +31,7 @@ from mbsym.numerics.ledger.entry import COUNT, OPERATIONS, Ledger, Measure, Savi
 from mbsym.numerics.ledger.work import BUDGET, AccuracyGoal, Counted, TooDear, Work
 from mbsym.numerics.methods.interface import Breakdown, Setting
 from mbsym.numerics.planning.choice import choose
-from mbsym.numerics.planning.kinds import (
-    AXES,
-    CYCLIC,
-    DEAD,
-    DROPPED,
-    ENTRIES,
-    GRAVITY,
-    LEFT_OUT,
-    LINEARITY,
-    MASSES,
-    MASSLESS,
-    NOT_ASKED,
-    PARTS,
-    POINTS,
-    RESTING,
-    ROUTE,
-    SKEW,
-    SPARSITY,
-    STEADY,
-    SUBSYSTEMS,
-    SYMMETRY,
-    TURNS,
-    VALUES,
-    WELDED,
-    ZEROS,
-)
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.model_choice import PART, Scene, Tried, model_chosen, model_settled
 from mbsym.numerics.planning.models import Model, parted
 from mbsym.numerics.planning.pilot import rows
@@ -79,7 +54,7 @@ def steady_operations(work: Work) -> Iterator[Saving]:
     measures = (Measure("operations of q'' for one state", OPERATIONS, every, work.operations(forward.accelerations)),)
     steady = every - int(measures[0].taken)
     why = Message("liveness: no coordinate, velocity or time reaches them")
-    yield Saving(STEADY, (Message("[[count]] subexpressions", count=steady),), why, Certainty.PROVED, measures)
+    yield Saving(Kind.STEADY, (Message("[[count]] subexpressions", count=steady),), why, Certainty.PROVED, measures)
 
 
 def dead_operations(work: Work) -> Iterator[Saving]:
@@ -92,7 +67,7 @@ def dead_operations(work: Work) -> Iterator[Saving]:
     written, live = (alone.program.operations(x, given) for x in (every, alone.accelerations))
     measures = (Measure("operations written for one state", OPERATIONS, written, live),)
     why = Message("liveness: counted backwards from q'', no output needs them")
-    yield Saving(DEAD, (Message("[[count]] operations", count=written - live),), why, Certainty.PROVED, measures)
+    yield Saving(Kind.DEAD, (Message("[[count]] operations", count=written - live),), why, Certainty.PROVED, measures)
 
 
 def route(work: Work) -> Iterator[Saving]:
@@ -110,7 +85,7 @@ def route(work: Work) -> Iterator[Saving]:
     quantity = "operations of q'' and the pivots for one state"
     measures = (Measure(quantity, OPERATIONS, costs[other], costs[forward.method], bound_only),)
     what = Message("[[method]] instead of [[other]]", method=worded(forward.method), other=worded(other))
-    yield Saving(ROUTE, (what,), Message("both solve M q'' = f exactly"), Certainty.PROVED, measures)
+    yield Saving(Kind.ROUTE, (what,), Message("both solve M q'' = f exactly"), Certainty.PROVED, measures)
 
 
 def branch_sparsity(work: Work) -> Iterator[Saving]:
@@ -133,7 +108,9 @@ def branch_sparsity(work: Work) -> Iterator[Saving]:
     why = Message(
         "structural zeros: coordinates on different branches, or normal to each other, share no kinetic energy"
     )
-    yield Saving(SPARSITY, (Message("[[count]] entries of M", count=2 * len(zeros)),), why, Certainty.PROVED, measures)
+    yield Saving(
+        Kind.SPARSITY, (Message("[[count]] entries of M", count=2 * len(zeros)),), why, Certainty.PROVED, measures
+    )
 
 
 def symmetry(work: Work) -> Iterator[Saving]:
@@ -152,7 +129,7 @@ def symmetry(work: Work) -> Iterator[Saving]:
     )
     why = Message("identity: M_ij = d2T/dq_i' dq_j' = M_ji")
     what = Message("[[count]] entries below the diagonal", count=below)
-    yield Saving(SYMMETRY, (what,), why, Certainty.PROVED, measures)
+    yield Saving(Kind.SYMMETRY, (what,), why, Certainty.PROVED, measures)
 
 
 def _factorised(work: Work) -> Programs | None:
@@ -217,12 +194,12 @@ def values(work: Work) -> Iterator[Saving]:
     if zero:
         measures = (Measure("operations of q'' at these values", OPERATIONS, without_zeros, here),)
         why = Message("exact folding: 0 x = 0, so their terms are no instructions")
-        yield Saving(ZEROS, zero, why, Certainty.PROVED, measures)
+        yield Saving(Kind.ZEROS, zero, why, Certainty.PROVED, measures)
     symbolic = work.operations(work.forward.accelerations)
     measures = (Measure("operations of q'' for one state", OPERATIONS, symbolic, without_zeros),)
     why = Message("exact folding: constants are rational, 1 x = x, and equal values make equal nodes")
     what = Message("[[count]] parameters", count=len(work.numbers.parameters))
-    yield Saving(VALUES, (what,), why, Certainty.PROVED, measures)
+    yield Saving(Kind.VALUES, (what,), why, Certainty.PROVED, measures)
 
 
 def _generic(names: Sequence[str]) -> Mapping[str, Fraction]:
@@ -278,7 +255,7 @@ def skew_plane(work: Work) -> Iterator[Saving]:
         ),
     )
     names = tuple(name for name, a, b in zip(found.names, turning, moving, strict=True) if a or b)
-    yield Saving(SKEW, names, why, Certainty.VERIFIED, measures)
+    yield Saving(Kind.SKEW, names, why, Certainty.VERIFIED, measures)
 
 
 def _kinds(work: Work, found: BodyMotions) -> tuple[list[bool], list[bool]]:
@@ -333,7 +310,7 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
             why = joined([why, Message("the linearisation is that of the quadratised Lagrangian")], "; ")
         what = Message("problem [[number]], [[title]]", number=number, title=worded(problem.title))
         measures = found.measures(Counted(0, 0, 0.0), Message("it"))
-        yield Saving(NOT_ASKED, (what,), why, Certainty.PROVED, measures)
+        yield Saving(Kind.NOT_ASKED, (what,), why, Certainty.PROVED, measures)
 
 
 def _given_up(work: Work, number: int) -> Counted:
@@ -363,7 +340,7 @@ def vanishing_entries(work: Work) -> Iterator[Saving]:
         what.append(Message("[[matrices]] as a whole", matrices=", ".join(gone)))
     why = Message("identities of the ring: their polynomials are 0")
     measures = (Measure("entries of M, D, G, K, N", COUNT, 5 * n * n, entries),)
-    yield Saving(ENTRIES, tuple(what), why, Certainty.PROVED, measures)
+    yield Saving(Kind.ENTRIES, tuple(what), why, Certainty.PROVED, measures)
 
 
 def subsystems(work: Work) -> Iterator[Saving]:
@@ -381,7 +358,7 @@ def subsystems(work: Work) -> Iterator[Saving]:
     names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
     why = Message("identities of the ring: no matrix couples them, so the determinant is the product of theirs")
     measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
-    yield Saving(SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
+    yield Saving(Kind.SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
 
 
 def _linearisation(work: Work) -> Linearisation | None:
@@ -441,12 +418,12 @@ def simpler_model(work: Work) -> Iterator[Saving]:
 
 def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]]]:
     if model.linear:
-        yield LINEARITY, (Message("all that is not linear in the deviation"),)
+        yield Kind.LINEARITY, (Message("all that is not linear in the deviation"),)
     bodies, others = parted(scene.scenario, model)
     if bodies:
-        yield MASSES, bodies
+        yield Kind.MASSES, bodies
     if others:
-        yield LEFT_OUT, others
+        yield Kind.LEFT_OUT, others
 
 
 def _scene(work: Work, wanted: AccuracyGoal) -> Scene | None:
@@ -479,32 +456,34 @@ def _held(saving: Saving, tried: Tried, wanted: AccuracyGoal) -> Saving:
 
 #: What each function looks for; the order is that of the ledger.
 KINDS: Mapping[str, Callable[[Work], Iterator[Saving]]] = {
-    RESTING: motion.resting_coordinates,
-    PARTS: motion.separate_parts,
-    WELDED: described.welded_bodies,
-    MASSLESS: described.massless_bodies,
-    POINTS: described.point_masses,
-    AXES: described.unused_axes,
-    TURNS: described.constant_rotations,
-    SKEW: skew_plane,
-    CYCLIC: motion.cyclic_coordinates,
-    DROPPED: motion.dropped_parameters,
-    ENTRIES: vanishing_entries,
-    SUBSYSTEMS: subsystems,
-    NOT_ASKED: problems_not_asked,
-    SYMMETRY: symmetry,
-    SPARSITY: branch_sparsity,
-    ROUTE: route,
-    DEAD: dead_operations,
-    STEADY: steady_operations,
-    VALUES: values,
-    GRAVITY: gravity_orders,
-    LEFT_OUT: simpler_model,
+    Kind.RESTING: motion.resting_coordinates,
+    Kind.PARTS: motion.separate_parts,
+    Kind.WELDED: described.welded_bodies,
+    Kind.MASSLESS: described.massless_bodies,
+    Kind.POINTS: described.point_masses,
+    Kind.AXES: described.unused_axes,
+    Kind.TURNS: described.constant_rotations,
+    Kind.SKEW: skew_plane,
+    Kind.CYCLIC: motion.cyclic_coordinates,
+    Kind.DROPPED: motion.dropped_parameters,
+    Kind.ENTRIES: vanishing_entries,
+    Kind.SUBSYSTEMS: subsystems,
+    Kind.NOT_ASKED: problems_not_asked,
+    Kind.SYMMETRY: symmetry,
+    Kind.SPARSITY: branch_sparsity,
+    Kind.ROUTE: route,
+    Kind.DEAD: dead_operations,
+    Kind.STEADY: steady_operations,
+    Kind.VALUES: values,
+    Kind.GRAVITY: gravity_orders,
+    Kind.LEFT_OUT: simpler_model,
 }
 
 #: Those that hold whatever constraints there are, and in any speeds: the others take the system for an open tree whose
 #: velocities are those of its coordinates (no momentum is constant merely because L does not hold its coordinate).
-OF_ANY_SYSTEM = frozenset((MASSLESS, POINTS, AXES, TURNS, ENTRIES, SUBSYSTEMS, NOT_ASKED))
+OF_ANY_SYSTEM = frozenset(
+    (Kind.MASSLESS, Kind.POINTS, Kind.AXES, Kind.TURNS, Kind.ENTRIES, Kind.SUBSYSTEMS, Kind.NOT_ASKED)
+)
 
 
 def ledger(analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> Ledger:

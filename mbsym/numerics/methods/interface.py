@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from typing import Any, Protocol, TypeVar
 from weakref import WeakKeyDictionary
 
@@ -28,6 +29,20 @@ FINEST = {FLOAT32: 5e-7, FLOAT64: 1e-15, EXTENDED: 5e-19}
 LARGEST = 1e12
 
 
+class Cause(StrEnum):
+    """Why an integration cannot go on."""
+
+    BLOW_UP = "blow-up"
+    SINGULAR = "singular mass matrix"
+    STEP_LIMIT = "step limit"
+    STUCK = "step size too small"
+    SINGULAR_CONSTRAINTS = "singular constraints"  # their rows lose their rank: a mechanism in a singular position
+    OUT_OF_REACH = "out of reach"  # constraints that move leave no position: a mechanism stretched out, or blocked
+    NOT_SMOOTH = "no finite derivatives"  # the rates are finite: methods that need their derivatives cannot go on
+    STOPPED = "stopped by an event"  # no mistake: it was asked for
+    UNDEFINED = "no real value"  # a root or a logarithm of a negative number: the model says nothing of such states
+
+
 class Breakdown(Exception):
     """An integration that cannot go on: ``kind`` says why, at ``time`` in ``state`` (q, q').
 
@@ -40,24 +55,6 @@ class Breakdown(Exception):
         text = "[[kind]] at t = [[time]]: [[message]]"
         self.told = Message(text, kind=Message(kind), time=f"{time:.9g}", message=self.message)
         super().__init__(str(self.told))
-
-
-BLOW_UP, SINGULAR, STEP_LIMIT, STUCK = "blow-up", "singular mass matrix", "step limit", "step size too small"
-
-#: The rows of constraints lose their rank: a mechanism in a singular position.
-SINGULAR_CONSTRAINTS = "singular constraints"
-
-#: Constraints that move leave no position behind a time: a mechanism that is stretched out, or blocked.
-OUT_OF_REACH = "out of reach"
-
-#: The rates are finite, their derivatives are not: methods that need these cannot go on.
-NOT_SMOOTH = "no finite derivatives"
-
-#: No mistake: an event asked for it.
-STOPPED = "stopped by an event"
-
-#: A root or a logarithm of a negative number: the model says nothing about such states.
-UNDEFINED = "no real value"
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,8 @@ from mbsym.numerics.methods.interface import (
     COUNTS,
     MOST_INSIDE,
     MOST_KEPT,
-    STEP_LIMIT,
     Breakdown,
+    Cause,
     Method,
     Narrow,
     Passed,
@@ -400,7 +400,7 @@ class LandingRun:
             self._ahead = run
         if self.work.steps >= self._setting.step_limit:
             made = Message("[[count]] steps", count=self.work.steps)
-            raise Breakdown(STEP_LIMIT, made, self.time, np.array(self.state, dtype=float))
+            raise Breakdown(Cause.STEP_LIMIT, made, self.time, np.array(self.state, dtype=float))
         before, changes = {name: getattr(run.work, name) for name in COUNTS}, len(run.work.changes)
         try:
             return run.step(bound)

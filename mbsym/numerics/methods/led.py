@@ -19,16 +19,7 @@ import numpy as np
 
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import (
-    SINGULAR_CONSTRAINTS,
-    Breakdown,
-    Passed,
-    Piece,
-    Run,
-    Unusable,
-    compiled_kernel,
-    met_by,
-)
+from mbsym.numerics.methods.interface import Breakdown, Cause, Passed, Piece, Run, Unusable, compiled_kernel, met_by
 
 # Over a singular position of the constraints, where accelerations do not follow from them.
 #
@@ -226,7 +217,7 @@ def lead(dynamics: Dynamics, scalar: str = "float64") -> Lead | None:
 def nearly_singular(time: Any, state: Any) -> Breakdown:
     """The end of a run before a singular position of the constraints."""
     message = "the constraints are about to lose their rank, and the accelerations with them"
-    return Breakdown(SINGULAR_CONSTRAINTS, message, float(time), np.array(state, dtype=float))
+    return Breakdown(Cause.SINGULAR_CONSTRAINTS, message, float(time), np.array(state, dtype=float))
 
 
 def refuse(dynamics: Dynamics, method: str) -> None:
@@ -322,7 +313,7 @@ class LedRun:
 
     def _bridged(self, trouble: Breakdown) -> None:
         """The way over a singular position; raises what ended the run where that is another thing, or none is found."""
-        if trouble.kind != SINGULAR_CONSTRAINTS:
+        if trouble.kind != Cause.SINGULAR_CONSTRAINTS:
             raise trouble
         found = bridge(self._led, self._begin, self._past, trouble)
         if found is None:

@@ -14,18 +14,7 @@ import numpy as np
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
-from mbsym.numerics.methods.interface import (
-    BLOW_UP,
-    LARGEST,
-    STEP_LIMIT,
-    STUCK,
-    Breakdown,
-    Setting,
-    Traits,
-    Unusable,
-    Work,
-    compiled_kernel,
-)
+from mbsym.numerics.methods.interface import LARGEST, Breakdown, Cause, Setting, Traits, Unusable, Work, compiled_kernel
 from mbsym.numerics.methods.led import lead, nearly_singular, refuse
 from mbsym.numerics.methods.magnitudes import counted, first_steps, magnitudes, variables
 from mbsym.numerics.methods.stepping import Stepping
@@ -119,7 +108,7 @@ class LibraryRun(Stepping):
     def one(self, until: float | None = None) -> None:
         """One step of the solver."""
         if self.work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=self.work.steps))
+            raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=self.work.steps))
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if self._solver is None:
@@ -142,9 +131,9 @@ class LibraryRun(Stepping):
         self.work.steps += 1
         failed = solver.status == "failed"
         if not np.all(np.isfinite(solver.y)) or (failed and not np.all(np.abs(state) < LARGEST)):
-            raise Breakdown(BLOW_UP, "a value is no longer finite", time, state)
+            raise Breakdown(Cause.BLOW_UP, "a value is no longer finite", time, state)
         if failed or not solver.t > time:
-            raise Breakdown(STUCK, str(message or "the time no longer advances"), time, state)
+            raise Breakdown(Cause.STUCK, str(message or "the time no longer advances"), time, state)
         self._dense = None
         if self._led is not None:
             self._kept_on(solver)
@@ -175,7 +164,7 @@ class LibraryRun(Stepping):
         try:
             return action()
         except (ValueError, np.linalg.LinAlgError, FloatingPointError) as trouble:
-            raise self._fail(BLOW_UP, str(trouble)) from None
+            raise self._fail(Cause.BLOW_UP, str(trouble)) from None
 
     def _fail(self, kind: str, message: str) -> Breakdown:
         if self._solver is None:

@@ -16,9 +16,10 @@ rates beside its state:
 
 Of what is at 0 and rests sizes are those that the same kinetic energy gives it: D_j sqrt(M_jj) and V_j sqrt(M_jj) are
 the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that have, times sqrt(M_jj), less than 1e-12
-of the largest are roundings and count as 0.  Columns of derivatives that are 0 have the size of their rate times the
-shortest tau.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by a push that
-has no other measure.
+of the largest are roundings and count as 0.  A column y of derivatives of the state, in which single components may be
+roundings, is measured as a whole: y_i has the size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times
+the shortest tau for y_k.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by
+a push that has no other measure.
 """
 
 from __future__ import annotations
@@ -73,13 +74,22 @@ Rates = Callable[[Any, Any], Any]
 class Variables:
     """Which of the components of a state are ``angles`` (or of unit vectors), ``velocities``, constants: masks (d,).
 
-    ``masses`` makes the kernel of the diagonal of the mass matrix.
+    ``masses`` makes the kernel of the diagonal of the mass matrix.  ``columns``: places of derivatives of the first
+    components of the state, in their order.
     """
 
     angles: Any
     velocities: Any
     constant: Any
     masses: Callable[[], Kernel] | None = None
+    columns: tuple[Any, ...] = ()
+
+    @property
+    def positions(self) -> Any:
+        """What is none of these, as a mask."""
+        apart = self.velocities | self.constant
+        apart[[place for column in self.columns for place in column]] = True
+        return ~apart
 
     def weights(self, begin: Any, states: Any) -> Any:
         """sqrt(M_jj) of the velocities (n, m); zeros where they are not known."""
@@ -107,7 +117,13 @@ def variables(dynamics: Dynamics) -> Variables:
         return arrays.kernel(Code(whole.program, whole.inputs, whole.outputs[:: n + 1]))
 
     angles, moving, constant = (np.array([name in group for name in names], dtype=bool) for group in groups)
-    return Variables(angles, moving, constant, masses if n <= MOST_WEIGHED else None)
+    columns: dict[str, list[int]] = {}
+    for place, (name, joined, number) in enumerate(one.partition("~") for one in names):
+        if joined and number.isdecimal() and name in names:
+            columns.setdefault(number, []).append(place)
+    return Variables(
+        angles, moving, constant, masses if n <= MOST_WEIGHED else None, tuple(map(np.array, columns.values()))
+    )
 
 
 @dataclass(frozen=True)
@@ -158,7 +174,7 @@ def counted(rhs: Kernel, work: Work) -> Rates:
 
 
 def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
-    moving, placed = (np.flatnonzero(mask) for mask in (kinds.velocities, ~(kinds.velocities | kinds.constant)))
+    moving, placed = (np.flatnonzero(mask) for mask in (kinds.velocities, kinds.positions))
     given = np.abs(states).astype(float)
     sizes = np.where(kinds.angles[:, None], np.maximum(given, 1.0), given)
     base = rates(begin, states)
@@ -192,6 +208,11 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
     sizes[placed] = np.where(sizes[placed] > 0, sizes[placed], reached)
     sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0)
+    for column in kinds.columns:
+        own = sizes[: len(column)]
+        extent, growth = (np.max(values[column] / own, axis=0) for values in (given, _finite(base) * shortest))
+        extent = np.where(extent > 0, extent, growth)
+        sizes[column] = own * np.where(extent > 0, extent, 1.0)
     natural = sizes.copy()
     own = np.maximum(given[moving], np.sqrt(_finite(base)[moving] * path))
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)

@@ -21,30 +21,9 @@ from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.llvm import Scalar
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value
 from mbsym.numerics.methods.tableaux import (
-    ABSOLUTE,
-    BASE,
-    CAREFUL,
-    EVALUATIONS,
-    FRESH,
-    INFINITE,
-    JACOBIANS,
-    LAST,
-    LEFT,
-    LONGEST,
-    NUMBER,
-    PAUSED,
-    PREVIOUS,
-    REACHED,
-    REJECTED,
-    RELATIVE,
-    SINGULARLY,
-    START,
-    STEP,
-    STEPS,
-    STOPPED,
-    TIME,
-    TIME_CARRY,
-    UNTIL,
+    Clock,
+    Count,
+    Reply,
     Rosenbrock,
     Stages,
     Tableau,
@@ -78,30 +57,30 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     stages = len(tableau.stages)
     moved = s.slope(k, stages + 1)
     total = f.slot(s.kind)
-    step, base = f.load(s.clock, clock, STEP), f.load(s.clock, clock, BASE)
+    step, base = f.load(s.clock, clock, Clock.STEP), f.load(s.clock, clock, Clock.BASE)
     h = step.converted(s.kind)
     again = f.label()
     f.jump(again)
     f.place(again)
-    time = f.load(s.clock, clock, TIME)
+    time = f.load(s.clock, clock, Clock.TIME)
     _leave_when_due(f, s, time)
     if constrained:
         _stop_before_singular(f)
     known, unknown, first = f.label(), f.label(), f.label()
-    f.branch(f.load(INTEGER, count, FRESH).compare("!=", 0), known, unknown)
+    f.branch(f.load(INTEGER, count, Count.FRESH).compare("!=", 0), known, unknown)
     f.place(known)
     s.copy(s.slope(k, stages), s.slope(k, 0))
-    f.store(0, INTEGER, count, FRESH)
+    f.store(0, INTEGER, count, Count.FRESH)
     f.jump(first)
     f.place(unknown)
     s.state_argument(x)
     s.evaluate(time, s.slope(k, 0))
-    f.store(f.load(INTEGER, count, EVALUATIONS) + 1, INTEGER, count, EVALUATIONS)
+    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + 1, INTEGER, count, Count.EVALUATIONS)
     f.jump(first)
     f.place(first)
     for place, row in enumerate(tableau.stages[1:], 1):
         s.stage(x, k, row, place, time, step)
-    f.store(f.load(INTEGER, count, EVALUATIONS) + (stages - 1), INTEGER, count, EVALUATIONS)
+    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + (stages - 1), INTEGER, count, Count.EVALUATIONS)
     f.store(0, s.kind, total)
     for i in f.each(size):
         change = h * s.combination(k, tableau.weights, i)
@@ -112,16 +91,16 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
     finite, over = f.label(), f.label()
     f.branch(f.load(s.kind, total).compare("<=", 0), finite, over)
     f.place(over)
-    f.leave(STOPPED)
+    f.leave(Reply.STOPPED)
     f.place(finite)
-    number = f.load(INTEGER, count, NUMBER) + 1
-    f.store(number, INTEGER, count, NUMBER)
-    f.store(time, s.clock, clock, START)
-    f.store(step, s.clock, clock, LAST)
-    f.store(base + number.converted(s.clock) * step, s.clock, clock, TIME)
+    number = f.load(INTEGER, count, Count.NUMBER) + 1
+    f.store(number, INTEGER, count, Count.NUMBER)
+    f.store(time, s.clock, clock, Clock.START)
+    f.store(step, s.clock, clock, Clock.LAST)
+    f.store(base + number.converted(s.clock) * step, s.clock, clock, Clock.TIME)
     if constrained:
         near = _led_back(f, s, moved)
-    f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
+    f.store(f.load(INTEGER, count, Count.STEPS) + 1, INTEGER, count, Count.STEPS)
     if constrained:
         _note(f, near)
     f.jump(again)
@@ -130,12 +109,12 @@ def fixed_text(tableau: Tableau, size: int, scalar: Scalar, constrained: bool = 
 
 def _leave_when_due(f: Function, s: Stages, time: Value) -> None:
     """Returns where the time has come, or as many steps as are allowed have been tried."""
-    with _leaving(f, time.compare(">=", f.load(s.clock, f["clock"], UNTIL)), REACHED):
+    with _leaving(f, time.compare(">=", f.load(s.clock, f["clock"], Clock.UNTIL)), Reply.REACHED):
         pass
-    left = f.load(INTEGER, f["count"], LEFT)
-    with _leaving(f, left.compare("<=", 0), PAUSED):
+    left = f.load(INTEGER, f["count"], Count.LEFT)
+    with _leaving(f, left.compare("<=", 0), Reply.PAUSED):
         pass
-    f.store(left - 1, INTEGER, f["count"], LEFT)
+    f.store(left - 1, INTEGER, f["count"], Count.LEFT)
 
 
 def _led_back(f: Function, s: Stages, moved: Value | None = None) -> Value:
@@ -147,7 +126,7 @@ def _led_back(f: Function, s: Stages, moved: Value | None = None) -> Value:
     change = f.slot(s.kind, s.size + 1)
     for _ in range(LED_BACK):
         s.state_argument(f["x"])
-        f.store(f.load(s.clock, f["clock"], TIME).converted(s.kind), s.kind, s.argument)
+        f.store(f.load(s.clock, f["clock"], Clock.TIME).converted(s.kind), s.kind, s.argument)
         f.do("correct", s.argument, change)
         for i in f.each(s.size):
             part = f.load(s.kind, change, i)
@@ -159,12 +138,12 @@ def _led_back(f: Function, s: Stages, moved: Value | None = None) -> Value:
 
 def _note(f: Function, near: Value) -> None:
     """No step begins where this one ends, if that is too near to a singular position."""
-    f.store(near.choose(f.number(1, INTEGER), f.number(0, INTEGER)), INTEGER, f["count"], SINGULARLY)
+    f.store(near.choose(f.number(1, INTEGER), f.number(0, INTEGER)), INTEGER, f["count"], Count.SINGULARLY)
 
 
 def _stop_before_singular(f: Function) -> None:
     """Ends the run before a singular position of the constraints."""
-    with _leaving(f, f.load(INTEGER, f["count"], SINGULARLY).compare("!=", 0), STOPPED):
+    with _leaving(f, f.load(INTEGER, f["count"], Count.SINGULARLY).compare("!=", 0), Reply.STOPPED):
         pass
 
 
@@ -181,27 +160,27 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     x, k, clock, count = f["x"], f["k"], f["clock"], f["count"]
     stages = len(tableau.stages)
     candidate, unchanged = f.slot(s.kind, size), f.slot(s.kind, size)
-    relative = f.load(s.clock, clock, RELATIVE).converted(s.kind)
-    absolute = f.load(s.clock, clock, ABSOLUTE).converted(s.kind)
+    relative = f.load(s.clock, clock, Clock.RELATIVE).converted(s.kind)
+    absolute = f.load(s.clock, clock, Clock.ABSOLUTE).converted(s.kind)
 
     again, some, step_now, large, tried, good, bad = (f.label() for _ in range(7))
     f.jump(again)
     f.place(again)
-    time = f.load(s.clock, clock, TIME)
+    time = f.load(s.clock, clock, Clock.TIME)
     _leave_when_due(f, s, time)
     if constrained:
         _stop_before_singular(f)
-    step = f.load(s.clock, clock, STEP)
+    step = f.load(s.clock, clock, Clock.STEP)
     least = time.absolute() * (4 * Fraction(float(np.finfo(clock_dtype(s.clock)).eps)))
     f.branch(step.compare(">", least) & step.compare(">", Fraction(1, 10**200)), large, some)
     f.place(some)
-    f.leave(STOPPED)
+    f.leave(Reply.STOPPED)
     f.place(large)
     # The last slope of an accepted step is the first of the next; it is copied late because dense output needs both.
     if explicit:
-        with f.when(f.load(INTEGER, count, FRESH).compare("!=", 0)):
+        with f.when(f.load(INTEGER, count, Count.FRESH).compare("!=", 0)):
             s.copy(s.slope(k, stages), s.slope(k, 0))
-            f.store(0, INTEGER, count, FRESH)
+            f.store(0, INTEGER, count, Count.FRESH)
     f.jump(step_now)
     f.place(step_now)
     if isinstance(tableau, Tableau):
@@ -220,7 +199,7 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
         s.state_argument(candidate)
         s.evaluate(time + step, s.slope(k, stages))
     error = _error(f, s, tableau, x, candidate, k, weight, relative, absolute)
-    f.store(f.load(INTEGER, count, EVALUATIONS) + evaluations, INTEGER, count, EVALUATIONS)
+    f.store(f.load(INTEGER, count, Count.EVALUATIONS) + evaluations, INTEGER, count, Count.EVALUATIONS)
     f.jump(tried)
     f.place(tried)
     f.branch(error.compare("<=", 1), good, bad)
@@ -230,10 +209,10 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
     power = f.call("exp", "double", f.call("log", "double", error) * Fraction(-1, tableau.order)) * Fraction(SAFETY)
     shrink = power.compare(">", Fraction(SHRINKAGE)).choose(power, f.number(Fraction(SHRINKAGE), "double"))
     shrink = usable.choose(shrink, f.number(Fraction(1, 10), "double"))
-    f.store(step * shrink.converted(s.clock), s.clock, clock, STEP)
-    f.store(f.load(INTEGER, count, REJECTED) + 1, INTEGER, count, REJECTED)
-    f.store(usable.choose(f.number(0, INTEGER), f.number(1, INTEGER)), INTEGER, count, INFINITE)
-    f.store(1, INTEGER, count, CAREFUL)
+    f.store(step * shrink.converted(s.clock), s.clock, clock, Clock.STEP)
+    f.store(f.load(INTEGER, count, Count.REJECTED) + 1, INTEGER, count, Count.REJECTED)
+    f.store(usable.choose(f.number(0, INTEGER), f.number(1, INTEGER)), INTEGER, count, Count.INFINITE)
+    f.store(1, INTEGER, count, Count.CAREFUL)
     f.jump(again)
 
     f.place(good)
@@ -242,18 +221,18 @@ def adaptive_text(tableau: Tableau | Rosenbrock, size: int, scalar: Scalar, cons
         new = add_compensated(f, s.kind, x, f["carry"], i, f.load(s.kind, unchanged, i)).absolute()
         largest = f.load(s.kind, f["sizes"], i)
         f.store(largest.compare("<", new).choose(new, largest), s.kind, f["sizes"], i)
-    f.store(time, s.clock, clock, START)
-    f.store(step, s.clock, clock, LAST)
-    add_compensated(f, s.clock, clock, f.at(s.clock, clock, TIME_CARRY), TIME, step)
+    f.store(time, s.clock, clock, Clock.START)
+    f.store(step, s.clock, clock, Clock.LAST)
+    add_compensated(f, s.clock, clock, f.at(s.clock, clock, Clock.TIME_CARRY), Clock.TIME, step)
     if constrained:
         near = _led_back(f, s)
     if explicit and (constrained or not at_the_end):
         s.state_argument(x)
-        s.evaluate(f.load(s.clock, clock, TIME), s.slope(k, stages))
-        f.store(f.load(INTEGER, count, EVALUATIONS) + 1, INTEGER, count, EVALUATIONS)
-    f.store(1, INTEGER, count, FRESH)
-    f.store(0, INTEGER, count, INFINITE)
-    f.store(f.load(INTEGER, count, STEPS) + 1, INTEGER, count, STEPS)
+        s.evaluate(f.load(s.clock, clock, Clock.TIME), s.slope(k, stages))
+        f.store(f.load(INTEGER, count, Count.EVALUATIONS) + 1, INTEGER, count, Count.EVALUATIONS)
+    f.store(1, INTEGER, count, Count.FRESH)
+    f.store(0, INTEGER, count, Count.INFINITE)
+    f.store(f.load(INTEGER, count, Count.STEPS) + 1, INTEGER, count, Count.STEPS)
     _grow(f, s, tableau, error, step)
     if constrained:
         _note(f, near)
@@ -274,7 +253,7 @@ def _linear_stages(f: Function, s: Stages, tableau: Rosenbrock, time: Value, ste
     s.state_argument(x)
     s.evaluate(time, begin)
     f.do("slopes", s.argument, slopes)
-    f.store(f.load(INTEGER, f["count"], JACOBIANS) + 1, INTEGER, f["count"], JACOBIANS)
+    f.store(f.load(INTEGER, f["count"], Count.JACOBIANS) + 1, INTEGER, f["count"], Count.JACOBIANS)
     nothing = f.slot(s.kind)
     f.store(0, s.kind, nothing)
     for i in f.each(size):
@@ -364,17 +343,17 @@ def _grow(f: Function, s: Stages, tableau: Tableau | Rosenbrock, error: Value, s
     floor = f.number(Fraction(1, 10**10), "double")
     seen = error.compare(">", floor).choose(error, floor)
     size = f.call("log", "double", seen)
-    before = f.load(s.clock, clock, PREVIOUS).converted("double")
+    before = f.load(s.clock, clock, Clock.PREVIOUS).converted("double")
     factor = f.call("exp", "double", before * integral - size * alpha) * Fraction(SAFETY)
-    most = f.load(INTEGER, count, CAREFUL).compare("!=", 0)
+    most = f.load(INTEGER, count, Count.CAREFUL).compare("!=", 0)
     limit = most.choose(f.number(1, "double"), f.number(Fraction(GROWTH), "double"))
     factor = factor.compare("<", limit).choose(factor, limit)
     least = f.number(Fraction(SHRINKAGE), "double")
     factor = factor.compare(">", least).choose(factor, least)
     grown = step * factor.converted(s.clock)
-    longest = f.load(s.clock, clock, LONGEST)
-    f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, STEP)
+    longest = f.load(s.clock, clock, Clock.LONGEST)
+    f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, Clock.STEP)
     lower = f.number(Fraction(log(1e-4)), "double")
     kept = size.compare(">", lower).choose(size, lower)
-    f.store(kept.converted(s.clock), s.clock, clock, PREVIOUS)
-    f.store(0, INTEGER, count, CAREFUL)
+    f.store(kept.converted(s.clock), s.clock, clock, Clock.PREVIOUS)
+    f.store(0, INTEGER, count, Count.CAREFUL)

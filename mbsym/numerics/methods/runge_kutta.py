@@ -24,12 +24,9 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
 from mbsym.numerics.methods.interface import (
-    BLOW_UP,
     LARGEST,
-    NOT_SMOOTH,
-    STEP_LIMIT,
-    STUCK,
     Breakdown,
+    Cause,
     Setting,
     Traits,
     Unusable,
@@ -44,36 +41,13 @@ from mbsym.numerics.methods.marching import ARGUMENTS, adaptive_text, fixed_text
 from mbsym.numerics.methods.nested import Nested
 from mbsym.numerics.methods.stepping import Stepping
 from mbsym.numerics.methods.tableaux import (
-    ABSOLUTE,
-    BASE,
-    CAREFUL,
     DOP853,
-    EVALUATIONS,
-    FRESH,
-    INFINITE,
-    JACOBIANS,
-    LAST,
-    LEFT,
-    LONGEST,
-    NUMBER,
-    PREPARED,
-    PREVIOUS,
-    REACHED,
-    REJECTED,
-    RELATIVE,
-    REPLY,
     RK4,
     RK45,
     RODAS5P,
-    SINGULARLY,
-    SLACK,
-    START,
-    STEP,
-    STEPS,
-    STOPPED,
-    TIME,
-    TIME_CARRY,
-    UNTIL,
+    Clock,
+    Count,
+    Reply,
     Rosenbrock,
     Stages,
     Tableau,
@@ -114,7 +88,7 @@ def _prepare_text(tableau: Tableau, size: int, scalar: Scalar) -> str:
     f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
     s = Stages(f, size, scalar, apart=True)  # once a step at most: not worth compiling over and over
     k, stages = f["k"], len(tableau.stages)
-    time, step = f.load(s.clock, f["clock"], START), f.load(s.clock, f["clock"], LAST)
+    time, step = f.load(s.clock, f["clock"], Clock.START), f.load(s.clock, f["clock"], Clock.LAST)
     for place, row in enumerate(tableau.extra):
         s.stage(f["old"], k, row, stages + 1 + place, time, step)
     h = step.converted(s.kind)
@@ -145,10 +119,10 @@ def _slope_at_the_end(tableau: Tableau, size: int, scalar: Scalar) -> tuple[Func
     """The same as far as the slopes at the end of a step of one length, and h."""
     f = Function("prepare", [(name, POINTER) for name in ("x", "old", "k", "terms", "clock", "count")])
     s = Stages(f, size, scalar, apart=True)
-    step = f.load(s.clock, f["clock"], LAST)
+    step = f.load(s.clock, f["clock"], Clock.LAST)
     s.state_argument(f["x"])
-    s.evaluate(f.load(s.clock, f["clock"], TIME), s.slope(f["k"], len(tableau.stages)))
-    f.store(1, INTEGER, f["count"], FRESH)
+    s.evaluate(f.load(s.clock, f["clock"], Clock.TIME), s.slope(f["k"], len(tableau.stages)))
+    f.store(1, INTEGER, f["count"], Count.FRESH)
     return f, s, step.converted(s.kind)
 
 
@@ -198,8 +172,8 @@ def _keep(f: Function, s: Stages, terms: list[Value], i: Value | int) -> None:
 
 
 def _count(f: Function, evaluations: int) -> None:
-    f.store(f.load(INTEGER, f["count"], EVALUATIONS) + evaluations, INTEGER, f["count"], EVALUATIONS)
-    f.store(f.load(INTEGER, f["count"], STEPS), INTEGER, f["count"], PREPARED)
+    f.store(f.load(INTEGER, f["count"], Count.EVALUATIONS) + evaluations, INTEGER, f["count"], Count.EVALUATIONS)
+    f.store(f.load(INTEGER, f["count"], Count.STEPS), INTEGER, f["count"], Count.PREPARED)
 
 
 def _rows_text(terms: int, size: int, scalar: Scalar) -> str:
@@ -211,7 +185,7 @@ def _rows_text(terms: int, size: int, scalar: Scalar) -> str:
     f = Function("rows", [*pointers, *((name, INTEGER) for name in ("first", "last", "stride"))])
     s = Stages(f, size, scalar)
     kind, clock = s.kind, s.clock
-    start, length, end = (f.load(clock, f["clock"], place) for place in (START, LAST, TIME))
+    start, length, end = (f.load(clock, f["clock"], place) for place in (Clock.START, Clock.LAST, Clock.TIME))
     inverse = 1 / length
     with f.repeat(size) as i:
         begin, arrived = f.load(kind, f["old"], i), f.load(kind, f["x"], i)
@@ -243,7 +217,7 @@ def _fill_text(scalar: Scalar) -> str:
     times, count, last = f["times"], f["count"], f["last"]
     row, end = f.slot(INTEGER), f.slot(INTEGER)
     f.store(f["first"], INTEGER, row)
-    slack = f.load(clock, f["clock"], SLACK)
+    slack = f.load(clock, f["clock"], Clock.SLACK)
     again, over, go, reached, stopped, found = (f.label() for _ in range(6))
     f.jump(again)
     f.place(again)
@@ -252,14 +226,14 @@ def _fill_text(scalar: Scalar) -> str:
     f.place(over)
     f.leave(last)
     f.place(go)
-    f.store(f.load(clock, times, now) - slack, clock, f["clock"], UNTIL)
+    f.store(f.load(clock, times, now) - slack, clock, f["clock"], Clock.UNTIL)
     reply = f.call("march", INTEGER, *(f[name] for name in ARGUMENTS))
-    f.branch(reply.compare("==", REACHED), reached, stopped)
+    f.branch(reply.compare("==", Reply.REACHED), reached, stopped)
     f.place(stopped)
-    f.store(reply, INTEGER, count, REPLY)
+    f.store(reply, INTEGER, count, Count.REPLY)
     f.leave(now)
     f.place(reached)
-    with f.when(f.load(INTEGER, count, PREPARED).compare("!=", f.load(INTEGER, count, STEPS))):
+    with f.when(f.load(INTEGER, count, Count.PREPARED).compare("!=", f.load(INTEGER, count, Count.STEPS))):
         prepared = ("x", "old", "k", "terms", "clock", "count")
         f.call("prepare", INTEGER, *(f[name] for name in prepared))
     f.store(now + 1, INTEGER, end)
@@ -269,7 +243,7 @@ def _fill_text(scalar: Scalar) -> str:
     upto = f.load(INTEGER, end)
     f.branch(upto.compare("<", last), more, found)
     f.place(more)
-    within = (f.load(clock, times, upto) - slack).compare("<=", f.load(clock, f["clock"], TIME))
+    within = (f.load(clock, times, upto) - slack).compare("<=", f.load(clock, f["clock"], Clock.TIME))
     f.branch(within, one_more, found)
     f.place(one_more)
     f.store(upto + 1, INTEGER, end)
@@ -357,11 +331,11 @@ class CompiledRun(Stepping):
         self.carry[:] = 0
         self.terms[:] = 0
         clock, count = self.clock, self.count
-        clock[TIME] = clock[START] = clock[BASE] = time
-        clock[TIME_CARRY], clock[LAST] = 0, 1
-        count[SINGULARLY] = 0
-        count[FRESH] = count[INFINITE] = count[CAREFUL] = count[NUMBER] = 0
-        count[PREPARED] = count[STEPS]
+        clock[Clock.TIME] = clock[Clock.START] = clock[Clock.BASE] = time
+        clock[Clock.TIME_CARRY], clock[Clock.LAST] = 0, 1
+        count[Count.SINGULARLY] = 0
+        count[Count.FRESH] = count[Count.INFINITE] = count[Count.CAREFUL] = count[Count.NUMBER] = 0
+        count[Count.PREPARED] = count[Count.STEPS]
         self.time, self.state = self.reached, self.x.copy()
 
     def saved(self) -> tuple[Any, ...]:
@@ -382,7 +356,7 @@ class CompiledRun(Stepping):
     @property
     def reached(self) -> Any:
         """The end of the last step: a float, or a longdouble where the run is extended."""
-        return self.clock[TIME] if self.clock_type is np.longdouble else float(self.clock[TIME])
+        return self.clock[Clock.TIME] if self.clock_type is np.longdouble else float(self.clock[Clock.TIME])
 
     @property
     def end(self) -> Any:
@@ -391,25 +365,25 @@ class CompiledRun(Stepping):
 
     def curve(self) -> Callable[[Any], Any]:
         """Dense output of the last step, from the terms that machine code computes."""
-        if self.count[PREPARED] != self.count[STEPS]:
+        if self.count[Count.PREPARED] != self.count[Count.STEPS]:
             self._prepare(*self._for_terms)
             self._counted()
-        start, length, reached = (self.clock[place] for place in (START, LAST, TIME))
+        start, length, reached = (self.clock[place] for place in (Clock.START, Clock.LAST, Clock.TIME))
         before, arrived = self.old.copy()[:, None], self.x.copy()[:, None]
         return Nested(start, length, reached, before, arrived, self.terms.copy()[:, :, None])
 
     def far(self, until: float) -> None:
         """Steps until ``until`` is reached or passed."""
-        self.clock[UNTIL] = until - self.clock[SLACK]
-        while self.clock[TIME] < self.clock[UNTIL]:
+        self.clock[Clock.UNTIL] = until - self.clock[Clock.SLACK]
+        while self.clock[Clock.TIME] < self.clock[Clock.UNTIL]:
             self._allow(self._at_once)
             self._judge(self._march(*self._pointers))
 
     def one(self, until: float | None = None) -> None:
         """One step that is accepted."""
-        before = self.count[STEPS]
-        self.clock[UNTIL] = np.inf
-        while self.count[STEPS] == before:
+        before = self.count[Count.STEPS]
+        self.clock[Clock.UNTIL] = np.inf
+        while self.count[Count.STEPS] == before:
             self._allow(1)
             self._judge(self._march(*self._pointers))
 
@@ -435,7 +409,7 @@ class CompiledRun(Stepping):
 
     def stretch(self, at: Any, found: Any, done: int, attempts: int) -> int:
         """Fills columns of ``found`` from number ``done`` on, by so many attempted steps; how many are filled then."""
-        if at[done] - self.clock[SLACK] > self.clock[TIME]:
+        if at[done] - self.clock[Clock.SLACK] > self.clock[Clock.TIME]:
             self._allow(attempts)
         pointers = (*self._pointers, address(self.terms), address(at), address(found))
         done = self._fill(*pointers, done, len(at), len(at))
@@ -444,12 +418,12 @@ class CompiledRun(Stepping):
 
     def settle(self, whole: bool) -> None:
         """Raises the Breakdown that ended a stretch, if one did; ``whole`` says that all rows are filled."""
-        self._judge(REACHED if whole else int(self.count[REPLY]))
+        self._judge(Reply.REACHED if whole else int(self.count[Count.REPLY]))
 
     def some(self, until: float, attempts: int) -> None:
         """Steps towards ``until``, at most so many attempts."""
-        self.clock[UNTIL] = until - self.clock[SLACK]
-        if self.clock[TIME] < self.clock[UNTIL]:
+        self.clock[Clock.UNTIL] = until - self.clock[Clock.SLACK]
+        if self.clock[Clock.TIME] < self.clock[Clock.UNTIL]:
             self._allow(attempts)
             self._judge(self._march(*self._pointers))
 
@@ -457,13 +431,15 @@ class CompiledRun(Stepping):
         """So many steps may be tried before machine code is left, as far as the limit allows any."""
         left = self.limit - self.work.steps - self.work.rejected
         if left <= 0:
-            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), self.clock[TIME], self.x)
-        self.count[LEFT] = min(attempts, left)
+            raise self._fail(
+                Cause.STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), self.clock[Clock.TIME], self.x
+            )
+        self.count[Count.LEFT] = min(attempts, left)
 
     def _judge(self, reply: int) -> None:
         self._counted()
-        if reply == STOPPED:
-            raise nearly_singular(self.clock[TIME], self.x) if self.count[SINGULARLY] else self._stopped()
+        if reply == Reply.STOPPED:
+            raise nearly_singular(self.clock[Clock.TIME], self.x) if self.count[Count.SINGULARLY] else self._stopped()
 
     def _stopped(self) -> Breakdown:
         """Why machine code could not go on."""
@@ -471,10 +447,10 @@ class CompiledRun(Stepping):
 
     def _counted(self) -> None:
         work, count = self.work, self.count
-        work.steps, work.rejected = int(count[STEPS]), int(count[REJECTED])
-        work.evaluations += int(count[EVALUATIONS])
-        work.jacobians += int(count[JACOBIANS])
-        count[EVALUATIONS] = count[JACOBIANS] = 0
+        work.steps, work.rejected = int(count[Count.STEPS]), int(count[Count.REJECTED])
+        work.evaluations += int(count[Count.EVALUATIONS])
+        work.jacobians += int(count[Count.JACOBIANS])
+        count[Count.EVALUATIONS] = count[Count.JACOBIANS] = 0
 
     def _fail(self, kind: str, message: str, time: Any, state: Any) -> Breakdown:
         return Breakdown(kind, message, float(time), np.array(state, dtype=float))
@@ -490,30 +466,30 @@ class FixedRun(CompiledRun):
             raise Unusable(Message("[[name]] needs a step (--step)", name=tableau.name))
         super().__init__(dynamics, tableau, setting, scalar)
         self.step_length = self.clock_type(setting.step)
-        self.clock[STEP], self.clock[SLACK] = self.step_length, self.step_length * MISSED
+        self.clock[Clock.STEP], self.clock[Clock.SLACK] = self.step_length, self.step_length * MISSED
         self.restart(at, initial)
 
     def one(self, until: float | None = None) -> None:
         """A step of the length asked for; a shorter one where it would lead beyond ``until``."""
         clock = self.clock
-        room = np.inf if until is None else until - clock[TIME]
-        if room > clock[STEP] + clock[SLACK]:
+        room = np.inf if until is None else until - clock[Clock.TIME]
+        if room > clock[Clock.STEP] + clock[Clock.SLACK]:
             super().one()
             return
-        self._rebased(clock[TIME], room)
+        self._rebased(clock[Clock.TIME], room)
         try:
             super().one()
-            clock[TIME] = until
+            clock[Clock.TIME] = until
         finally:
-            self._rebased(clock[TIME], self.step_length)
+            self._rebased(clock[Clock.TIME], self.step_length)
 
     def _rebased(self, time: Any, length: Any) -> None:
         """Steps of a length are counted from here."""
-        self.clock[BASE], self.clock[STEP], self.count[NUMBER] = time, length, 0
+        self.clock[Clock.BASE], self.clock[Clock.STEP], self.count[Count.NUMBER] = time, length, 0
 
     def _stopped(self) -> Breakdown:
         known = np.where(np.isfinite(self.old), self.old, 0.0)
-        return self._fail(BLOW_UP, "a value is no longer finite", self.clock[TIME], known)
+        return self._fail(Cause.BLOW_UP, "a value is no longer finite", self.clock[Clock.TIME], known)
 
 
 class AdaptiveRun(CompiledRun):
@@ -531,8 +507,8 @@ class AdaptiveRun(CompiledRun):
         super().__init__(dynamics, tableau, setting, scalar)
         tolerance = setting.tolerance if setting.tolerance is not None else 1e-9
         smallest = 4 * float(np.finfo(self.dtype).eps)
-        self.clock[RELATIVE], self.clock[ABSOLUTE] = max(tolerance, smallest), tolerance
-        self.clock[LONGEST] = 1e30 if setting.longest is None else setting.longest
+        self.clock[Clock.RELATIVE], self.clock[Clock.ABSOLUTE] = max(tolerance, smallest), tolerance
+        self.clock[Clock.LONGEST] = 1e30 if setting.longest is None else setting.longest
         self._dynamics = dynamics
         self._rates = counted(compiled_kernel(dynamics, "right_hand_side", scalar), self.work)
         self._kinds = variables(dynamics)
@@ -541,8 +517,8 @@ class AdaptiveRun(CompiledRun):
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state, with a step found anew."""
         super().restart(time, state)
-        self.clock[PREVIOUS] = log(1e-4)
-        absolute, relative = float(self.clock[ABSOLUTE]), float(self.clock[RELATIVE])
+        self.clock[Clock.PREVIOUS] = log(1e-4)
+        absolute, relative = float(self.clock[Clock.ABSOLUTE]), float(self.clock[Clock.RELATIVE])
         begin, state = np.array([time], self.dtype), self.x[:, None].copy()
         self._magnitudes = magnitudes(self._rates, self._kinds, begin, state)
         floor = self._magnitudes.floor(absolute, float(np.finfo(self.dtype).eps))[:, 0]
@@ -550,35 +526,35 @@ class AdaptiveRun(CompiledRun):
         order = self.tableau.order
         steps, slopes = first_steps(self._rates, order, self._magnitudes, begin, state, absolute, relative)
         self.k[self.tableau.begin] = slopes[:, 0]
-        self.clock[STEP] = min(float(steps[0]), float(self.clock[LONGEST]))
+        self.clock[Clock.STEP] = min(float(steps[0]), float(self.clock[Clock.LONGEST]))
 
     def one(self, until: float | None = None) -> None:
         """One step that is accepted; where ``until`` shortens it, the next one is as long as it would have been."""
         clock = self.clock
-        room = np.inf if until is None else until - clock[TIME]
-        wanted = clock[STEP]
+        room = np.inf if until is None else until - clock[Clock.TIME]
+        wanted = clock[Clock.STEP]
         if wanted < room:
             if 2 * wanted > room:
-                clock[STEP] = room / 2  # rather two of a length than one that is tiny
+                clock[Clock.STEP] = room / 2  # rather two of a length than one that is tiny
             super().one()
             return
         assert until is not None
-        least = 8 * np.finfo(self.clock_type).eps * max(abs(clock[TIME]), abs(until))
+        least = 8 * np.finfo(self.clock_type).eps * max(abs(clock[Clock.TIME]), abs(until))
         if room <= least:
             self._over(until)
             return
-        clock[STEP] = room
+        clock[Clock.STEP] = room
         super().one()
-        if clock[LAST] == room:
-            clock[TIME], clock[TIME_CARRY] = until, 0
-            clock[STEP] = max(clock[STEP], wanted)
+        if clock[Clock.LAST] == room:
+            clock[Clock.TIME], clock[Clock.TIME_CARRY] = until, 0
+            clock[Clock.STEP] = max(clock[Clock.STEP], wanted)
 
     def _over(self, until: float) -> None:
         """To a time that is no further than roundings: the state is the same."""
         self.old[:], self.terms[:] = self.x, 0
-        self.clock[START], self.clock[TIME], self.clock[TIME_CARRY] = self.clock[TIME], until, 0
-        self.clock[LAST] = 1
-        self.count[PREPARED] = self.count[STEPS]
+        self.clock[Clock.START], self.clock[Clock.TIME], self.clock[Clock.TIME_CARRY] = self.clock[Clock.TIME], until, 0
+        self.clock[Clock.LAST] = 1
+        self.count[Count.PREPARED] = self.count[Count.STEPS]
 
     def _stopped(self) -> Breakdown:
         usual, unit = self._magnitudes.sizes[:, 0], float(self._magnitudes.times[0])
@@ -589,17 +565,17 @@ class AdaptiveRun(CompiledRun):
             fastest = float(np.max(slopes, initial=0.0))
             text = "values or rates grow too large to go on (largest rate [[rate]])"
             message = Message(text, rate=f"{fastest:.2g}")
-            return self._fail(BLOW_UP, message, self.clock[TIME], self.x)
-        message = Message("step [[step]]", step=f"{float(self.clock[STEP]):.2g}")
-        if self.count[INFINITE] and isinstance(self.tableau, Rosenbrock):
-            slopes = compiled_kernel(self._dynamics, "slopes")(np.concatenate([[self.clock[TIME]], self.x]))
+            return self._fail(Cause.BLOW_UP, message, self.clock[Clock.TIME], self.x)
+        message = Message("step [[step]]", step=f"{float(self.clock[Clock.STEP]):.2g}")
+        if self.count[Count.INFINITE] and isinstance(self.tableau, Rosenbrock):
+            slopes = compiled_kernel(self._dynamics, "slopes")(np.concatenate([[self.clock[Clock.TIME]], self.x]))
             if not np.all(np.isfinite(slopes)):
                 text = "[[method]] needs the derivatives of the rates, and not all of them are finite here"
                 message = Message(text, method=self.tableau.name)
-                return self._fail(NOT_SMOOTH, message, self.clock[TIME], self.x)
-        if self.count[INFINITE]:
+                return self._fail(Cause.NOT_SMOOTH, message, self.clock[Clock.TIME], self.x)
+        if self.count[Count.INFINITE]:
             message = Message("the rates just ahead are not finite")
-        return self._fail(STUCK, message, self.clock[TIME], self.x)
+        return self._fail(Cause.STUCK, message, self.clock[Clock.TIME], self.x)
 
 
 @dataclass(frozen=True)

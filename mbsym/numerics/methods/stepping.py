@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.numerics.methods.interface import STUCK, Breakdown, Piece, Work
+from mbsym.numerics.methods.interface import Breakdown, Cause, Piece, Work
 
 
 class Stepping(ABC):
@@ -71,7 +71,9 @@ class Stepping(ABC):
         if not self.reached > start:
             self.one(until)
             if not self.reached > start:  # where a step is wanted that short floats cannot tell from none
-                raise Breakdown(STUCK, "this arithmetic has too few digits for the next step", float(start), self.state)
+                raise Breakdown(
+                    Cause.STUCK, "this arithmetic has too few digits for the next step", float(start), self.state
+                )
         end = self.reached if until is None else min(until, self.reached)
         found = Piece(start, end, self.curve())
         self.state = np.array(self.end) if end == self.reached else found(end)

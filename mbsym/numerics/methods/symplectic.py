@@ -42,18 +42,7 @@ from mbsym.numerics.kernels.elimination import factorise, solve
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS, Library, Scalar, available, compiled
 from mbsym.numerics.kernels.writer import INTEGER, POINTER, Function, Value, clock_kind
-from mbsym.numerics.methods.interface import (
-    BLOW_UP,
-    STEP_LIMIT,
-    STUCK,
-    Breakdown,
-    Setting,
-    Traits,
-    Unusable,
-    Work,
-    compiled_kernel,
-    once,
-)
+from mbsym.numerics.methods.interface import Breakdown, Cause, Setting, Traits, Unusable, Work, compiled_kernel, once
 from mbsym.numerics.methods.led import refuse
 from mbsym.numerics.methods.nested import Nested, hermite
 from mbsym.numerics.methods.runge_kutta import MISSED, OPERATIONS_AT_A_TIME
@@ -360,7 +349,10 @@ class MidpointRun(Stepping):
             first, now = int(self.count[NUMBER]), float(self.reached)
             if self.work.steps >= self.limit:
                 raise Breakdown(
-                    STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), now, np.array(self.end, dtype=float)
+                    Cause.STEP_LIMIT,
+                    Message("[[count]] steps", count=self.work.steps),
+                    now,
+                    np.array(self.end, dtype=float),
                 )
             before = self.x.copy()
             last = min(goal, first + min(self._at_once, self.limit - self.work.steps))
@@ -445,13 +437,13 @@ class MidpointRun(Stepping):
         known = self._shown(np.array([self.reached]), self.x[:, None])[:, 0] if finite else None
         state = known if known is not None else np.where(np.isfinite(before), before, 0.0)
         if self.count[TROUBLE] == NOT_FINITE or not finite:
-            raise Breakdown(BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
+            raise Breakdown(Cause.BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
         message = Message(
             "the implicit equation has no solution within [[count]] iterations; h = [[step]] is too long",
             count=MOST_ITERATIONS,
             step=f"{float(self.clock[STEP]):.3g}",
         )
-        raise Breakdown(STUCK, message, now, np.array(state, dtype=float))
+        raise Breakdown(Cause.STUCK, message, now, np.array(state, dtype=float))
 
     def _shown(self, times: Any, x: Any) -> Any:
         """(q, q') in columns of (q, p) in columns: M q' = p - p at q' = 0."""

@@ -10,6 +10,7 @@ the Julia Differential Equations package, BIT 63 (2023) 27.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from fractions import Fraction
 from typing import Any
 
@@ -285,10 +286,14 @@ RODAS5P = Rosenbrock(
 # What the machine code of Runge-Kutta methods is written with: stages of a tableau, compensated sums, places.
 
 
-# Places in the arrays that the machine code and Python share.
-TIME, TIME_CARRY, START, STEP, LAST, UNTIL, RELATIVE, ABSOLUTE, PREVIOUS, LONGEST, BASE, SLACK = range(12)
-STEPS, REJECTED, EVALUATIONS, FRESH, INFINITE, CAREFUL, LEFT, NUMBER, PREPARED, REPLY, SINGULARLY, JACOBIANS = range(12)
-REACHED, PAUSED, STOPPED = range(3)
+# Places in the arrays that the machine code and Python share; what the code replies.
+Clock = IntEnum("Clock", "TIME TIME_CARRY START STEP LAST UNTIL RELATIVE ABSOLUTE PREVIOUS LONGEST BASE SLACK", start=0)
+Count = IntEnum(
+    "Count",
+    "STEPS REJECTED EVALUATIONS FRESH INFINITE CAREFUL LEFT NUMBER PREPARED REPLY SINGULARLY JACOBIANS",
+    start=0,
+)
+Reply = IntEnum("Reply", "REACHED PAUSED STOPPED", start=0)
 
 
 def clock_dtype(kind: str) -> Any:

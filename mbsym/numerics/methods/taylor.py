@@ -25,11 +25,9 @@ from mbsym.numerics.kernels.cells import place_of
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64, Code
 from mbsym.numerics.kernels.llvm import SCALARS
 from mbsym.numerics.methods.interface import (
-    BLOW_UP,
     LARGEST,
-    STEP_LIMIT,
-    STUCK,
     Breakdown,
+    Cause,
     Setting,
     Traits,
     Unusable,
@@ -233,7 +231,7 @@ class TaylorRun(Stepping):
         goal = until - 2 * last
         while last > 0 and goal - taylor.time > 8 * last:
             if work.steps >= self._limit:
-                raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
+                raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
@@ -248,7 +246,7 @@ class TaylorRun(Stepping):
         """One step that keeps its series."""
         taylor, work = self._taylor, self.work
         if work.steps >= self._limit:
-            raise self._fail(STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
+            raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
         now, before = taylor.time, self.end
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
@@ -267,13 +265,13 @@ class TaylorRun(Stepping):
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:
-            raise self._fail(BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
+            raise self._fail(Cause.BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
         if step > self._least * max(1.0, abs(now)):
             return
         if not np.all(np.abs(self._taylor.state) < LARGEST):  # in units of the scene's sizes
             bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")
-            raise self._fail(BLOW_UP, bound, now, before)
-        raise self._fail(STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
+            raise self._fail(Cause.BLOW_UP, bound, now, before)
+        raise self._fail(Cause.STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
 
     @staticmethod
     def _fail(kind: str, message: str, time: Any, state: Any) -> Breakdown:

@@ -4,7 +4,8 @@
 
 with the exact Phi of the variational equations; of all solutions that of least length is taken, so that along a family
 of periodic motions the nearest one is found.  Where the equations know the time, T is given and its column is left out;
-so it is where a period is asked for.  ``turns``: angles may come back turned by whole revolutions.
+so it is where a period is asked for.  ``turns``: angles may come back turned by whole revolutions.  A coordinate that
+the equations do not know may come back ``shifted`` by anything: its equation is left out.
 
 The multipliers are the eigenvalues of Phi(T).  Some are 1 for a reason (``Trivial``): f(x0) is an eigenvector where the
 equations do not know the time, a cyclic coordinate's unit vector is one, and the gradients of energy and of cyclic
@@ -17,7 +18,7 @@ Dynamical Systems, 2nd ed. 2009, chapters 8 and 9.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -71,7 +72,7 @@ class Trivial:
 
 @dataclass(frozen=True)
 class Orbit:
-    """A periodic motion x(t + T) = x(t) + turns.
+    """A periodic motion x(t + T) = x(t) + turns, which are whole revolutions or what a coordinate is shifted by.
 
     ``closure`` is |x(T) - x0 - turns| as part of the state's size, by the method that found it; ``verified`` the same
     by ``verifier``, another method.  ``multipliers`` are in decreasing order of size; ``uncertainty`` is how far they
@@ -94,6 +95,7 @@ class Orbit:
     energy: float
     autonomous: bool
     determinant: float
+    shifted: tuple[str, ...] = ()
 
     @property
     def others(self) -> Any:
@@ -104,11 +106,15 @@ class Orbit:
 
 @dataclass(frozen=True)
 class Guess:
-    """Where to begin: a state, a period, angles' revolutions; whether period or energy are kept as they are."""
+    """Where to begin: a state, a period, angles' revolutions; whether period or energy are kept as they are.
+
+    ``shifted``: coordinates that the equations do not know, which may come back changed by anything.
+    """
 
     state: Any
     period: float
     turns: Mapping[str, int]
+    shifted: tuple[str, ...] = ()
     keep_period: bool = False
     keep_energy: bool = False
 
@@ -148,8 +154,10 @@ def periodic_orbit(
     rates, sizes = compiled_kernel(dynamics, "right_hand_side"), about(dynamics, 0.0, guess.state).sizes[:, 0]
     if known_time:
         _require_repetition(dynamics, rates, guess, sizes)
+    _require_ignored(dynamics, rates, guess, sizes)
     energy = _Energy(dynamics, sizes)
-    search = _Search(flow, turns, energy, energy(guess.state) if guess.keep_energy else None)
+    shifted = np.array([name in guess.shifted for name in names])
+    search = _Search(flow, turns, shifted, energy, energy(guess.state) if guess.keep_energy else None)
     here = search.at(np.array(guess.state, float), float(guess.period))
     if here is None:
         raise NotFound(Message("the motion of the guess breaks down before its period is over"))
@@ -157,13 +165,15 @@ def periodic_orbit(
     for count in range(MOST_STEPS):
         watch(count, here.size)
         if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
-            return _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
+            turns = np.where(shifted, best.end - best.state, turns)
+            found = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
+            return replace(found, shifted=guess.shifted)
         forward = rates(np.concatenate(([0.0], here.state))) if free_period else None
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
-        found = search.towards(here, search.step(here, forward, ahead))
-        if found is None:
+        place = search.towards(here, search.step(here, forward, ahead))
+        if place is None:
             break
-        here = found
+        here = place
         if here.period < SHORTEST * guess.period:
             raise NotFound(_vanishing(here.period, turns))
         best, since = (here, 0) if here.size < 0.5 * best.size else (best, since + 1)
@@ -186,6 +196,19 @@ def _require_repetition(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any
             apart = np.abs(then - now)  # compared in vain where one of them is no number
             if np.any(apart > REPEATED * (sizes / guess.period + np.abs(now))):
                 raise NotFound(_unrepeated(dynamics, f"{guess.period:.15g}"))
+
+
+def _require_ignored(dynamics: Dynamics, rates: Any, guess: Guess, sizes: Any) -> None:
+    """Raises NotFound where the rates depend on a coordinate that is to come back changed."""
+    state = np.asarray(guess.state, float)
+    now = rates(np.concatenate(([0.0], state)))
+    for name in guess.shifted:
+        for shift in np.linspace(0.1, 2.0, SAMPLES):
+            beside = state.copy()
+            beside[dynamics.system.coordinates.index(name)] += shift * sizes[dynamics.system.coordinates.index(name)]
+            apart = np.abs(rates(np.concatenate(([0.0], beside))) - now)
+            if np.any(apart > REPEATED * (sizes / guess.period + np.abs(now))):
+                raise NotFound(Message("the motion depends on [[name]], which has to come back", name=name))
 
 
 def _unrepeated(dynamics: Dynamics, period: str) -> Message:
@@ -226,8 +249,8 @@ class _Place:
 class _Search:
     """Newton's method with steps that are shortened until what is left over becomes smaller."""
 
-    def __init__(self, flow: Flow, turns: Any, energy: _Energy, wanted: float | None) -> None:
-        self.flow, self.turns, self.energy, self.wanted = flow, turns, energy, wanted
+    def __init__(self, flow: Flow, turns: Any, shifted: Any, energy: _Energy, wanted: float | None) -> None:
+        self.flow, self.turns, self.shifted, self.energy, self.wanted = flow, turns, shifted, energy, wanted
 
     def at(self, state: Any, period: float) -> _Place | None:
         """None where the motion breaks down."""
@@ -236,7 +259,7 @@ class _Search:
             end, phi = self.flow.passage(state, 0.0, period)
         except Breakdown:
             return None
-        rest = end - state - self.turns
+        rest = np.where(self.shifted, 0.0, end - state - self.turns)
         size = float(np.max(np.abs(rest) / self.energy.scale(state)))
         if self.wanted is not None:
             off = self.wanted - self.energy(state)
@@ -253,14 +276,14 @@ class _Search:
         size, basis = self.flow.size, self.flow.tangent(here.state)
         scale = self.energy.scale(here.state)
         allowed = np.diag(scale) if basis is None else scale[:, None] * np.linalg.qr(basis / scale[:, None])[0]
-        matrix, units = here.phi - np.eye(size), scale
+        matrix, units = np.where(self.shifted[:, None], 0.0, here.phi - np.eye(size)), scale
         if self.wanted is not None:
             matrix = np.vstack([matrix, self.energy.gradient(here.state)])
             units = np.append(units, self.energy.size(here.state) + abs(self.wanted))
         matrix, right = matrix @ allowed / units[:, None], -here.rest / units
         if forward is not None:
             column = np.zeros((len(matrix), 1))
-            column[:size, 0] = here.period * ahead / scale
+            column[:size, 0] = np.where(self.shifted, 0.0, here.period * ahead / scale)
             way = (here.period * forward / scale) @ (allowed / scale[:, None])
             matrix = np.vstack([np.hstack([matrix, column]), np.append(way, 0.0)])
             right = np.append(right, 0.0)

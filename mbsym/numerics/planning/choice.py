@@ -14,7 +14,7 @@ from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.events.switching import STABLE, STIFF, Switching, rates
 from mbsym.numerics.kernels.interface import FLOAT64
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable
 from mbsym.numerics.methods.landing import Landing
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import cost
@@ -139,7 +139,7 @@ def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -
     except Unusable:
         return None
     except Breakdown as found:
-        if found.kind != STEP_LIMIT or found.time <= 0:
+        if found.kind != Cause.STEP_LIMIT or found.time <= 0:
             return None
         reached = found.time
     return cost(dynamics, method.traits.name, FLOAT64, run.work) * time_ / reached

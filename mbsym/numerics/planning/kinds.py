@@ -7,55 +7,71 @@ takes it out, by hand.  The others are written differently, or never written, fo
 from __future__ import annotations
 
 from collections.abc import Mapping
+from enum import StrEnum
 
-# --- of both ---
-GRAVITY = "order of gravity"
-LINEARITY = "linear or nonlinear"
-LEFT_OUT = "parameters left out"
-MASSES = "negligible masses"
-RESTING = "coordinates that rest"
-PLANE = "plane motion"
-PARTS = "separable parts"
-WELDED = "welded bodies"
 
-# --- of the plan alone: how, not what, is integrated ---
-METHOD, FINENESS, SCALAR, KERNEL = "method", "tolerance", "arithmetic", "kernel"
+class Kind(StrEnum):
+    """What is left out, or chosen."""
 
-# --- of the ledger alone ---
-MASSLESS, POINTS, AXES = "massless bodies", "point masses", "unused axes"
-TURNS = "constant rotations"
-CYCLIC = "cyclic coordinates"
-SKEW = "motion in a skew plane"
-DROPPED = "parameters that drop out"
-ENTRIES, SUBSYSTEMS, NOT_ASKED = "entries that vanish", "subsystems", "outputs nobody asked for"
-SYMMETRY, SPARSITY, ROUTE = "symmetry of M", "sparsity of M", "route to q''"
-DEAD, STEADY = "dead instructions", "parameters only"
-ZEROS, VALUES = "values that are zero", "values put in"
+    # of both
+    GRAVITY = "order of gravity"
+    LINEARITY = "linear or nonlinear"
+    LEFT_OUT = "parameters left out"
+    MASSES = "negligible masses"
+    RESTING = "coordinates that rest"
+    PLANE = "plane motion"
+    PARTS = "separable parts"
+    WELDED = "welded bodies"
+    # of the plan alone: how, not what, is integrated
+    METHOD = "method"
+    FINENESS = "tolerance"
+    SCALAR = "arithmetic"
+    KERNEL = "kernel"
+    # of the ledger alone
+    MASSLESS = "massless bodies"
+    POINTS = "point masses"
+    AXES = "unused axes"
+    TURNS = "constant rotations"
+    CYCLIC = "cyclic coordinates"
+    SKEW = "motion in a skew plane"
+    DROPPED = "parameters that drop out"
+    ENTRIES = "entries that vanish"
+    SUBSYSTEMS = "subsystems"
+    NOT_ASKED = "outputs nobody asked for"
+    SYMMETRY = "symmetry of M"
+    SPARSITY = "sparsity of M"
+    ROUTE = "route to q''"
+    DEAD = "dead instructions"
+    STEADY = "parameters only"
+    ZEROS = "values that are zero"
+    VALUES = "values put in"
+
 
 #: Kinds that change what is integrated, with the option that settles each by hand.
-SWITCHES: Mapping[str, str] = {
-    GRAVITY: "--gravity",
-    LINEARITY: "--linear",
-    LEFT_OUT: "--without",
-    MASSES: "--without",
-    RESTING: "--whole",
-    PLANE: "--whole",
-    PARTS: "--whole",
-    WELDED: "--whole",
+SWITCHES: Mapping[Kind, str] = {
+    Kind.GRAVITY: "--gravity",
+    Kind.LINEARITY: "--linear",
+    Kind.LEFT_OUT: "--without",
+    Kind.MASSES: "--without",
+    Kind.RESTING: "--whole",
+    Kind.PLANE: "--whole",
+    Kind.PARTS: "--whole",
+    Kind.WELDED: "--whole",
 }
 
 #: Kinds that change the way of a run, with the option that settles each; one motion has one kernel.
-WAYS: Mapping[str, str | None] = {
-    METHOD: "--method",
-    FINENESS: "--tolerance",
-    SCALAR: "--arithmetic",
-    KERNEL: None,
+WAYS: Mapping[Kind, str | None] = {
+    Kind.METHOD: "--method",
+    Kind.FINENESS: "--tolerance",
+    Kind.SCALAR: "--arithmetic",
+    Kind.KERNEL: None,
 }
 
 #: Kinds that change nothing of a motion but rounding: the same equations, with fewer instructions or none to write.
 SAME_EQUATIONS = frozenset(
     (
-        *(MASSLESS, POINTS, AXES, TURNS, CYCLIC, SKEW, DROPPED, ENTRIES, SUBSYSTEMS, NOT_ASKED),
-        *(SYMMETRY, SPARSITY, ROUTE, DEAD, STEADY, ZEROS, VALUES),
+        *(Kind.MASSLESS, Kind.POINTS, Kind.AXES, Kind.TURNS, Kind.CYCLIC, Kind.SKEW, Kind.DROPPED, Kind.ENTRIES),
+        *(Kind.SUBSYSTEMS, Kind.NOT_ASKED, Kind.SYMMETRY, Kind.SPARSITY, Kind.ROUTE, Kind.DEAD, Kind.STEADY),
+        *(Kind.ZEROS, Kind.VALUES),
     )
 )

@@ -21,8 +21,9 @@ from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
+from mbsym.numerics.trade.comparison import filled
 
 #: Where within a step, its end included, and how many places in all.
 SHARES = np.array([0.17, 0.38, 0.61, 0.83, 1.0])
@@ -41,12 +42,9 @@ class Rows:
 def rows(method: Method, dynamics: Dynamics, setting: Setting, times: Any, scalar: str = "float64") -> Rows:
     """The states at increasing times from 0.  Raises Breakdown where they do not reach the last one."""
     run = method.start(dynamics, setting, scalar)
-    start = np.array(run.state)[:, np.newaxis]
     started = time.thread_time()
-    with np.errstate(all="ignore"):
-        states = run.fill(np.asarray(times[1:], dtype=float))
-    seconds = time.thread_time() - started
-    return Rows(np.ascontiguousarray(np.hstack([start, states])), replace(run.work), seconds)
+    states = filled(run, times)
+    return Rows(np.ascontiguousarray(states), replace(run.work), time.thread_time() - started)
 
 
 def places(method: Method, dynamics: Dynamics, setting: Setting, end: float) -> Any:
@@ -80,35 +78,49 @@ ALIKE = 1.1
 
 
 @dataclass(frozen=True)
-class Trial:
-    """One setting and what came of it: ``errors`` (k,) relative to the scales.
+class Candidate:
+    """One way to integrate: a method in an arithmetic with a tolerance or a step."""
+
+    method: Method
+    scalar: str
+    setting: Setting
+
+    @property
+    def label(self) -> str:
+        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
+        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
+        return f"{self.method.traits.name} {self.shown}{arithmetic}"
+
+    @property
+    def shown(self) -> str:
+        """The tolerance or the step."""
+        if self.setting.step is not None:
+            return f"h={self.setting.step:.3g}"
+        decade = f"{self.setting.tolerance:.0e}"
+        return decade if float(decade) == self.setting.tolerance else f"{self.setting.tolerance:.3g}"
+
+    @property
+    def fineness(self) -> float:
+        """The tolerance, or the step."""
+        fineness = self.setting.tolerance if self.setting.step is None else self.setting.step
+        assert fineness is not None
+        return fineness
+
+
+@dataclass(frozen=True)
+class Trial(Candidate):
+    """What came of one: ``errors`` (k,) relative to the scales.
 
     ``cost`` is that of its counted work (``planning.prices``), by which settings are chosen; ``seconds`` of the
     processor are told, and decide nothing.
     """
 
-    method: Method
-    scalar: str
-    setting: Setting
     ratio: float
     errors: Any
     seconds: float
     work: Work
     cost: float
     states: Any = None
-
-    @property
-    def label(self) -> str:
-        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
-        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
-        return f"{self.method.traits.name} {self.fineness:.3g}{arithmetic}"
-
-    @property
-    def fineness(self) -> float:
-        """The tolerance, or the step."""
-        found = self.setting.tolerance if self.setting.step is None else self.setting.step
-        assert found is not None
-        return found
 
 
 @dataclass
@@ -350,7 +362,7 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
         try:
             now = bench.run(method, scalar, Setting(tolerance, None, limit, longest))
         except Breakdown as ended:  # its steps fall below what rounding lets them be
-            if ended.kind != STEP_LIMIT:
+            if ended.kind != Cause.STEP_LIMIT:
                 raise
             return best
         apart, _ = bench.compared(before.states, now.states)

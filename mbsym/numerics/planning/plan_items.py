@@ -17,19 +17,7 @@ from mbsym.numerics.kernels.interface import EXTENDED, FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Unusable
 from mbsym.numerics.planning.choice import Choice
-from mbsym.numerics.planning.kinds import (
-    FINENESS,
-    GRAVITY,
-    KERNEL,
-    LEFT_OUT,
-    LINEARITY,
-    MASSES,
-    METHOD,
-    PARTS,
-    RESTING,
-    SCALAR,
-    WELDED,
-)
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried
 from mbsym.numerics.planning.models import Model, described, parted
 from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Trial, Yardstick
@@ -190,7 +178,7 @@ def _models(settled: Settled) -> Iterator[Item]:
     scene, model = settled.scene, settled.model
     taken = model.taken
     given = described(scene.scenario)
-    why = Message("as asked for") if GRAVITY in settled.pinned else _why_model(model)
+    why = Message("as asked for") if Kind.GRAVITY in settled.pinned else _why_model(model)
     if given.gravity is not None:
         refused = tuple(_refused(settled, one) for one in model.tried if _other_order(one.model, taken.model))
         richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
@@ -200,24 +188,24 @@ def _models(settled: Settled) -> Iterator[Item]:
             why = Message("[[why]]; richer than described (order [[order]])", why=why, order=given.gravity)
         alone = not (taken.model.linear or taken.model.without)
         error = _worst(settled, taken) if alone else None
-        yield Item(GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
+        yield Item(Kind.GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
     lines = [one for one in model.tried if one.model.linear]
     if lines or taken.model.linear:
         chosen = Message("linear" if taken.model.linear else "nonlinear")
         refused = tuple(_refused(settled, one) for one in lines if one.model != taken.model)
         error = _worst(settled, taken) if taken.model.linear else None
-        why = Message("as asked for") if LINEARITY in settled.pinned else _why_model(model)
-        yield Item(LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
+        why = Message("as asked for") if Kind.LINEARITY in settled.pinned else _why_model(model)
+        yield Item(Kind.LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
     if taken.model.without:
-        why = Message("as asked for" if LEFT_OUT in settled.pinned else "this motion does not feel them")
+        why = Message("as asked for" if Kind.LEFT_OUT in settled.pinned else "this motion does not feel them")
         bodies, others = parted(scene.scenario, taken.model)
         left = ", ".join(taken.model.without)
         if bodies:
             gone = Message("without [[names]]", names=left)
-            yield Item(MASSES, bodies, gone, why, _worst(settled, taken), taken.how, taken.operations)
+            yield Item(Kind.MASSES, bodies, gone, why, _worst(settled, taken), taken.how, taken.operations)
         if others:
             error = None if bodies else _worst(settled, taken)  # that of all together stands with the bodies
-            yield Item(LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
+            yield Item(Kind.LEFT_OUT, others, ", ".join(others), why, error, taken.how, taken.operations)
 
 
 def _why_model(model: ModelChoice) -> str:
@@ -244,22 +232,22 @@ def _resting(settled: Settled) -> Iterator[Item]:
     if found is not None:
         before, after = found.operations
         why = Message("[[after]] operations a right-hand side instead of [[before]]", after=after, before=before)
-        yield Item(RESTING, found.names, Message("not integrated"), why, 0.0, Certainty.PROVED, after)
+        yield Item(Kind.RESTING, found.names, Message("not integrated"), why, 0.0, Certainty.PROVED, after)
 
 
 def _parts(settled: Settled) -> Iterator[Item]:
     if settled.parts and not settled.found.method.traits.fixed:
         names = tuple(" ".join(part.names) for part in settled.parts)
         why = Message("nothing links them in these equations")
-        yield Item(PARTS, names, Message("each by itself"), why, 0.0, Certainty.PROVED)
+        yield Item(Kind.PARTS, names, Message("each by itself"), why, 0.0, Certainty.PROVED)
 
 
 def _welded(settled: Settled) -> Iterator[Item]:
     found = lumped(settled.scene.scenario.system)
-    if found and WELDED not in settled.pinned and not settled.model.taken.model.linear:
+    if found and Kind.WELDED not in settled.pinned and not settled.model.taken.model.linear:
         carried = Message("one with [[bodies]]", bodies=", ".join(dict.fromkeys(found.values())))
         why = Message("no coordinate moves them against it")
-        yield Item(WELDED, tuple(found), carried, why, 0.0, Certainty.PROVED)
+        yield Item(Kind.WELDED, tuple(found), carried, why, 0.0, Certainty.PROVED)
 
 
 def _settings(settled: Settled) -> Iterator[Item]:
@@ -267,25 +255,25 @@ def _settings(settled: Settled) -> Iterator[Item]:
     name = found.method.traits.name
     others = _cheapest_others(settled)
     chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
-    why = Message("as asked for") if METHOD in pinned else chosen
-    if FINENESS in pinned:
+    why = Message("as asked for") if Kind.METHOD in pinned else chosen
+    if Kind.FINENESS in pinned:
         why = _fitting(found)
-    if settled.choice.stiff and METHOD not in pinned:
+    if settled.choice.stiff and Kind.METHOD not in pinned:
         why = joined(
             [why, Message("motions die out at rates up to [[rate]]", rate=f"{settled.choice.decay:.3g}")], "; "
         )
     yield Item(
-        METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
+        Kind.METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
     )
-    why = Message("as asked for") if FINENESS in pinned else _why_fineness(settled)
+    why = Message("as asked for") if Kind.FINENESS in pinned else _why_fineness(settled)
     word = Message("tolerance [[tolerance]]", tolerance=f"{found.fineness:g}")
     if found.setting.step is not None:
         word = Message("step [[step]]", step=f"{found.fineness:g}")
-    yield Item(FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
+    yield Item(Kind.FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
-    why = Message("as asked for") if SCALAR in pinned else _why_scalar(settled)
-    yield Item(SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
-    yield Item(KERNEL, (), "scalar", Message("one motion: nothing to lay side by side"), 0.0, Certainty.PROVED)
+    why = Message("as asked for") if Kind.SCALAR in pinned else _why_scalar(settled)
+    yield Item(Kind.SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
+    yield Item(Kind.KERNEL, (), "scalar", Message("one motion: nothing to lay side by side"), 0.0, Certainty.PROVED)
 
 
 def _why_method(settled: Settled, others: bool) -> str:

@@ -24,7 +24,7 @@ from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable, Work, compiled_kernel
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import ALONG, Choice, choose
-from mbsym.numerics.planning.kinds import FINENESS, GRAVITY, LEFT_OUT, LINEARITY, METHOD, PARTS, RESTING, SCALAR, WELDED
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried, model_chosen, model_settled, richest
 from mbsym.numerics.planning.models import Model, described
 from mbsym.numerics.planning.pilot import (
@@ -225,9 +225,9 @@ class Pins:
     def kinds(self) -> frozenset[str]:
         """The kinds of items that it settles."""
         fineness = None if self.setting is None else self.setting
-        given = {METHOD: self.method, FINENESS: fineness, SCALAR: self.scalar, GRAVITY: self.model}
-        given |= {LINEARITY: self.model, LEFT_OUT: self.model}
-        together = (RESTING, PARTS, WELDED) if self.whole else ()
+        given = {Kind.METHOD: self.method, Kind.FINENESS: fineness, Kind.SCALAR: self.scalar, Kind.GRAVITY: self.model}
+        given |= {Kind.LINEARITY: self.model, Kind.LEFT_OUT: self.model}
+        together = (Kind.RESTING, Kind.PARTS, Kind.WELDED) if self.whole else ()
         return frozenset((*(kind for kind, value in given.items() if value is not None), *together))
 
     @property

@@ -23,7 +23,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from mbsym.numerics.methods.interface import Breakdown
+from mbsym.numerics.methods.interface import Breakdown, Run
 from mbsym.numerics.methods.nested import states_on
 from mbsym.numerics.planning.prices import FOLLOWED
 from mbsym.numerics.planning.sizes import RESTS, scaled
@@ -163,6 +163,19 @@ def compared(
         followed = followed and block[-1][3]
         watch(float(times[-1]))
     return seen.comparison(names, usual, followed)
+
+
+def filled(solution: Run, times: Any, looks: int = 1, reached: Callable[[float], None] = lambda t: None) -> Any:
+    """The states (2n, m) at increasing times, the first of which is where the solution is; ``reached`` in ``looks``.
+
+    Raises Breakdown where they do not come to the last one, and what ``reached`` raises.
+    """
+    states = [np.array(solution.state)[:, None]]
+    with np.errstate(all="ignore"):
+        for some in np.array_split(np.asarray(times[1:], dtype=float), looks):
+            states.append(solution.fill(some))
+            reached(float(some[-1]))
+    return np.hstack(states)
 
 
 def compared_at(

@@ -30,12 +30,12 @@ from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
 from mbsym.numerics.kernels.precise import precise
-from mbsym.numerics.methods.interface import BLOW_UP, STEP_LIMIT, Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable
 from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.prices import FOLLOWED, LOOKED_AT, Meter, Working, precise_cost
 from mbsym.numerics.planning.sizes import scaled, sizes_of_scene
-from mbsym.numerics.trade.comparison import SHARES, Ended, compared, uneven
+from mbsym.numerics.trade.comparison import SHARES, Ended, compared, filled, uneven
 
 # Reference solutions, against which errors are measured: extrapolation in arithmetic of any precision.
 #
@@ -110,9 +110,9 @@ class Extrapolation:
                 self.time, self.state = now, new
                 self.scale = [max(s, abs(float(x))) for s, x in zip(self.scale, new, strict=True)]
             if not self.step_size > 1e-12 * max(self.unit, self.time):
-                raise Breakdown(BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
+                raise Breakdown(Cause.BLOW_UP, "the reference solution cannot go on", self.time, self.floats())
             if self.spent > self.limit:
-                raise Breakdown(STEP_LIMIT, "it costs more than it may", self.time, self.floats())
+                raise Breakdown(Cause.STEP_LIMIT, "it costs more than it may", self.time, self.floats())
             if accepted:
                 return
 
@@ -281,7 +281,7 @@ def whole_reference(
         try:
             found = way(search)
         except Breakdown as reason:
-            if way is _extrapolated and reason.kind != STEP_LIMIT:
+            if way is _extrapolated and reason.kind != Cause.STEP_LIMIT:
                 if dynamics.constraints is None:
                     raise
                 continue  # where constraints lose their rank the motion goes on, and others carry it over
@@ -294,7 +294,7 @@ def whole_reference(
             return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
         finally:
             spent += search.spent
-    raise failed or Breakdown(STEP_LIMIT, TOO_DEAR, 0.0, np.empty(0))
+    raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0, np.empty(0))
 
 
 @dataclass
@@ -330,7 +330,7 @@ class _Search:
         some = max(allowed / 4, SOME)
         later = spent - 2 * FOLLOWED * LOOKED_AT  # steps are looked at in the beginning only
         if spent > allowed or (spent > some and later * self.end > far_too_long * allowed * t):
-            raise Breakdown(STEP_LIMIT, TOO_DEAR, t, np.empty(0))
+            raise Breakdown(Cause.STEP_LIMIT, TOO_DEAR, t, np.empty(0))
 
     def next(self, meter: Callable[[], float]) -> None:
         """Begins another solution from 0 to the end, which costs what ``meter`` shows."""
@@ -427,7 +427,7 @@ def _explicit(search: _Search) -> Reference:
             return _agreeing(search, first, (METHODS[name], Setting(tolerance, longest=longest)), scalar, EXPLICIT)
         except Unusable:
             continue
-    raise Breakdown(STEP_LIMIT, "no second method", 0.0, np.empty(0))
+    raise Breakdown(Cause.STEP_LIMIT, "no second method", 0.0, np.empty(0))
 
 
 def _implicit(search: _Search) -> Reference:
@@ -471,11 +471,7 @@ def _filled(search: _Search, method: Method, setting: Setting, scalar: str, plac
     """The states (2n, m) of a run from the first of the places on."""
     run = method.start(search.dynamics, setting, scalar)
     search.next_of([(run, method.traits.name, scalar)])
-    states = [np.asarray(run.state)[:, None]]
-    for some in np.array_split(places[1:], 64):
-        states.append(run.fill(some))
-        search.reached(float(some[-1]))
-    return np.hstack(states)
+    return filled(run, places, 64, search.reached)
 
 
 #: The ways, and the part of what is left which each of them may cost.

@@ -38,13 +38,15 @@ from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
-from mbsym.numerics.methods.interface import STEP_LIMIT, Breakdown, Method, Setting, Unusable, Work
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
+from mbsym.numerics.planning.pilot import Candidate
 from mbsym.numerics.planning.prices import STARTED, STARTED_EACH, cost
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade import fidelity
+from mbsym.numerics.trade.comparison import filled
 from mbsym.numerics.trade.fidelity import ModelError
 from mbsym.numerics.trade.reference_search import IMPLICIT, Reference, whole_reference
 
@@ -63,28 +65,6 @@ FIRST, USUAL_TOLERANCE = 0.4, 1e-10
 
 #: What comparing one row costs.
 COMPARED = 1e-6
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One way to integrate: a method in an arithmetic with a tolerance or a step."""
-
-    method: Method
-    scalar: str
-    setting: Setting
-
-    @property
-    def label(self) -> str:
-        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
-        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
-        return f"{self.method.traits.name} {self.shown}{arithmetic}"
-
-    @property
-    def shown(self) -> str:
-        """The tolerance or the step."""
-        if self.setting.step is not None:
-            return f"h={self.setting.step:.3g}"
-        return f"{self.setting.tolerance:.0e}"
 
 
 @dataclass(frozen=True)
@@ -224,20 +204,20 @@ class _Judge:
         run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
         self.starting = self._compiling(candidate)
         self.spent += self.starting
-        states = [np.array(run.state, dtype=float)[:, np.newaxis]]
         started, before = time.thread_time(), self.spent
+
+        def reached(t: float) -> None:
+            self.spent = before + self._cost(candidate, run.work)
+            if self.spent - before > limit and t < times[-1]:
+                raise Breakdown(Cause.STEP_LIMIT, "too dear to be measured", t, np.array(run.state, dtype=float))
+
         try:
-            for some in np.array_split(times[1:], min(BLOCKS, len(times) - 1)):
-                states.append(np.asarray(run.fill(some), dtype=float))
-                self.spent = before + self._cost(candidate, run.work)
-                if self.spent - before > limit and some[-1] < times[-1]:
-                    raise Breakdown(STEP_LIMIT, "too dear to be measured", float(some[-1]), states[-1][:, -1])
+            matrix = filled(run, times, min(BLOCKS, len(times) - 1), reached)
             work, typical = self._seconds(candidate, time.thread_time() - started, run.work, before + limit)
         except Breakdown as found:
             wasted = time.thread_time() - started
             self.spent = max(self.spent, before + self._cost(candidate, run.work))
             return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, found.told)
-        matrix = np.hstack(states)
         self.spent += COMPARED * len(times)
         error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
         carried = len(run.work.singular)

@@ -16,16 +16,9 @@ from mbsym.expressions.tree import Expression, Name, differentiate, names
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import CLAIMS, SUMS, Claim
 from mbsym.problems.claims.result import (
-    DIFFERS,
-    EQUIVALENT,
-    EXACT,
-    FACTOR,
-    NUMERICAL,
-    RELATIONS,
-    SCALED,
-    UNDECIDED,
     ClaimResult,
     Derived,
+    Outcome,
     Part,
     by_motion,
     by_place,
@@ -44,40 +37,40 @@ def examined_formula(
     derived: Derived, claim: Claim, about: str, symbols: Symbols, claimed: Polynomial, truth: Polynomial
 ) -> ClaimResult:
     ring = derived.ring
-    result = ClaimResult(claim, about, EXACT, Formula(ring, truth))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, truth))
     homogeneous = CLAIMS[claim.kind].homogeneous
     if ring.is_zero(claimed - truth):  # in the description's own symbols, if both are written in them
         return result
     if homogeneous:
         multiple = closest_multiple(derived, claim, claimed, truth)
-        if multiple is not None and multiple.verdict == (EXACT, ""):
-            return replace(result, outcome=FACTOR, factor=multiple.factor, remark=multiple.remark)
+        if multiple is not None and multiple.verdict == (Outcome.EXACT, ""):
+            return replace(result, outcome=Outcome.FACTOR, factor=multiple.factor, remark=multiple.remark)
     own = ring.reduce(claimed - truth)
     claimed, truth = in_parameters(derived, claimed), in_parameters(derived, truth)
     difference = ring.reduce(claimed - truth)
     if ring.is_zero(difference):
         return result
-    exact = EXACT
+    exact = Outcome.EXACT
     related = on_relations(derived, claim, difference)
     if related != difference:
         claimed, truth = on_relations(derived, claim, claimed), on_relations(derived, claim, truth)
-        difference, exact = related, RELATIONS
+        difference, exact = related, Outcome.RELATIONS
     outcome, where = decided(derived, difference)
-    if outcome == EXACT:
+    if outcome == Outcome.EXACT:
         return replace(result, outcome=exact, where=where)
-    if outcome in (NUMERICAL, UNDECIDED):
+    if outcome in (Outcome.NUMERICAL, Outcome.UNDECIDED):
         return replace(result, outcome=outcome, where=where, difference=Formula(ring, difference))
     if homogeneous:
         return _up_to_multiple(derived, result, symbols, claimed, truth, min(difference, own, key=len))
     factor = constant_factor(derived, claimed, truth)
     if factor is not None:
-        return replace(result, outcome=SCALED, factor=factor)
+        return replace(result, outcome=Outcome.SCALED, factor=factor)
     if claim.kind in SUMS and _same_equations(derived, difference):
         remark = "it differs by a constant"
         if is_moving(derived, difference):
             remark = "the equations of motion are the same"
         if _allows(derived, claim, difference):
-            return replace(result, outcome=EQUIVALENT, difference=Formula(ring, difference), remark=remark)
+            return replace(result, outcome=Outcome.EQUIVALENT, difference=Formula(ring, difference), remark=remark)
         remark = remark.replace("it differs by a constant", "by a constant")
         return replace(differing(derived, result, symbols, min(difference, own, key=len)), remark=remark)
     return differing(derived, result, symbols, min(difference, own, key=len))
@@ -103,9 +96,9 @@ def _up_to_multiple(
         return differing(derived, result, symbols, own)
     found = replace(result, factor=multiple.factor, remark=multiple.remark)
     outcome, where = multiple.verdict
-    if outcome == EXACT:
-        return replace(found, outcome=FACTOR, where=where)
-    if outcome in (NUMERICAL, UNDECIDED):
+    if outcome == Outcome.EXACT:
+        return replace(found, outcome=Outcome.FACTOR, where=where)
+    if outcome in (Outcome.NUMERICAL, Outcome.UNDECIDED):
         difference = Formula(derived.ring, multiple.difference)
         return replace(found, outcome=outcome, where=where, difference=difference)
     return differing(derived, replace(found, remark=""), symbols, multiple.difference)
@@ -132,8 +125,8 @@ def differing(derived: Derived, result: ClaimResult, symbols: Symbols, differenc
     """The result with its difference, taken apart."""
     parts = _parts(derived, result.claim, symbols, difference)
     if result.claim.variable:  # the generator of the time stands for the variable: only the parts can be shown
-        return replace(result, derived=None, outcome=DIFFERS, parts=parts)
-    return replace(result, outcome=DIFFERS, difference=Formula(derived.ring, difference), parts=parts)
+        return replace(result, derived=None, outcome=Outcome.DIFFERS, parts=parts)
+    return replace(result, outcome=Outcome.DIFFERS, difference=Formula(derived.ring, difference), parts=parts)
 
 
 def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynomial) -> tuple[Part, ...]:

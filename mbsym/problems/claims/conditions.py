@@ -35,7 +35,7 @@ from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
 from mbsym.problems.claims.remarks import Remark, Said, said, words
-from mbsym.problems.claims.result import BORDERS, EXACT, FAILS, UNDECIDED, ClaimResult, Derived
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Flaw, Verdict, weakest
@@ -51,7 +51,7 @@ def examined_condition(derived: Derived, claim: Claim, about: str) -> ClaimResul
 
     Sufficient conditions of one place count together.
     """
-    result = ClaimResult(claim, about, EXACT)
+    result = ClaimResult(claim, about, Outcome.EXACT)
     examined = _sufficient if claim.role == SUFFICIENT else _necessary
     return examined(derived, claim, result)
 
@@ -93,7 +93,7 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
     for one in needs:
         if one.everywhere:
             drifts = (said(Said.DRIFTS_WITH_EQUALITY),) if one.drifts else ()
-            return _told(result, EXACT, one.because, said(Said.UNSTABLE_WITHOUT), *drifts)
+            return _told(result, Outcome.EXACT, one.because, said(Said.UNSTABLE_WITHOUT), *drifts)
     tried = _refuting(derived, claim)
     example = tried.found
     exponential = next((one for one in needs if one.exponential is not None), None)
@@ -106,16 +106,24 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         in_first = example.word in IN_FIRST
         code = Said.NOT_NECESSARY_IN_FIRST if in_first else Said.NOT_NECESSARY
         equal = (said(Said.STABLE_WITH_EQUALITY),) if claim.relation in _STRICT and example.at_equality else ()
-        return _told(result, FAILS, said(code), *equal, *for_exponential, example=example)
+        return _told(result, Outcome.FAILS, said(code), *equal, *for_exponential, example=example)
     if never:
         told = with_theorem(verdict.word, verdict.theorems)
-        return _told(result, UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS))
+        return _told(
+            result, Outcome.UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS)
+        )
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
     partly = next((one for one in needs if one.but_borders), exponential)
     if partly is not None:
-        return _told(result, BORDERS, partly.because, said(Said.UNSTABLE_INSIDE), *for_exponential)
-    return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *for_exponential, _tried(tried, Said.NONE_STABLE))
+        return _told(result, Outcome.BORDERS, partly.because, said(Said.UNSTABLE_INSIDE), *for_exponential)
+    return _told(
+        result,
+        Outcome.UNDECIDED,
+        said(Said.NOT_PROVED_NECESSARY),
+        *for_exponential,
+        _tried(tried, Said.NONE_STABLE),
+    )
 
 
 def _need(region: Region, claim: Claim) -> Need:
@@ -188,13 +196,13 @@ def _but_for_equality(
     if example is not None:
         also = Said.STABLE_IN_FIRST_WITH_EQUALITY if example.word in IN_FIRST else Said.STABLE_WITH_EQUALITY
         found = (said(Said.UNSTABLE_BEYOND), *further, said(also))
-        return _told(result, BORDERS, need.because, *found, example=example)
+        return _told(result, Outcome.BORDERS, need.because, *found, example=example)
     region = Region(derived, claim, own=False)
     singular = region.makes_stiffness_singular(wanted_of(region, claim).polynomial)
     if singular and derived.balance.exactly_linear:
-        return _told(result, EXACT, need.because, said(Said.UNSTABLE_BEYOND), said(Said.GROWS_WITH_EQUALITY))
+        return _told(result, Outcome.EXACT, need.because, said(Said.UNSTABLE_BEYOND), said(Said.GROWS_WITH_EQUALITY))
     last = said(Said.GROWTH_LEAVES_OPEN if singular else Said.EQUALITY_OPEN)
-    return _told(result, BORDERS, need.because, said(Said.UNSTABLE_BEYOND), *further, last)
+    return _told(result, Outcome.BORDERS, need.because, said(Said.UNSTABLE_BEYOND), *further, last)
 
 
 def _apart(
@@ -213,9 +221,9 @@ def _apart(
         what, _ = _found_among(region, wanted, ("sufficient",))
         because = () if what is None else (what,)
         if derived.balance.exactly_linear:
-            return _told(result, EXACT, *because, said(Said.GROWS_WITH_EQUALITY))
-        return _told(result, UNDECIDED, *because, *further, said(Said.GROWTH_LEAVES_OPEN))
-    return _told(result, UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *further, _tried(tried, Said.NONE_STABLE))
+            return _told(result, Outcome.EXACT, *because, said(Said.GROWS_WITH_EQUALITY))
+        return _told(result, Outcome.UNDECIDED, *because, *further, said(Said.GROWTH_LEAVES_OPEN))
+    return _told(result, Outcome.UNDECIDED, said(Said.NOT_PROVED_NECESSARY), *further, _tried(tried, Said.NONE_STABLE))
 
 
 def _tried(tried: Tried, code: Said) -> Remark:
@@ -271,9 +279,9 @@ def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimRes
         ),
     ):
         if is_certain(signs, wanted):
-            return _told(result, EXACT, said(Said.FOLLOWS_FROM_SIGNS, what))
+            return _told(result, Outcome.EXACT, said(Said.FOLLOWS_FROM_SIGNS, what))
         if is_certain(signs, wanted.negated()):
-            return _told(result, FAILS, said(Said.NEVER_HOLDS, what))
+            return _told(result, Outcome.FAILS, said(Said.NEVER_HOLDS, what))
     return None
 
 
@@ -286,9 +294,9 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
     if what is None:
         return None
     if not equality:
-        return _told(result, EXACT, what)
+        return _told(result, Outcome.EXACT, what)
     needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).counted is Word.UNSTABLE
-    outcome = EXACT if needed else BORDERS
+    outcome = Outcome.EXACT if needed else Outcome.BORDERS
     label, whose, note = what.data
     assert isinstance(note, str)
     return _told(
@@ -328,16 +336,18 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
     always = derived.stability.verdict
     if always.stable:  # nothing can refute it, and where other angles were judged nothing could be tried
         each = (trivial(region, wanted_of(region, claim), result) for region in forms(derived, claim))
-        never = next((one for one in each if one is not None and one.outcome == FAILS), None)
-        return never or _told(result, EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorems)))
+        never = next((one for one in each if one is not None and one.outcome == Outcome.FAILS), None)
+        return never or _told(
+            result, Outcome.EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorems))
+        )
     tried = _refuting(derived, claim)
     if tried.found is not None:
-        return _told(result, FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
+        return _told(result, Outcome.FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
     open_words: tuple[Remark, ...] = ()
     for region in forms(derived, claim):
         conditions = [piece for one in together for piece in pieces_of(region, one)]
         known = trivial(region, wanted_of(region, claim), result)
-        if known is not None and known.outcome == FAILS:
+        if known is not None and known.outcome == Outcome.FAILS:
             return known
         strict = [replace(one, relation=">") if one.relation == ">=" else one for one in conditions]
         for bodies in (False, True):
@@ -346,7 +356,11 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             note = _BODIES if bodies else ""
             found = region.verdict(conditions, bodies)
             if found.stable:
-                return _told(result, EXACT, said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorems)))
+                return _told(
+                    result,
+                    Outcome.EXACT,
+                    said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorems)),
+                )
             if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 open_words = (said(Said.FIRST_WITH_IT, number),)
             inner = region.verdict(strict, bodies) if strict != conditions else found
@@ -356,16 +370,18 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                 if borders is not None:
                     whole = weakest([inner, *borders])
                     return _told(
-                        result, EXACT, said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorems))
+                        result,
+                        Outcome.EXACT,
+                        said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorems)),
                     )
                 inside = said(Said.WITH_IT, number, joined((*filter(None, (note, _BUT_EQUALITY)), ","), ""), told)
-                return _told(result, UNDECIDED, inside, _with_equality(derived, claim))
+                return _told(result, Outcome.UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)
     if by_integrals is not None:
         told = with_theorem(by_integrals.word, by_integrals.theorems)
-        return _told(result, EXACT, said(Said.WITH_IT, number, "", told))
+        return _told(result, Outcome.EXACT, said(Said.WITH_IT, number, "", told))
     remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
-    return _told(result, UNDECIDED, *remarks)
+    return _told(result, Outcome.UNDECIDED, *remarks)
 
 
 def _on_borders(region: Region, conditions: Sequence[Inequality]) -> list[Verdict] | None:

@@ -35,16 +35,7 @@ from mbsym.problems.claims.equations import NOTHING, power_of
 from mbsym.problems.claims.integrals import TOO_FEW_STATES, of_positions
 from mbsym.problems.claims.numbers import examined_number
 from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
-from mbsym.problems.claims.result import (
-    EXACT,
-    FAILS,
-    NUMERICAL,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-    in_parameters,
-    scene_of_claims,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.constraints.integrals import STATES, AlongMotion
 from mbsym.problems.constraints.result import Constraints
@@ -73,13 +64,13 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     symbols, ring = Symbols.of(derived), derived.ring
     claimed = symbols.polynomial(scene_of_claims(derived), claim)
     if claim.kind == "first integral":
-        return _integral(derived, ClaimResult(claim, about, EXACT, Formula(ring, claimed)))
+        return _integral(derived, ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed)))
     if claim.kind == "acceleration":
         own = derived.form.accelerations.get(claim.of)
         own = ring.generator("velocity", claim.of) if own is None else own
-        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(ring, own - claimed)))
+        return _equation(derived, ClaimResult(claim, about, Outcome.EXACT, Formula(ring, own - claimed)))
     if claim.kind == "equation of motion":
-        return _equation(derived, ClaimResult(claim, about, EXACT, Formula(ring, claimed)))
+        return _equation(derived, ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed)))
     if claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")):
         return examined_formula(derived, claim, about, symbols, claimed, of_first_approximation(derived, claim))
     if derived.system.speeds:
@@ -119,7 +110,7 @@ def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
         form.vanishes(x) is True for x in along.along_speeds([ring.derivative(claimed, u.name) for u in form.speeds])
     ):
         remark = "with the velocities that the constraints allow it contains none"
-        return replace(result, outcome=FAILS, remark=remark)
+        return replace(result, outcome=Outcome.FAILS, remark=remark)
     known = [item.formula.polynomial for item in _integrals(derived) if item.status is Certainty.PROVED]
     if any(along.vanishes(claimed - one) for one in known):
         return result
@@ -140,7 +131,7 @@ def _equation(derived: Derived, result: ClaimResult) -> ClaimResult:
     claimed = _polynomial(derived, result)
     x = along.in_motion(claimed)
     if ring.vanishes(claimed):
-        return replace(result, outcome=UNDECIDED, remark=NOTHING)
+        return replace(result, outcome=Outcome.UNDECIDED, remark=NOTHING)
     equation = result.claim.kind == "equation of motion"
     what = "the claimed expression" if equation else "derived - claimed"
     found = _vanishing(derived, along, result, x, what)
@@ -162,16 +153,16 @@ def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Pol
     wrong = next(((one, value) for one, value in found if is_certain(value)), None)
     if wrong is not None and not derived.system.relations:
         with ctx.workprec(PRECISION):
-            return replace(result, outcome=FAILS, counterexample=_example(derived, *wrong, what))
+            return replace(result, outcome=Outcome.FAILS, counterexample=_example(derived, *wrong, what))
     linear = power_of(ring, x, [u.rate_index for u in derived.form.speeds]) <= 1
     if wrong is None and linear and along.proves_zero(x):
         return result
     if wrong is not None:
         remark = "it does not vanish for all parameters; whether it does on their relations is not decided here"
-        return replace(result, outcome=UNDECIDED, remark=remark)
+        return replace(result, outcome=Outcome.UNDECIDED, remark=remark)
     if len(found) < STATES or ring.kinked:
-        return replace(result, outcome=UNDECIDED, remark=TOO_FEW_STATES)
-    return replace(result, outcome=NUMERICAL, remark="at exact states on the constraints")
+        return replace(result, outcome=Outcome.UNDECIDED, remark=TOO_FEW_STATES)
+    return replace(result, outcome=Outcome.NUMERICAL, remark="at exact states on the constraints")
 
 
 def _example(derived: Derived, one: OnManifold, value: Any, what: str) -> Counterexample:
@@ -190,9 +181,11 @@ def _on_constraints(derived: Derived, found: ClaimResult, difference: Polynomial
     along = _along(derived)
     left = along.restricted(difference)
     if derived.form.vanishes(left) is True:
-        return ClaimResult(found.claim, found.title, EXACT, found.derived, remark=ON_CONSTRAINTS)
+        return ClaimResult(found.claim, found.title, Outcome.EXACT, found.derived, remark=ON_CONSTRAINTS)
     if along.vanishes_at_states(left) and not derived.ring.kinked:
-        return ClaimResult(found.claim, found.title, NUMERICAL, found.derived, remark="at states on the constraints")
+        return ClaimResult(
+            found.claim, found.title, Outcome.NUMERICAL, found.derived, remark="at states on the constraints"
+        )
     return found
 
 

@@ -24,27 +24,11 @@ from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
-from mbsym.problems.claims.result import (
-    ALONG,
-    DIFFERS,
-    EXACT,
-    FACTOR,
-    NUMERICAL,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-    by_place,
-    in_parameters,
-    on_relations,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, by_place, in_parameters, on_relations
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds import speeds
-from mbsym.problems.in_speeds.speeds import SpeedEquations
-from mbsym.problems.integrals import residual
 
 #: States at which an expression must vanish before a proof is tried; coupled equations, and powers of accelerations,
 #: beyond which none is.
@@ -69,21 +53,15 @@ class Dynamics:
 
     @staticmethod
     def of(derived: Derived) -> Dynamics:
-        """Those of a tree, in declared parameters."""
-        ring, names = derived.ring, derived.system.coordinates
-        places = tuple(ring.index("acceleration", name) for name in names)
-        made = [residual(derived.scene, derived.equations, i) for i in range(len(names))]
-        return Dynamics(ring, names, places, tuple(in_parameters(derived, x) for x in made))
-
-    @staticmethod
-    def in_speeds(form: SpeedForm, equations: SpeedEquations) -> Dynamics:
-        """M u' - f = 0 and s' - g = 0, without those s' that are speeds themselves."""
-        ring, own = form.ring, {u.index for u in form.speeds}
+        """Of a tree M u' - f = 0, and s' - g = 0 of those s' that are no speeds themselves; in declared parameters."""
+        form, ring = derived.form, derived.ring
+        own = {u.index for u in form.speeds}
         kept = [s for s in form.positions if s.rate_index not in own]
-        rows = [speeds.residual(equations, r) for r, _ in enumerate(form.speeds)]
+        rows = [x.polynomial for x in derived.equations.equalities(derived.system.coordinates)]
         rows += [ring.context.gen(s.rate_index) - form.rates[s.name] for s in kept]
         names = (*(without_velocity(u.name) for u in form.speeds), *(s.name for s in kept))
-        return Dynamics(ring, names, tuple(x.rate_index for x in (*form.speeds, *kept)), tuple(rows))
+        places = tuple(x.rate_index for x in (*form.speeds, *kept))
+        return Dynamics(ring, names, places, tuple(in_parameters(derived, x) for x in rows))
 
     def combination(self, x: Polynomial) -> Combination:
         """x, linear in a, against c^T L.  Raises NoClosedForm where too many equations are coupled."""
@@ -252,14 +230,18 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
     ring, claim = derived.ring, found.claim
     x = in_parameters(derived, claimed)
     if ring.is_zero(x) or ring.is_zero(on_relations(derived, claim, x)):
-        return ClaimResult(claim, found.title, UNDECIDED, found.derived, remark=NOTHING)
-    if found.outcome == FACTOR and found.factor is not None and _has_accelerations(derived, found.factor.polynomial):
-        found = replace(found, outcome=DIFFERS)
-    if found.holds and found.outcome != NUMERICAL:
+        return ClaimResult(claim, found.title, Outcome.UNDECIDED, found.derived, remark=NOTHING)
+    if (
+        found.outcome == Outcome.FACTOR
+        and found.factor is not None
+        and _has_accelerations(derived, found.factor.polynomial)
+    ):
+        found = replace(found, outcome=Outcome.DIFFERS)
+    if found.holds and found.outcome != Outcome.NUMERICAL:
         return found
     refuted = _refuted_at_states(derived, x)
     if refuted and power_of(ring, x, _places(derived)) > 1:
-        return found if found.refuted else replace(found, outcome=DIFFERS)
+        return found if found.refuted else replace(found, outcome=Outcome.DIFFERS)
 
     def verdict(left: Polynomial) -> tuple[str, str]:
         return decided(derived, on_relations(derived, claim, left))
@@ -268,19 +250,23 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
     try:
         (outcome, where), made = along_motion(dynamics, x, verdict)
     except Failure:
-        outcome, where = (DIFFERS if refuted else NUMERICAL), ""
+        outcome, where = (Outcome.DIFFERS if refuted else Outcome.NUMERICAL), ""
     plain = replace(found, factor=None, difference=None, parts=(), remark="", where=where)
-    if outcome in (EXACT, NUMERICAL) and not refuted:
+    if outcome in (Outcome.EXACT, Outcome.NUMERICAL) and not refuted:
         remark = NOT_LINEAR
         if made is not None:
             remark = made.words(dynamics, derived, claim.of)
         elif power_of(ring, x, _places(derived)) <= 1:
             remark = "at states, with the accelerations of the motion put in"
-        return replace(plain, outcome=ALONG if outcome == EXACT else NUMERICAL, remark=remark)
-    if outcome == UNDECIDED and not refuted:
-        return replace(plain, outcome=UNDECIDED, remark="whether it vanishes on every motion is not decided")
+        return replace(
+            plain,
+            outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL,
+            remark=remark,
+        )
+    if outcome == Outcome.UNDECIDED and not refuted:
+        return replace(plain, outcome=Outcome.UNDECIDED, remark="whether it vanishes on every motion is not decided")
     if not found.refuted:  # undecided as a multiple; refuted as what it is
-        found = replace(found, outcome=DIFFERS)
+        found = replace(found, outcome=Outcome.DIFFERS)
     return _closest(derived, found, symbols, x, dynamics, made)
 
 

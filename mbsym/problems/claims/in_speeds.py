@@ -8,7 +8,6 @@ in coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import cast
 
@@ -16,30 +15,17 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
-from mbsym.formulas.formula import Formula, Matrix, column
+from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import examined_formula
 from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
-from mbsym.problems.claims.integrals import of_positions
+from mbsym.problems.claims.integrals import of_positions, substituted
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
-from mbsym.problems.claims.result import (
-    ALONG,
-    DIFFERS,
-    EXACT,
-    FACTOR,
-    FAILS,
-    RELATIONS,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-    in_parameters,
-    scene_of_claims,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds import speeds
 from mbsym.problems.in_speeds.speed_integrals import Field
 from mbsym.problems.in_speeds.speeds import SpeedEquations
 
@@ -55,8 +41,7 @@ _QUANTITIES = (
 
 def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim.  Raises NoClosedForm where it is about something that is not derived in speeds."""
-    form = derived.speed_form
-    assert form is not None
+    form = derived.form
     if claim.right is not None:
         return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
     if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):
@@ -66,7 +51,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.kind == "first integral":
         return _integral(derived, form, claim, about, claimed)
     truth = in_parameters(derived, _derived(derived, form, claim))
-    result = ClaimResult(claim, about, EXACT, Formula(form.ring, truth))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(form.ring, truth))
     images = relations(derived.parameters_scene)
     difference = form.ring.reduce(claimed - truth)
     known = form.vanishes(difference)
@@ -74,16 +59,16 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return result
     if claim.kind == "equation of motion":
         if form.vanishes(form.ring.substitute(claimed, images)) is True:
-            return replace(result, outcome=UNDECIDED, remark=NOTHING)
+            return replace(result, outcome=Outcome.UNDECIDED, remark=NOTHING)
         factor = _factor(form, claimed, truth)
         if factor is not None:
-            return replace(result, outcome=FACTOR, factor=Formula(form.ring, factor))
+            return replace(result, outcome=Outcome.FACTOR, factor=Formula(form.ring, factor))
     if images:
         difference = form.ring.substitute(difference, images)
         known = form.vanishes(difference)
         if known is True:
-            return replace(result, outcome=RELATIONS)
-    outcome = UNDECIDED if known is None else DIFFERS
+            return replace(result, outcome=Outcome.RELATIONS)
+    outcome = Outcome.UNDECIDED if known is None else Outcome.DIFFERS
     result = replace(result, outcome=outcome, difference=Formula(form.ring, difference))
     return _along(derived, form, result, claimed) if claim.kind == "equation of motion" else result
 
@@ -91,30 +76,30 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polynomial) -> ClaimResult:
     """A claimed equation that is no multiple of the own one: a combination of all, or what it differs by from one."""
     ring, images = form.ring, relations(derived.parameters_scene)
-    dynamics = Dynamics.in_speeds(form, cast(SpeedEquations, derived.equations))
+    dynamics = Dynamics.of(derived)
 
     def verdict(left: Polynomial) -> tuple[str, str]:
         known = form.vanishes(ring.substitute(left, images) if images else left)
-        return UNDECIDED if known is None else EXACT if known else DIFFERS, ""
+        return Outcome.UNDECIDED if known is None else Outcome.EXACT if known else Outcome.DIFFERS, ""
 
     try:
         (outcome, _), made = along_motion(dynamics, claimed, verdict)
     except Failure:
         remark = "whether it vanishes on every motion is not decided: the equations are too long"
-        return replace(found, outcome=UNDECIDED, difference=None, remark=remark)
+        return replace(found, outcome=Outcome.UNDECIDED, difference=None, remark=remark)
     plain = replace(found, outcome=outcome, difference=None)
-    if outcome == EXACT:
+    if outcome == Outcome.EXACT:
         remark = NOT_LINEAR if made is None else made.words(dynamics, derived, without_velocity(found.claim.of))
-        return replace(plain, outcome=ALONG, remark=remark)
-    if outcome == UNDECIDED:
+        return replace(plain, outcome=Outcome.ALONG, remark=remark)
+    if outcome == Outcome.UNDECIDED:
         return replace(plain, remark="whether it vanishes on every motion is not decided")
     if made is not None and made.coefficients and found.difference is not None:
         whole = made.equation(dynamics)
         rest = form.shortened(ring.reduce(claimed - whole))
         if not ring.vanishes(rest) and len(rest) < len(found.difference.polynomial):
             told = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
-            return replace(told, outcome=DIFFERS, remark=SAME_ACCELERATIONS)
-    return replace(found, outcome=DIFFERS)
+            return replace(told, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
+    return replace(found, outcome=Outcome.DIFFERS)
 
 
 def _linear(derived: Derived, claim: Claim, about: str) -> ClaimResult:
@@ -136,10 +121,9 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
         for position in form.positions:
             if position.name == claim.of and claim.of in derived.system.variables:
                 return form.ring.context.gen(position.rate_index) - form.rates[claim.of]
-        return speeds.residual(equations, _speed(form, claim.of))
+        return equations.equality(_speed(form, claim.of)).polynomial
     if claim.kind == "acceleration":
-        dynamics = Dynamics.in_speeds(form, equations)
-        top, bottom = dynamics.solved(_speed(form, claim.of))
+        top, bottom = Dynamics.of(derived).solved(_speed(form, claim.of))
         return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
     raise NoClosedForm(Message("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind)))
 
@@ -167,27 +151,20 @@ def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomi
 
 def _integral(derived: Derived, form: SpeedForm, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
     ring, equations = form.ring, cast(SpeedEquations, derived.equations)
-    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, [u.name for u in form.speeds]):
         return of_positions(form, result, claimed)
     images = relations(derived.parameters_scene)
     field = Field(form, equations)
-    outcome, known = EXACT, field.keeps(claimed)
+    outcome, known = Outcome.EXACT, field.keeps(claimed)
     if known is not True and images:
-        outcome, claimed = RELATIONS, ring.substitute(claimed, images)
-        field = Field(form, _substituted(equations, images))
+        outcome, claimed = Outcome.RELATIONS, ring.substitute(claimed, images)
+        field = Field(form, substituted(ring, equations, images))
         known = field.keeps(claimed)
     if known is True:
         slopes = [ring.derivative(claimed, u.name) for u in form.speeds]
         if all(form.vanishes(slope) is True for slope in slopes):
-            return replace(result, outcome=FAILS, remark="it is a constant, whatever the motion")
+            return replace(result, outcome=Outcome.FAILS, remark="it is a constant, whatever the motion")
         return replace(result, outcome=outcome)
     rate = field.rate_in_lowest_terms(claimed)
-    return replace(result, outcome=UNDECIDED if known is None else FAILS, difference=rate)
-
-
-def _substituted(equations: SpeedEquations, images: Mapping[int, Polynomial]) -> SpeedEquations:
-    ring = equations.forcing[0].ring
-    mass = [[ring.substitute(x, images) for x in row] for row in equations.mass_matrix.polynomials]
-    forcing = [ring.substitute(x.polynomial, images) for x in equations.forcing]
-    return replace(equations, mass_matrix=Matrix.of(ring, mass), forcing=column(ring, forcing))
+    return replace(result, outcome=Outcome.UNDECIDED if known is None else Outcome.FAILS, difference=rate)

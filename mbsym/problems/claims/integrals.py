@@ -20,16 +20,7 @@ from mbsym.problems.claims.counterexample import (
     against_constancy,
     rate_at_states,
 )
-from mbsym.problems.claims.result import (
-    DIFFERS,
-    EXACT,
-    FAILS,
-    NUMERICAL,
-    RELATIONS,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restriction, signs_under_roots
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
@@ -45,26 +36,26 @@ def of_positions(form: SpeedForm, result: ClaimResult, claimed: Polynomial) -> C
     if form.ring.dependencies(claimed, vectors) and form.vanishes(form.rate(claimed)) is True:
         what = Message("unit vectors") if form.by_vectors else Message("quaternion")
         return replace(result, remark=Message("of the [[what]] alone: it is known beforehand", what=what))
-    return replace(result, outcome=FAILS, remark="it contains no velocity")
+    return replace(result, outcome=Outcome.FAILS, remark="it contains no velocity")
 
 
 def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polynomial) -> ClaimResult:
     """dI/dt = 0 on the equations of motion, as they stand or with the relations between parameters used."""
     scene, ring, equations = derived.scene, derived.ring, derived.equations
-    result = ClaimResult(claim, about, EXACT, Formula(ring, claimed))
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed))
     if not ring.dependencies(claimed, derived.system.velocities):
         light = (row for row in equations.mass_matrix if all(ring.vanishes(x.polynomial) for x in row))
         if any(True for _ in light) and ring.dependencies(claimed, derived.system.coordinates):
-            return replace(result, outcome=UNDECIDED, remark=WITHOUT_INERTIA)
+            return replace(result, outcome=Outcome.UNDECIDED, remark=WITHOUT_INERTIA)
         return of_positions(derived.form, result, claimed)
-    outcome = EXACT
-    for outcome in (EXACT, RELATIONS):
-        if outcome == RELATIONS:
+    outcome = Outcome.EXACT
+    for outcome in (Outcome.EXACT, Outcome.RELATIONS):
+        if outcome == Outcome.RELATIONS:
             images = relations(derived.parameters_scene)
             if not images:
                 break
             claimed = ring.substitute(claimed, images)
-            equations = _substituted(ring, equations, images)
+            equations = substituted(ring, equations, images)
         conserved = is_conserved(scene, equations, claimed)
         if conserved:
             constant = _constant_where(derived, claimed)
@@ -72,12 +63,12 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
                 told = Message("it is a constant, whatever the motion")
                 if constant:
                     told = Message("it is a constant [[where]], whatever the motion", where=constant)
-                return replace(result, outcome=FAILS, remark=told)
+                return replace(result, outcome=Outcome.FAILS, remark=told)
             if is_proved(scene, equations, claimed):
                 return replace(result, outcome=outcome)
             found, where = _conserved_where(derived, equations, claimed)
-            if found != DIFFERS:
-                return replace(result, outcome=outcome if found == EXACT else found, where=where)
+            if found != Outcome.DIFFERS:
+                return replace(result, outcome=outcome if found == Outcome.EXACT else found, where=where)
     rate = total_rate(scene, claimed)
     difference = _rate_of(derived, equations, claimed)
     if difference is None:
@@ -93,9 +84,9 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
         return replace(result, outcome=outcome)
     example = against_constancy(derived.system, ring, derived.programs, rate, used)
     if example is None and conserved is None:
-        return replace(result, outcome=UNDECIDED, difference=difference, remark=TOO_FEW_STATES)
+        return replace(result, outcome=Outcome.UNDECIDED, difference=difference, remark=TOO_FEW_STATES)
     remark = "" if difference is not None else "dI/dt does not vanish on the equations of motion"
-    return replace(result, outcome=FAILS, difference=difference, remark=remark, counterexample=example)
+    return replace(result, outcome=Outcome.FAILS, difference=difference, remark=remark, counterexample=example)
 
 
 def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial) -> tuple[str, str]:
@@ -104,7 +95,7 @@ def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial
     found = rate_on_motion(scene, equations, claimed)
     if found is not None:
         outcome, where = decided(derived, found[0])
-        if outcome != UNDECIDED:
+        if outcome != Outcome.UNDECIDED:
             return outcome, where
     rate = total_rate(scene, claimed)
     parts = [rate, *(x.polynomial for row in equations.mass_matrix for x in row)]
@@ -115,8 +106,8 @@ def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial
         positive = [name for name in unknown if name not in negative]
         states = rate_at_states(derived.system, ring, derived.programs, rate, negative, positive)
         if any(not value.contains(0) for _, value in states):
-            return (NUMERICAL, restriction(unknown, len(unknown) == 1)) if negative else (DIFFERS, "")
-    return NUMERICAL, "" if len(unknown) <= MOST_SIGNS else restriction(unknown, False)
+            return (Outcome.NUMERICAL, restriction(unknown, len(unknown) == 1)) if negative else (Outcome.DIFFERS, "")
+    return Outcome.NUMERICAL, "" if len(unknown) <= MOST_SIGNS else restriction(unknown, False)
 
 
 def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
@@ -127,7 +118,7 @@ def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
     ring = derived.ring
     slopes = [ring.velocity_derivative(claimed, name) for name in derived.system.coordinates]
     found = [decided(derived, slope) for slope in slopes]
-    if any(outcome not in (EXACT, NUMERICAL) for outcome, _ in found):
+    if any(outcome not in (Outcome.EXACT, Outcome.NUMERICAL) for outcome, _ in found):
         return None
     where = next((where for _, where in found if where), "")
     return Message("for [[positive]]", positive=where.gaps["positive"]) if isinstance(where, Message) else ""
@@ -175,7 +166,7 @@ def _holds(ring: Ring, x: Polynomial, index: int) -> bool:
     return any(argument is not None and _holds(ring, argument, index) for argument in inner)
 
 
-def _substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
+def substituted(ring: Ring, equations: Equations, images: Mapping[int, Polynomial]) -> Equations:
     def moved(x: Formula) -> Polynomial:
         return ring.substitute(x.polynomial, images)
 

@@ -26,16 +26,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, rational
 from mbsym.problems.claims.comparison import over_common_denominator
-from mbsym.problems.claims.result import (
-    DIFFERS,
-    EXACT,
-    FACTOR,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-    in_parameters,
-    on_relations,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, on_relations
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.normal_forms.result import Focus, InSymbols
 
@@ -66,23 +57,23 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         )
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
     claimed, known = on_relations(derived, claim, claimed), on_relations(derived, claim, truth.polynomial)
-    result = ClaimResult(claim, about, EXACT, truth)
+    result = ClaimResult(claim, about, Outcome.EXACT, truth)
     difference = ring.reduce(claimed - known)
     if ring.is_zero(difference):
         return result
     result = replace(result, difference=Formula(ring, difference))
     if ring.is_zero(claimed) or ring.is_zero(known):
-        return replace(result, outcome=DIFFERS)
+        return replace(result, outcome=Outcome.DIFFERS)
     quotient = _Quotient.of(ring, claimed, known)
     left = quotient.without([ring.fraction(one.polynomial)[0] for one in nonzero])
     sign = derived.signs.sign(quotient.product)
     agrees = left.is_monomial and derived.signs.never_zero(left.product)
     if agrees and (claim.kind == DETERMINANT or sign == "positive"):
-        return replace(result, outcome=FACTOR, factor=quotient.formula, difference=None)
+        return replace(result, outcome=Outcome.FACTOR, factor=quotient.formula, difference=None)
     if claim.kind == COEFFICIENT and sign == "negative":
-        return replace(result, outcome=DIFFERS, remark="its sign is the opposite one")
+        return replace(result, outcome=Outcome.DIFFERS, remark="its sign is the opposite one")
     remark = _contrary(derived, claim, left if claim.kind == DETERMINANT else quotient, positive)
-    return replace(result, outcome=DIFFERS if remark else UNDECIDED, remark=remark or _ANOTHER)
+    return replace(result, outcome=Outcome.DIFFERS if remark else Outcome.UNDECIDED, remark=remark or _ANOTHER)
 
 
 def _contrary(derived: Derived, claim: Claim, quotient: _Quotient, positive: Sequence[Formula]) -> str:

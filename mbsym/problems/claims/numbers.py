@@ -26,16 +26,7 @@ from mbsym.model.claims import Claim
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.problems.claims.counterexample import DIGITS_SHOWN, PRECISION, follow, shown
 from mbsym.problems.claims.quantities import derived_quantity
-from mbsym.problems.claims.result import (
-    DIFFERS,
-    DIGITS,
-    DOUBLES,
-    NUMERICAL,
-    TOLERANCE,
-    UNDECIDED,
-    ClaimResult,
-    Derived,
-)
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.claims.signs_under_roots import ROUNDING
 from mbsym.problems.claims.symbols import Symbols
 
@@ -61,7 +52,10 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         if result is not None:
             return result
     return ClaimResult(
-        claim, about, UNDECIDED, remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1])
+        claim,
+        about,
+        Outcome.UNDECIDED,
+        remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1]),
     )
 
 
@@ -74,23 +68,25 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
     for what, number in ((Message("the value"), value), (Message("the claimed value"), printed)):
         if not number.is_finite():
             return (
-                ClaimResult(claim, about, UNDECIDED, remark=Message("[[what]] is not finite", what=what))
+                ClaimResult(claim, about, Outcome.UNDECIDED, remark=Message("[[what]] is not finite", what=what))
                 if last
                 else None
             )
     digits, unit = _printed(claim.printed) if claim.printed else (0, fmpq(0))
-    result = ClaimResult(claim, about, DIGITS, value=shown(value, max(DIGITS_SHOWN, digits + MORE_DIGITS)))
+    result = ClaimResult(claim, about, Outcome.DIGITS, value=shown(value, max(DIGITS_SHOWN, digits + MORE_DIGITS)))
     error = abs(printed - value)
     if claim.tolerance is not None or claim.digits:
         return _within(claim, result, printed, error)
     if not unit:  # an expression, or a bare zero
         if not error.contains(0):
-            return replace(result, outcome=DIFFERS)
+            return replace(result, outcome=Outcome.DIFFERS)
         # Where the value itself cannot be told from zero, there is nothing that it could be compared with.
         size = 1 + abs(value) if last or claim.printed else value.abs_lower()
         if error.rad() > ROUNDING * size:
             return None
-        return replace(result, printed_digits=1, digits=1) if claim.printed else replace(result, outcome=NUMERICAL)
+        return (
+            replace(result, printed_digits=1, digits=1) if claim.printed else replace(result, outcome=Outcome.NUMERICAL)
+        )
     tolerance = arb(unit) / 2
     if _is_below(error, tolerance):
         return replace(result, printed_digits=digits, digits=digits)
@@ -98,9 +94,9 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
         return None
     right = _agreeing(error, value, digits)
     if digits in DIGITS_OF_DOUBLES and error < _rounding_of_doubles(derived, claim, value):
-        found = replace(result, outcome=DOUBLES)
+        found = replace(result, outcome=Outcome.DOUBLES)
         return found if value.contains(0) else replace(found, printed_digits=digits, digits=right)
-    return replace(result, outcome=DIFFERS, printed_digits=digits, digits=right)
+    return replace(result, outcome=Outcome.DIFFERS, printed_digits=digits, digits=right)
 
 
 def _both(derived: Derived, claim: Claim) -> tuple[Any, Any]:
@@ -140,15 +136,17 @@ def _within(claim: Claim, result: ClaimResult, printed: Any, error: Any) -> Clai
     if claim.tolerance is not None:
         tolerance, words = Lowering(Balls({}), {"pi": arb.pi()})(claim.tolerance), text(claim.tolerance)
     elif printed.contains(0):
-        return replace(result, outcome=UNDECIDED, remark="a claimed zero has no significant digits: give a tolerance")
+        return replace(
+            result, outcome=Outcome.UNDECIDED, remark="a claimed zero has no significant digits: give a tolerance"
+        )
     else:
         first = (abs(printed).mid().log() / arb(10).log()).floor().mid()
         tolerance = arb(10) ** (first - claim.digits + 1) / 2
         words = Message("1 digit") if claim.digits == 1 else Message("[[count]] digits", count=claim.digits)
     if _is_below(error, tolerance):
-        return replace(result, outcome=TOLERANCE, remark=words)
+        return replace(result, outcome=Outcome.TOLERANCE, remark=words)
     return (
-        replace(result, outcome=DIFFERS, remark=Message("by more than [[words]]", words=words))
+        replace(result, outcome=Outcome.DIFFERS, remark=Message("by more than [[words]]", words=words))
         if error > tolerance
         else None
     )

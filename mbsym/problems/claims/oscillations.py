@@ -31,7 +31,7 @@ from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Ope
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
-from mbsym.problems.claims.result import DIFFERS, EXACT, SCALED, UNDECIDED, ClaimResult, Derived, in_parameters
+from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters
 from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
@@ -237,20 +237,20 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         raise NoClosedForm("the claimed formula divides by zero") from None
     series = _frequencies(told.found) if claim.kind == FREQUENCY else _series(told, formulas, claim.of_expression)
     truth = series[claim.order]
-    result = ClaimResult(claim, about, EXACT, told.wave(truth))
+    result = ClaimResult(claim, about, Outcome.EXACT, told.wave(truth))
     difference = claimed - truth
     if difference.is_zero:
         return result
     shown = told.wave(difference)
     result = replace(result, difference=shown if shown.terms <= MOST_SHOWN else None)
     if not _surely_nonzero(difference):
-        return replace(result, outcome=UNDECIDED, remark=_NOT_SURE)
+        return replace(result, outcome=Outcome.UNDECIDED, remark=_NOT_SURE)
     if explained(told.found, series, claim.order, claimed):
-        return replace(result, outcome=UNDECIDED, remark=_OTHER_SYMBOLS)
+        return replace(result, outcome=Outcome.UNDECIDED, remark=_OTHER_SYMBOLS)
     factor = _factor(told.found.tower, claimed, truth)
     if factor is not None:
-        return replace(result, outcome=SCALED, factor=told.formula(factor), difference=None)
-    return replace(result, outcome=DIFFERS, remark=_where(difference, told.phase, shown.terms))
+        return replace(result, outcome=Outcome.SCALED, factor=told.formula(factor), difference=None)
+    return replace(result, outcome=Outcome.DIFFERS, remark=_where(difference, told.phase, shown.terms))
 
 
 def _where(difference: Harmonics, phase: str, terms: int) -> str:
@@ -442,7 +442,7 @@ def _factor(tower: Tower, claimed: Harmonics, truth: Harmonics) -> Element | Non
 def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """The coefficient of eps^n of a fast variable on the slow manifold, or of the rate of a slow one there."""
     told = derived.claimed_manifold
-    found, form = told.manifold, derived.speed_form
+    found = told.manifold
     names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
     if claim.of not in names:
         raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
@@ -458,16 +458,19 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if told.transfer.images:
         claimed = ring.substitute(claimed, told.transfer.images)
     difference = ring.reduce(claimed - truth)
-    result = ClaimResult(claim, about, EXACT, Formula(ring, truth))
-    known = None if form is None else form.vanishes(difference)
+    result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, truth))
+    known = derived.form.vanishes(difference)
     if known is True:
         return result
-    if form is None or found.root is not None:  # a square root may be written with squares in it
+    if not derived.system.speeds or found.root is not None:  # a square root may be written with squares in it
         outcome, where = decided(derived, difference)
     else:
-        outcome, where = DIFFERS if known is False else UNDECIDED, ""
+        outcome, where = Outcome.DIFFERS if known is False else Outcome.UNDECIDED, ""
     return replace(
-        result, outcome=outcome, where=where, difference=None if outcome == EXACT else Formula(ring, difference)
+        result,
+        outcome=outcome,
+        where=where,
+        difference=None if outcome == Outcome.EXACT else Formula(ring, difference),
     )
 
 

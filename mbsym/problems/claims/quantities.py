@@ -17,7 +17,6 @@ from mbsym.model.system import INERTIAL
 from mbsym.problems.claims.equations import Dynamics
 from mbsym.problems.claims.result import Derived, by_motion
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.integrals import residual
 
 
 def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
@@ -111,7 +110,8 @@ def _sum(derived: Derived, kind: str) -> Polynomial:
 
 def _equation(derived: Derived, coordinate: str) -> Polynomial:
     """E_i = (M q'' - f)_i."""
-    return residual(derived.scene, derived.equations, derived.system.coordinates.index(coordinate))
+    names = derived.system.coordinates
+    return derived.equations.equality(names.index(coordinate), names).polynomial
 
 
 def _characteristic(derived: Derived, coordinate: str) -> Polynomial:

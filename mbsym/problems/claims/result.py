@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
 from mbsym.algebra.certainty import Certainty
@@ -36,20 +37,26 @@ if TYPE_CHECKING:
     from mbsym.problems.state_space import StateSpace
 
 
-EXACT = "holds exactly"
-RELATIONS = "holds on the relations between the parameters"
-FACTOR = "holds up to a factor"
-ALONG = "holds on every motion"
-BORDERS = "holds but for border cases"
-EQUIVALENT = "holds up to a total time derivative"
-DIGITS = "holds to the digits printed"
-TOLERANCE = "holds within the tolerance"
-DOUBLES = "holds to the rounding of double precision"
-NUMERICAL = Certainty.VERIFIED
-UNDECIDED = Certainty.UNDECIDED
-DIFFERS = "differs"
-SCALED = "differs by a factor"
-FAILS = "does not hold"
+class Outcome(StrEnum):
+    """What became of a claim."""
+
+    EXACT = "holds exactly"
+    RELATIONS = "holds on the relations between the parameters"
+    FACTOR = "holds up to a factor"
+    ALONG = "holds on every motion"
+    BORDERS = "holds but for border cases"
+    EQUIVALENT = "holds up to a total time derivative"
+    DIGITS = "holds to the digits printed"
+    TOLERANCE = "holds within the tolerance"
+    DOUBLES = "holds to the rounding of double precision"
+    NUMERICAL = Certainty.VERIFIED.value
+    UNDECIDED = Certainty.UNDECIDED.value
+    DIFFERS = "differs"
+    SCALED = "differs by a factor"
+    FAILS = "does not hold"
+
+    def __repr__(self) -> str:
+        return repr(self.value)
 
 
 class Derived(Protocol):
@@ -59,8 +66,6 @@ class Derived(Protocol):
     def system(self) -> System: ...
     @property
     def form(self) -> SpeedForm: ...
-    @property
-    def speed_form(self) -> SpeedForm | None: ...
     @property
     def ring(self) -> Ring: ...
     @property
@@ -145,21 +150,21 @@ class ClaimResult:
     @property
     def holds(self) -> bool:
         return self.outcome in (
-            EXACT,
-            RELATIONS,
-            FACTOR,
-            ALONG,
-            BORDERS,
-            EQUIVALENT,
-            DIGITS,
-            TOLERANCE,
-            DOUBLES,
-            NUMERICAL,
+            Outcome.EXACT,
+            Outcome.RELATIONS,
+            Outcome.FACTOR,
+            Outcome.ALONG,
+            Outcome.BORDERS,
+            Outcome.EQUIVALENT,
+            Outcome.DIGITS,
+            Outcome.TOLERANCE,
+            Outcome.DOUBLES,
+            Outcome.NUMERICAL,
         )
 
     @property
     def refuted(self) -> bool:
-        return self.outcome in (DIFFERS, SCALED, FAILS)
+        return self.outcome in (Outcome.DIFFERS, Outcome.SCALED, Outcome.FAILS)
 
 
 #: The title of a claim about an entry: ``mass matrix`` and its indices.
@@ -195,7 +200,7 @@ def title(claim: Claim, system: System) -> Message:
 
 def undecided(system: System, claim: Claim, reason: str) -> ClaimResult:
     """A claim about something that could not be derived."""
-    return ClaimResult(claim, title(claim, system), UNDECIDED, remark=reason)
+    return ClaimResult(claim, title(claim, system), Outcome.UNDECIDED, remark=reason)
 
 
 # Polynomials of a claim in other forms: in declared parameters, on the relations, by products of velocities.

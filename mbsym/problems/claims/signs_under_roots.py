@@ -19,14 +19,14 @@ from mbsym.model.admissibility import number_of
 from mbsym.model.assumptions import broken
 from mbsym.model.system import System
 from mbsym.problems.claims.counterexample import PRECISION
-from mbsym.problems.claims.result import DIFFERS, EXACT, NUMERICAL, UNDECIDED, Derived
+from mbsym.problems.claims.result import Derived, Outcome
 
 #: What is left of a number that is known so well, relatively, is rounding.
 ROUNDING = arb(2) ** -60
 #: Quantities of undeclared sign under roots for which both signs are tried, points with each, and attempts per point.
 MOST_SIGNS, POINTS, ATTEMPTS = 4, 8, 40
 #: The answer that counts where several choices of signs are possible, last.
-_WORST = (EXACT, NUMERICAL, UNDECIDED, DIFFERS)
+_WORST = (Outcome.EXACT, Outcome.NUMERICAL, Outcome.UNDECIDED, Outcome.DIFFERS)
 #: By what is known of a quantity: r sqrt(p) stands for sqrt(r^2 p), or -r sqrt(p).
 _SIGN = {"positive": 1, "nonnegative": 1, "zero": 1, "negative": -1, "nonpositive": -1}
 #: What may stand under a root and have either sign.
@@ -40,12 +40,12 @@ def decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
     """
     ring = derived.ring
     if ring.is_zero(x):
-        return EXACT, ""
+        return Outcome.EXACT, ""
     numerator, _ = ring.fraction(x)
     degrees = numerator.degrees()
     adjoined = [g for k, g in enumerate(ring.generators[: ring.spare]) if degrees[k] > 0]
     if all(g.kind == "root" and g.argument.is_constant() for g in adjoined):
-        return DIFFERS, ""
+        return Outcome.DIFFERS, ""
     known, unknown = signs_under_roots(derived, numerator)
     tried = unknown[:MOST_SIGNS]
     answers = {
@@ -54,14 +54,14 @@ def decided(derived: Derived, x: Polynomial) -> tuple[str, str]:
     }
     found = answers[(1,) * len(tried)]
     if found is None:  # no parameters that are allowed have all these signs
-        found = max((x for x in answers.values() if x), key=_WORST.index, default=UNDECIDED)
-    if found not in (EXACT, NUMERICAL):
+        found = max((x for x in answers.values() if x), key=_WORST.index, default=Outcome.UNDECIDED)
+    if found not in (Outcome.EXACT, Outcome.NUMERICAL):
         return found, ""
-    if all(other in (EXACT, NUMERICAL, None) for other in answers.values()) and tried == unknown:
-        return (NUMERICAL if NUMERICAL in answers.values() else EXACT), ""
+    if all(other in (Outcome.EXACT, Outcome.NUMERICAL, None) for other in answers.values()) and tried == unknown:
+        return (Outcome.NUMERICAL if Outcome.NUMERICAL in answers.values() else Outcome.EXACT), ""
     matters = [k for k, _ in enumerate(tried) if any(answers[p] != answers[_flipped(p, k)] for p in answers)]
     names = [_name(ring, tried[k]) for k in matters] + [_name(ring, k) for k in unknown[MOST_SIGNS:]]
-    return found, restriction(names, len(names) == 1 and DIFFERS in answers.values())
+    return found, restriction(names, len(names) == 1 and Outcome.DIFFERS in answers.values())
 
 
 def _flipped(pattern: tuple[int, ...], place: int) -> tuple[int, ...]:
@@ -123,7 +123,7 @@ def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], trie
     except Failure:
         pass
     if identical and not (tried and derived.system.assumptions):
-        return EXACT
+        return Outcome.EXACT
     source = random.Random(SEED)
     finite, narrow, found = 0, True, 0
     with ctx.workprec(PRECISION):
@@ -132,17 +132,17 @@ def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], trie
             if not _has_signs(ring, signs, values) or not _is_allowed(derived.system, values):
                 continue
             if identical:
-                return EXACT
+                return Outcome.EXACT
             found += 1
             value = ring.evaluate(opened, values)
             if not value.is_finite():
                 continue
             if not value.contains(0):
-                return DIFFERS
+                return Outcome.DIFFERS
             finite, narrow = finite + 1, narrow and value.rad() < ROUNDING
             if finite == POINTS:
-                return NUMERICAL if narrow else UNDECIDED
-    return UNDECIDED if found else None
+                return Outcome.NUMERICAL if narrow else Outcome.UNDECIDED
+    return Outcome.UNDECIDED if found else None
 
 
 def _point(ring: Ring, signs: Mapping[int, int], source: random.Random) -> dict[str, Any]:

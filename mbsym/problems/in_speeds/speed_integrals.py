@@ -36,8 +36,8 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speeds import SpeedEquations, residual
-from mbsym.problems.integrals import ENERGY, Integral, whole_momenta
+from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
 
 GEOMETRIC, NORM, SPEED_MOMENTUM = "unit vectors", "quaternion", "speed momentum"
 
@@ -58,7 +58,7 @@ class Field:
     """The vector field of a system in speeds: s' = g, u' = M^-1 f."""
 
     form: SpeedForm
-    equations: SpeedEquations
+    equations: Equations
 
     @cached_property
     def determinant(self) -> Polynomial:
@@ -80,12 +80,8 @@ class Field:
 
     def combines(self, x: Polynomial, multipliers: Sequence[Polynomial]) -> bool | None:
         """Whether dx/dt = sum mu_r (M u' - f)_r with these multipliers, as polynomials in u', too: no inverse of M."""
-        ring = self.form.ring
-        total = self.form.rate(x)
-        for r, multiplier in enumerate(multipliers):
-            if not ring.vanishes(multiplier):
-                total = total - ring.times(multiplier, residual(self.equations, r))
-        return self.form.vanishes(ring.reduce(total))
+        ring, rows = self.form.ring, [x.polynomial for x in self.equations.equalities(())]
+        return self.form.vanishes(ring.reduce(self.form.rate(x) - ring.dot(multipliers, rows)))
 
     def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
         """dx/dt on the motion."""
@@ -140,23 +136,17 @@ def candidates(
         yield _integral(form, title, "cyclic momentum", name, ring.dot(momenta, along)), along
     with suppress(Failure):
         for kind, axis, formula in whole_momenta(scene):
-            if kind == "angular momentum":
-                title = Message("angular momentum about axis [[axis]]", axis=axis)
-            else:
-                title = Message("linear momentum along axis [[axis]]", axis=axis)
-            yield _integral(form, title, kind, str(axis), formula), ()
+            yield _integral(form, momentum_title(kind, axis), kind, str(axis), formula), ()
     for u, momentum in zip(form.speeds, momenta, strict=True):
         if u.name in form.system.variables:
             yield _integral(form, f"dT/d{u.name}", SPEED_MOMENTUM, u.name, momentum), ()
-    if not isinstance(equations, SpeedEquations):
-        return
     for (name, components), (other, others) in equations.products:
         pairs = [
             (ring.generator("coordinate", a), ring.generator("coordinate", b))
             for a, b in zip(components, others, strict=True)
         ]
         product = sum((ring.times(a, b) for a, b in pairs), ring.zero)
-        if name in equations.quaternions:
+        if any(body.orientation[0].name == name for body in form.by_quaternion):
             yield _integral(form, Message("norm of [[name]]", name=name), NORM, name, product), ()
             continue
         title = (

@@ -1,6 +1,5 @@
-"""Problems 2 and 3 where velocities are variables of their own: speeds u with q' = Y(q) u + y0(q, t).
+"""Problem 3 where velocities are variables of their own: speeds u with q' = Y(q) u + y0(q, t).
 
-    T = 1/2 sum A_rs u_r u_s + sum A_r u_r + A_0,      U as ever
     M u' = f                                            Kane's equations (equally Boltzmann-Hamel)
     s' = g(s, u, t)                                     kinematic equations
 
@@ -9,8 +8,6 @@ Each equation is also kept as it stands in textbooks: what the motion needs = wh
 fixed point
 
     A p' + (C - B) q r = m g (z_0 gamma_2 - y_0 gamma_3).
-
-No speed is said to be cyclic: L need not contain a quasi-coordinate, there is none.
 
 Source: Kane & Levinson, Dynamics: Theory and Applications (1985); Lurie, Analytical Mechanics, ch. 8 (Euler-Poisson).
 """
@@ -22,13 +19,10 @@ from dataclasses import dataclass
 
 from mbsym.algebra.ring import Polynomial
 from mbsym.formulas.formula import Column, Formula, Matrix, column
-from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.loads.kinds import force_function
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.speeds import Quaternion
-from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 
 
@@ -57,9 +51,9 @@ class SpeedEquations(Equations):
     def in_speeds(self) -> bool:
         return True
 
-    def equalities(self, names: Sequence[str]) -> Column:
-        """What the motion needs less what the loads supply, row by row: zero along every motion of the open tree."""
-        return tuple(needed - supplied for needed, supplied in zip(self.needed, self.supplied, strict=True))
+    def equality(self, i: int, names: Sequence[str] = ()) -> Formula:
+        """What the motion needs less what the loads supply: zero along every motion of the open tree."""
+        return self.needed[i] - self.supplied[i]
 
     @property
     def kinematic(self) -> list[tuple[str, Formula]]:
@@ -87,30 +81,6 @@ class SpeedEquations(Equations):
         )
 
 
-@dataclass(frozen=True, repr=False)
-class SpeedEnergy(Energy):
-    """A2 and A1 belong to the ``speeds``, in their order."""
-
-    speeds: tuple[str, ...]
-
-
-def energy(form: SpeedForm, scene: Scene) -> SpeedEnergy:
-    """T, split by powers of the speeds, and U."""
-    ring = form.ring
-    kinetic, potential = form.shortened(kinetic_energy(scene)), form.shortened(force_function(scene))
-    at_rest = {u.index: ring.zero for u in form.speeds}
-    momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
-    return SpeedEnergy(
-        kinetic_energy=Formula(ring, kinetic),
-        A2=Matrix.of(ring, [[ring.derivative(p, u.name) for u in form.speeds] for p in momenta]),
-        A1=column(ring, [ring.substitute(p, at_rest) for p in momenta]),
-        A0=Formula(ring, ring.substitute(kinetic, at_rest)),
-        force_function=Formula(ring, potential),
-        cyclic=(),
-        speeds=tuple(u.name for u in form.speeds),
-    )
-
-
 def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) -> SpeedEquations:
     """Kane's equations as M u' = f, and the kinematic equations.
 
@@ -127,7 +97,7 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
     mass = [[form.shortened(a.derivative(u.rate_index)) for u in form.speeds] for a in needed]
     names = tuple(s.name for s in form.positions)
     occurring = {s.name for s in form.occurring([*needed, *supplied, *rows])}
-    told = [(body.name, one) for body in form.oriented for one in body.orientation if set(one.components) & occurring]
+    oriented = [(body.name, e) for body in form.oriented for e in body.orientation if set(e.components) & occurring]
     return SpeedEquations(
         mass_matrix=Matrix.of(ring, mass),
         forcing=column(ring, forcing),
@@ -138,14 +108,8 @@ def equations(form: SpeedForm, scene: Scene, rows: Sequence[Polynomial] = ()) ->
         rates=column(ring, [form.rates[name] for name in names]),
         needed=column(ring, needed),
         supplied=column(ring, supplied),
-        vectors=tuple((one.name, one.components) for _, one in told),
-        owners=tuple(owner for owner, _ in told),
-        quaternions=tuple(one.name for _, one in told if isinstance(one, Quaternion)),
+        vectors=tuple((e.name, e.components) for _, e in oriented),
+        owners=tuple(owner for owner, _ in oriented),
+        quaternions=tuple(e.name for _, e in oriented if isinstance(e, Quaternion)),
         aside=tuple(name for name in names if name not in occurring),
     )
-
-
-def residual(found: SpeedEquations, r: int) -> Polynomial:
-    """What the r-th equation says to be zero, in (s, u, u', t)."""
-    needed = found.needed[r]
-    return needed.ring.reduce(needed.polynomial - found.supplied[r].polynomial)

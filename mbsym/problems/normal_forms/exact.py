@@ -59,7 +59,9 @@ def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> Num
     """The expansion with ``values`` put in; what has none is a parameter of the tower."""
     environment: dict[str, Any] = {name: tower.element(value) for name, value in values.items()}
     environment |= {name: tower.parameter(name) for name in tower.parameters}
-    carry = Carrier(found.scene.ring, tower, environment)
+    ring = found.scene.ring
+    tower.is_positive = lambda x: ring.is_positive(in_ring(tower, ring, x))
+    carry = Carrier(ring, tower, environment)
     return Numbers(found, carry, tower.reciprocal, tower.zero, tower.one)
 
 

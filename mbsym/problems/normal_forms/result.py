@@ -176,6 +176,9 @@ class NormalForms(Shown):
     first: Word | None = None
     #: What it says for all parameters, where that is one verdict that leaves nothing open.
     everywhere: Word | None = None
+    #: Whether the equations have no terms of higher order at all: for all parameters, and at the given values.
+    linear: bool = False
+    linear_at_values: bool = False
 
     @property
     def terms(self) -> int:

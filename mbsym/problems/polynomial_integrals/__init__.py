@@ -1,7 +1,7 @@
 """Problem 9: polynomial first integrals of equations of motion.
 
-Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials of these (Toda's lattice),
-and sines and cosines of driven phases.
+Variables are speeds and direction cosines, rates, sines and cosines, positions, exponentials (Toda's lattice) and
+square roots of these (Kepler's problem), and sines and cosines of driven phases.
 
 Of  x' = P(x)/d  the polynomials f with  sum_i P_i df/dx_i = 0  (modulo the relations that all states keep) are the
 kernel of a linear map on the monomials of one weighted degree.  The search goes through the weights w from below:

@@ -28,7 +28,7 @@ from typing import Any
 
 from flint import fmpq_mpoly_ctx, nmod_poly
 
-from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField
@@ -69,8 +69,11 @@ TRIALS = 2
 def is_regular_on(field: PolynomialField, f: Any, conditions: Sequence[Any] = ()) -> bool:
     """Whether the field's denominator is not zero at some point with f = 0; it is so at random ones modulo a prime.
 
+    False of products of variables that vanish nowhere.
     ``conditions``: polynomials in the parameters that vanish; those linear in one of them are put in.
     """
+    if field.units.issuperset(field.context.names()[k] for k in occurring([f])):
+        return False
     bottom = field.denominator
     for condition in conditions:
         place = next((k for k in range(len(field.parameters)) if _solvable(condition, k)), None)

@@ -65,7 +65,9 @@ def cases_of(
         return cases(usual, positive, budget)
     larger = _larger(usual, kinds, known)
     if larger is None:
-        raise NoClosedForm("special parameters are looked for where there is one unit vector or angle at most")
+        raise NoClosedForm(
+            "special parameters are looked for where there is one unit vector or angle at most, and no root"
+        )
     name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
     down = _Down(name)
@@ -87,7 +89,7 @@ def along_of(
         return along(usual, low, high)
     larger = _larger(usual, kinds, known)
     if larger is None:
-        raise NoClosedForm("special values are looked for where there is one unit vector or angle at most")
+        raise NoClosedForm("special values are looked for where there is one unit vector or angle at most, and no root")
     found = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     values = [_new_at_one(larger, one, down) for one in found.values]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -172,14 +173,16 @@ class LinearAtRest:
                 if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
                     return undecided(Because.NOT_ENCLOSED)
                 columns = list(range(n))
+                weigh: dict[str, Any] = {}
                 if place.modulus is None:  # balls: what may be 0 divides nothing
+                    weigh = {"weight": _smallness}
                     first = pivot_rows([[float(x.mid()) for x in row[:-1]] for row in table])
                     columns = [*first, *(k for k in columns if k not in first)]
                     table = [table[k] for k in columns]
-                reduced, pivots = echelon(numbers, [[row[k] for k in columns] for row in jacobian], n)
+                reduced, pivots = echelon(numbers, [[row[k] for k in columns] for row in jacobian], n, **weigh)
                 basis = null_vectors(numbers, dict(zip(pivots, reduced, strict=False)), n)
                 pivots, basis = [columns[k] for k in pivots], [[v[columns.index(k)] for k in range(n)] for v in basis]
-                solved, taken = echelon(numbers, table, len(jacobian))
+                solved, taken = echelon(numbers, table, len(jacobian), **weigh)
                 multipliers = dict(zip(taken, (row[-1] for row in solved), strict=False))
                 for k, multiplier in multipliers.items():
                     parts[3] = [
@@ -223,6 +226,13 @@ class LinearAtRest:
         """The rate of a steady spin that may be turned in space, where it is a rational number."""
         residue = None if self.spin is None else place.residue(self.spin)
         return None if residue is None or residue.degree() > 0 else residue[0]
+
+
+def _smallness(x: Any) -> int | None:
+    """How small a ball is, of what may be 0 more than of all others; None of an exact 0."""
+    if x.is_zero():
+        return None
+    return 1 << 20 if x.contains(0) else -math.frexp(float(x.mid()))[1]
 
 
 def linear_at_rest(found: Rest) -> LinearAtRest:

@@ -31,6 +31,9 @@ enclosures).  A theorem is named where all its hypotheses are shown:
   semisimple: stable; a Jordan block there: unstable, like a power of t.  Then no nonlinear system is left open.  A
   drift of bodies along directions on which nothing depends is told apart, as that of cyclic coordinates is.
 
+"But for a drift of cyclic coordinates" is stability with respect to a part of the variables (V. V. Rumyantsev): the
+other coordinates and all velocities.  Where cyclic momenta are constant what is asymptotic is so at given ones.
+
 Displacements that change no equation are cyclic coordinates in every choice of coordinates (two masses on a ring move
 on together); those with constant momenta are ignored after Routh.  A steady spin is judged in angles in which it is
 steady, and the verdict says in which.

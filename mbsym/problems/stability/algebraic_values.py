@@ -10,11 +10,12 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE
 from mbsym.algebra.plane.elements import Element, ElementMatrix
+from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.point_field import SimpleField
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
 from mbsym.expressions.tree import divide, number
@@ -23,6 +24,9 @@ from mbsym.mechanics.motion import determined
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.knowledge import definition_in_parameters
 from mbsym.problems.stability.constant import Constant, constant_of, constant_of_roots
+
+#: Rational numbers lie in every field, as in that of sqrt(2): cos(pi/3) is one.
+RATIONAL = Constant(AlgebraicNumber(fmpz_poly([-2, 0, 1]), fmpq(1), fmpq(2)), {}, "1")
 
 Fractional = tuple[Polynomial, tuple[tuple[Polynomial, int], ...]]
 
@@ -112,7 +116,7 @@ def _point(
     fractions = [put(x) for matrix in matrices for row in matrix for x in row]
     parts = [x for top, bottom in fractions for x in (top, *(factor for factor, _ in bottom))]
     used = sorted(set(occurring(parts)))
-    constant = constant_of(scene.system, whole, used) or constant_of_roots(whole, used)
+    constant = constant_of(scene.system, whole, used) or constant_of_roots(whole, used) if used else RATIONAL
     if constant is None or constant.number.polynomial.degree() > MOST_DEGREE:
         return None
     return AlgebraicPoint(constant, put)

@@ -47,9 +47,20 @@ def enclosed_verdict_with_cyclic(
         return plain
     with ctx.workprec(bits):
         reduced = _ignoring_cyclic(parts, cyclic)
-    if reduced is None:
-        return undecided(Because.CYCLIC_ZERO_ROOTS)
+        if reduced is None:
+            rest = _besides_positions(parts, cyclic)
+            if rest is None or not all(root.real < 0 for root in rest):
+                return undecided(Because.CYCLIC_ZERO_ROOTS)
+            return drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=False)
     return drifting(enclosed_verdict(reduced, conservative, bits, exact))
+
+
+def _besides_positions(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Any] | None:
+    """The roots but one zero for each cyclic coordinate: nothing depends on its position, its column of A is zero."""
+    m, d, g, k, n = parts
+    whole = state_matrix(arb_mat, m, _sum(d, g), _sum(k, n))
+    kept = [i for i in range(whole.nrows()) if i not in cyclic]
+    return spectrum(acb_mat([[whole[i, j] for j in kept] for i in kept]))[0]
 
 
 def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:

@@ -152,7 +152,7 @@ class Stability(Shown):
 
     ``spectra`` are the eigenvalues there, subsystem by subsystem, where the motion exists.  ``presumed``: what has
     to be zero for the motion to exist; all this presumes it.  ``before_higher_order``: the verdict there that was open,
-    where terms of higher order decide it.
+    where terms of higher order decide it.  ``enclosed``: there enclosures decide, no exact numbers.
     """
 
     subsystems: tuple[SubsystemStability, ...]
@@ -161,6 +161,7 @@ class Stability(Shown):
     spectra: tuple[Spectrum, ...] = ()
     presumed: Column = ()
     before_higher_order: Verdict | None = None
+    enclosed: bool = False
 
     @property
     def terms(self) -> int:
@@ -198,19 +199,21 @@ def stability(
     judged = tuple(_judge(scene, part, values, balance) for part in prepared)
     numerical = _motion_at(scene, equilibrium, values) or _solved_at(scene, linear, values)
     spectra: tuple[Spectrum, ...] = ()
+    enclosed = False
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
-        there = (
-            _enclosed(scene, linear, part, values, balance, found.theory, equilibrium)
+        there = [
+            _at_irrational(scene, linear, part, values, balance, found.theory, equilibrium)
             if found.theory.at_point is None
-            else found.theory.at_point.verdict
+            else (found.theory.at_point.verdict, False)
             for part, found in zip(prepared, judged, strict=True)
-        )
-        numerical = combine(there, balance.at(values).law.bounded)
+        ]
+        enclosed = any(by_enclosures for _, by_enclosures in there)
+        numerical = combine((found for found, _ in there), balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
     if verdict.word is Word.DEPENDS and len(judged) > 1:
         verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
-    return Stability(judged, verdict, numerical, spectra, tuple(equilibrium.conditions))
+    return Stability(judged, verdict, numerical, spectra, tuple(equilibrium.conditions), enclosed=enclosed)
 
 
 def _whole(ring: Ring, parts: Sequence[SubsystemStability], signs: Signs, one_energy: bool) -> Verdict:
@@ -273,7 +276,7 @@ def _balls(scene: Scene, rows: Sequence[Sequence[Polynomial]], values: Mapping[s
         return [[scene.ring.evaluate(x, numbers) for x in row] for row in rows]
 
 
-def _enclosed(
+def _at_irrational(
     scene: Scene,
     linear: Linearisation,
     part: Prepared,
@@ -281,22 +284,22 @@ def _enclosed(
     balance: Balance,
     theory: Theory,
     equilibrium: Equilibrium,
-) -> Verdict:
+) -> tuple[Verdict, bool]:
     """The verdict on a subsystem at values where its matrices hold irrational numbers (sqrt(3), a sine).
 
-    By enclosures; where these leave it open and the numbers are in one field of a low degree, exactly.
+    By enclosures (True); where these leave it open and the numbers are in one field of a low degree, exactly (False).
     """
     found = _by_enclosures(scene, linear, part, values, balance, theory)
     if not found.word.open or found.coordinates_singular:
-        return found
+        return found, True
     at = algebraic_point(scene, part.ring, (*part.system.matrices, [part.system.turned]), values, equilibrium)
     if at is None:
-        return found
+        return found, True
     try:
         exact = verdict_over(part.at(balance.at(values)), at).verdict
     except Failure:
-        return found
-    return found if exact.word is Word.UNDECIDED else exact
+        return found, True
+    return (found, True) if exact.word is Word.UNDECIDED else (exact, False)
 
 
 def _by_enclosures(
@@ -554,9 +557,10 @@ class ExactVerdicts:
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
-                found.append(
-                    _enclosed(self.scene, self.linear, part, values, self.balance, part.theory, self.equilibrium)
+                verdict, _ = _at_irrational(
+                    self.scene, self.linear, part, values, self.balance, part.theory, self.equilibrium
                 )
+                found.append(verdict)
             else:
                 found.append(verdict_at(part.at(there), point).verdict)
         return combine(found, there.law.bounded)
@@ -708,7 +712,9 @@ def _motion_at(scene: Scene, equilibrium: Equilibrium, values: Mapping[str, Any]
             size = float(value.mid())
             return undecided(Because.MOTION_NOT_THERE, condition, f"{size:.6g}")
         if not value.is_zero():
-            return undecided(Because.MOTION_OPEN, condition)
+            at = algebraic_point(scene, scene.ring, [[[condition.polynomial]]], values, equilibrium)
+            if at is None or at.settled(condition.polynomial) != 0:
+                return undecided(Because.MOTION_OPEN, condition)
     return None
 
 

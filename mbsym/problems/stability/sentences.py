@@ -137,16 +137,16 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "stay near theirs."
     ),
     Because.DRIFT: (
-        "This is about the other coordinates and all velocities; a perturbation of the cyclic velocities can make "
-        "the cyclic coordinates drift away."
+        "This is about the other coordinates and all velocities, with respect to a part of the variables (Rumyantsev); "
+        "a perturbation of the cyclic velocities can make the cyclic coordinates drift away."
     ),
     Because.DRIFT_AT_GIVEN_MOMENTA: (
         "This is about the other coordinates at the given momenta of the cyclic ones: momenta that differ a little "
         "stay different, the motion then tends to a steady one near by, and the cyclic coordinates may drift away."
     ),
     Because.ELSEWHERE: (
-        "This is about the other coordinates and all velocities: these tend to theirs again, and the cyclic "
-        "coordinates may end elsewhere."
+        "This is about the other coordinates and all velocities, with respect to a part of the variables (Rumyantsev): "
+        "these tend to theirs again, and the cyclic coordinates may end elsewhere."
     ),
     Because.DISPLACEMENTS: (
         "No equation of motion changes when coordinates move together as [[1]]: along such displacements there are "
@@ -181,8 +181,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "equations: terms of higher order decide."
     ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots without those of coordinates that drop out: [[1]]; the steady motions that the description gives "
-        "explain [[2]] of them. Terms of higher order decide."
+        "Zero roots beside those of coordinates that drop out: [[1]]; of these the steady motions under 'motion:' "
+        "explain [[2]]. Terms of higher order decide."
     ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",

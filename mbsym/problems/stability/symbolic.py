@@ -493,7 +493,7 @@ def _requirements(
                     labels=left_out,
                 )
             )
-        requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1))
+        requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1), known)
     if even and not is_potential(system):
         requirements += _simple(system, factors, known, remarks)
     elif even and sum(len(f.coefficients) - 1 for f in factors) > 1:
@@ -561,12 +561,13 @@ def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
     return [r for r in wanted if not any(r is other for other in left_out)]
 
 
-def _without_implied(wanted: list[Requirement]) -> list[Requirement]:
-    """f != 0 goes without saying where a product with f is required to be positive."""
+def _without_implied(wanted: list[Requirement], known: Signs) -> list[Requirement]:
+    """f != 0 goes without saying where a product with f has to be positive, or where the other g != 0 show it."""
     strict = [f for r in wanted for f in r.condition.factors]
+    apart = known.apart([f for r in wanted for f in r.condition.nonzero if not any(f in (g, -g) for g in strict)])
     found = []
     for r in wanted:
-        left = tuple(f for f in r.condition.nonzero if not any(f in (g, -g) for g in strict))
+        left = tuple(f for f in r.condition.nonzero if f in apart)
         if r.condition.kind == "nonzero" and not left:
             r = replace(r, condition=Condition("always", r.condition.polynomial))
         elif left != r.condition.nonzero:

@@ -36,9 +36,8 @@ from mbsym.problems.symmetries.search import (
     Gradients,
     Symmetries,
     Symmetry,
-    in_coordinates,
-    in_speeds,
+    blocks,
     symmetries,
 )
 
-__all__ = ["Blocks", "Gradients", "Symmetries", "Symmetry", "in_coordinates", "in_speeds", "symmetries"]
+__all__ = ["Blocks", "Gradients", "Symmetries", "Symmetry", "blocks", "symmetries"]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from math import lcm, prod
 from random import Random
 from typing import Any
 
@@ -24,9 +26,8 @@ from mbsym.mechanics.states import rational_states
 from mbsym.model.system import System
 from mbsym.problems import integrals
 from mbsym.problems.energy import Energy
-from mbsym.problems.equations import Equations, convective_rate
+from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speed_integrals import Field
-from mbsym.problems.in_speeds.speeds import SpeedEquations
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION
@@ -115,110 +116,48 @@ class Blocks:
     in_speeds: bool
 
 
-def in_coordinates(scene: Scene, energy: Energy, equations: Equations, images: Images) -> Blocks:
-    """The blocks of a system in generalised coordinates."""
-    ring, names = scene.ring, scene.system.coordinates
-    momenta = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
-    rates = [
-        ring.reduce(convective_rate(scene, ring, p) + f.polynomial)
-        for p, f in zip(momenta, equations.forcing, strict=True)
-    ]
-    speeds = [ring.generator("velocity", name) for name in names]
-    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
-    whole = ring.reduce(ring.dot(momenta, speeds) - lagrangian)
-    power = convective_rate(scene, ring, whole) + ring.dot(speeds, [f.polynomial for f in equations.forcing])
+def blocks(form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, images: Images) -> Blocks:
+    """The blocks of a system in its speeds (q', where it declares none), positions, unit vectors and quaternions."""
+    ring, declared = form.ring, bool(form.system.speeds)
+    kinetic, force = energy.kinetic_energy.polynomial, energy.force_function.polynomial
+    momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
+    forcing = [f.polynomial for f in equations.forcing]
+    own = [ring.context.gen(u.index) - at_rest for u, at_rest in zip(form.speeds, form.drifts, strict=True)]
+    whole = ring.reduce(ring.dot(momenta, own) - kinetic - force)
+    field = Field(form, equations)
 
     def keeps(x: Polynomial) -> Certainty | None:
-        rate = integrals.rate_on_motion(scene, equations, x)
+        rate = (field.rate(x),) if declared else integrals.rate_on_motion(scene, equations, x)
         if rate is not None:
-            zero = ring.is_zero(put_in(ring, rate[0], images))
+            zero = form.vanishes(put_in(ring, rate[0], images))
             return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED
         if images:
             return Certainty.UNDECIDED
         return Certainty.VERIFIED if integrals.is_conserved(scene, equations, x) else None
 
-    return _with(
-        ring,
-        images,
-        (names, momenta, rates),
-        [(ring.generator("coordinate", name), ring.generator("velocity", name)) for name in names],
-        (whole, ring.reduce(power)),
-        plain=ring.reduce,
-        state=(
-            *(lambda x, name=name: ring.derivative(x, name) for name in names),
-            *(lambda x, name=name: ring.velocity_derivative(x, name) for name in names),
-        ),
-        norms=(),
-        vanishes=ring.is_zero,
-        keeps=keeps,
-        in_speeds=False,
-    )
-
-
-def in_speeds(form: SpeedForm, energy: Energy, equations: SpeedEquations, images: Images) -> Blocks:
-    """The blocks of a system in speeds, unit vectors and quaternions."""
-    ring = form.ring
-    kinetic, force = energy.kinetic_energy.polynomial, energy.force_function.polynomial
-    momenta = [ring.derivative(kinetic, u.name) for u in form.speeds]
-    forcing = [f.polynomial for f in equations.forcing]
-    rates = [ring.reduce(form.drift(p) + f) for p, f in zip(momenta, forcing, strict=True)]
-    own = [ring.context.gen(u.index) - at_rest for u, at_rest in zip(form.speeds, form.drifts, strict=True)]
-    whole = ring.reduce(sum((ring.times(p, u) for p, u in zip(momenta, own, strict=True)), ring.zero) - kinetic - force)
-    work = sum((ring.times(u, f) for u, f in zip(own, forcing, strict=True)), ring.zero)
-    field = Field(form, equations)
-
-    def keeps(x: Polynomial) -> Certainty | None:
-        zero = form.vanishes(put_in(ring, field.rate(x), images))
-        return None if zero is False else Certainty.PROVED if zero else Certainty.UNDECIDED
-
     replaced = [name for body in form.by_vectors for name in body.own_angles]
-    by_quaternion = [body.orientation[0].components for body in form.by_quaternion]
-    named = [
-        *form.coordinates,
-        *replaced,
-        *(name for one in by_quaternion for name in one),
-        *(u.name for u in form.speeds),
-    ]
-    return _with(
-        ring,
-        images,
-        ([u.name for u in form.speeds], momenta, rates),
-        [(ring.context.gen(s.index), form.rates[s.name]) for s in form.positions],
-        (whole, ring.reduce(form.drift(whole) + work)),
-        plain=lambda x: ring.reduce(form.in_angles(x)),
-        state=tuple(lambda x, name=name: ring.derivative(x, name) for name in named),
-        norms=tuple(by_quaternion),
-        vanishes=form.vanishes,
-        keeps=keeps,
-        in_speeds=True,
-    )
+    norms = tuple(body.orientation[0].components for body in form.by_quaternion)
+    variables = [*form.coordinates, *replaced, *(name for one in norms for name in one), *(u.name for u in form.speeds)]
 
-
-def _with(
-    ring: Ring,
-    images: Images,
-    directions: tuple[Sequence[str], Sequence[Polynomial], Sequence[Polynomial]],
-    positions: Sequence[tuple[Polynomial, Polynomial]],
-    energy: tuple[Polynomial, Polynomial],
-    **others: Any,
-) -> Blocks:
-    names, momenta, rates = directions
-
-    def put(listed: Sequence[Polynomial]) -> tuple[Polynomial, ...]:
+    def put(listed: Iterable[Polynomial]) -> tuple[Polynomial, ...]:
         return tuple(put_in(ring, x, images) for x in listed)
 
-    whole, power = put(energy)
     return Blocks(
         ring,
-        tuple(names),
-        put(momenta),
-        put(rates),
-        put([s for s, _ in positions]),
-        put([v for _, v in positions]),
-        whole,
-        power,
-        images,
-        **others,
+        names=tuple(u.name for u in form.speeds) if declared else form.coordinates,
+        momenta=put(momenta),
+        rates=put(ring.reduce(form.drift(p) + f) for p, f in zip(momenta, forcing, strict=True)),
+        positions=put(ring.context.gen(s.index) for s in form.positions),
+        changes=put(form.rates[s.name] for s in form.positions),
+        energy=put_in(ring, whole, images),
+        power=put_in(ring, ring.reduce(form.drift(whole) + ring.dot(own, forcing)), images),
+        images=images,
+        plain=lambda x: ring.reduce(form.in_angles(x)),
+        state=tuple(partial(ring.derivative, name=name) for name in variables),
+        norms=norms,
+        vanishes=form.vanishes,
+        keeps=keeps,
+        in_speeds=declared,
     )
 
 
@@ -329,7 +268,27 @@ def _states(system: System, blocks: Blocks, count: int) -> Any:
         turns = turns or {name: x for name, x in state.numbers.basic.items() if name in fixed}
         state.numbers.basic |= turns
         values = {**state.values, **same, **_norms(blocks, source)}
-        yield Carrier(blocks.ring, state.numbers, State(state.numbers, values).values)
+        exponentials = _exponentials(blocks.ring, source)
+        yield Carrier(blocks.ring, state.numbers, State(state.numbers, values).values, exponentials)
+
+
+def _exponentials(ring: Ring, source: Random) -> dict[int, fmpq]:
+    """Values of exp(a): a product of powers, one for each monomial of a, drawn at random.
+
+    With positions and parameters beside they fulfil what all states do, and nothing else: exponentials of such
+    monomials are algebraically independent (J. Ax, Ann. of Math. 93 (1971), 252).
+    """
+    found = [(k, g.argument) for k, g in enumerate(ring.generators) if g.kind == "function" and g.name == "exp"]
+    found = [(k, a) for k, a in found if all(map(partial(_moves, ring), a.monoms()))]
+    common = lcm(*(int(c.q) for _, a in found for c in a.coeffs()))
+    bases = {m: fmpq(source.randint(2, 99), source.randint(2, 99)) for _, a in found for m in a.monoms()}
+    return {k: prod((bases[m] ** int(c * common) for m, c in a.terms()), start=fmpq(1)) for k, a in found}
+
+
+def _moves(ring: Ring, monomial: Sequence[int]) -> bool:
+    """Whether it is made of positions and parameters, and of a position at least."""
+    kinds = {g.kind for g, power in zip(ring.generators, monomial, strict=True) if power}
+    return "coordinate" in kinds and kinds <= {"coordinate", "parameter"}
 
 
 def _norms(blocks: Blocks, source: Random) -> dict[str, fmpq]:

@@ -65,9 +65,9 @@ class SpeedCode:
 
 def speed_code(analysis: Analysis, writer: Functions) -> SpeedCode | None:
     """The code; None where the system has no speeds, inputs besides, or no program."""
-    form = analysis.speed_form
-    if form is None or analysis.system.inputs:
+    if not analysis.system.speeds or analysis.system.inputs:
         return None
+    form = analysis.form
     try:
         found = speed_program(form)
         start = form.state_in_coordinates(found.program)

@@ -44,7 +44,10 @@ class Orbit(Hashed, frozen=True, kw_only=True):
     initial: Annotated[dict[str, Annotated[float, "value"]], "coordinates and velocities at t = 0, by name"]
     period: Annotated[float, "the period T"]
     repeats: Annotated[int, "how many times the motion runs through itself in T, as far as is seen"]
-    turns: Annotated[dict[str, Annotated[float, "angle"]], "by what angles come back turned, in radians, by name"]
+    turns: Annotated[
+        dict[str, Annotated[float, "angle"]],
+        "by what angles come back turned, in radians, or coordinates shifted, by name",
+    ]
     energy: Annotated[float, "generalised energy"]
     closure: Annotated[float, "how far the motion is from closing, as part of the state's size"]
     verified: Verified

@@ -104,7 +104,7 @@ def asked_motion(system: System, time: float | None, language: Language) -> tupl
     from mbsym.simulation.request import COORDINATES
 
     try:
-        return run_data(simulate(scenario(system), Request(time, variables=COORDINATES))), ""
+        return run_data(simulate(scenario(system), Request(time, variables=COORDINATES)), language), ""
     except (Incomplete, Failure) as reason:
         return None, language.say(message_of(reason))
 

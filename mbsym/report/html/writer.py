@@ -146,6 +146,10 @@ class Writer:
         return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
 
     @inline.register
+    def _(self, value: content.Elsewhere) -> Markup:
+        return self.inline(value.link)
+
+    @inline.register
     def _(self, value: content.Emphasis) -> Markup:
         return Markup("<i>{}</i>").format(value.text)
 
@@ -322,7 +326,10 @@ class Writer:
     def _relation_pieces(self, parts: Sequence[Math | str]) -> list[str]:
         """Between these a line may end: those of each formula, with what stands beside."""
         pieces = [""]
-        for part in parts:
+        for before, part in pairwise(("", *parts)):
+            if isinstance(part, str) and part in "+-=" and not isinstance(before, str):
+                pieces.append(mo(RELATIONS.get(part, part), True))
+                continue
             whole = not isinstance(part, Formula) or self._is_withheld(part)
             first, *rest = [self.math(part)] if whole else formulas.pieces(cast("Formula", part))
             pieces[-1] += first

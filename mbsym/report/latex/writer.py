@@ -111,6 +111,10 @@ class Writer:
         return self.inline(value.text)
 
     @inline.register
+    def _(self, value: content.Elsewhere) -> str:
+        return self.inline(value.link)
+
+    @inline.register
     def _(self, value: content.Emphasis) -> str:
         return f"\\textit{{{escaped(value.text)}}}"
 

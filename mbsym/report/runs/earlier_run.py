@@ -16,7 +16,7 @@ from mbsym.expressions.message import Counted, Message, worded
 from mbsym.model.quantities import marked
 from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import EXTENDED
-from mbsym.numerics.methods.interface import STEP_LIMIT
+from mbsym.numerics.methods.interface import Cause
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.models import Model, scenario_of
 from mbsym.numerics.scenario import Scenario
@@ -46,7 +46,7 @@ def read_earlier(path: Path, system: System) -> Earlier:
     if content["description_sha256"] != meaning(system):
         raise Unfit("it belongs to another description, or the description has changed since (its hash differs)")
     ended = content["ended"]
-    if ended is not None and ended["kind"] not in ("interrupted", STEP_LIMIT):
+    if ended is not None and ended["kind"] not in ("interrupted", Cause.STEP_LIMIT):
         text = "that run ended with [[kind]] at t = [[time]]: there is nothing to go on from"
         raise Unfit(Message(text, kind=worded(str(ended["kind"])), time=str(ended["time"])))
     names = [*system.coordinates, *system.velocities]

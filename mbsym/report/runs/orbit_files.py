@@ -62,6 +62,9 @@ def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
     yield Message("motion"), _judged(orbit)
     values = zip(orbit.names, orbit.state, strict=True)
     yield Message("state"), ", ".join(f"{name} = {value:.12g}" for name, value in values)
+    if orbit.shifted:
+        by = (f"{name} = {orbit.turns[orbit.names.index(name)]:.12g}" for name in orbit.shifted)
+        yield Message("shifted by"), ", ".join(by)
     steps = Counted(orbit.steps, "Newton step")
     told = "to [[size]] of the state's size after [[steps]]"
     yield Message("closes"), Message(told, size=f"{orbit.closure:.1e}", steps=steps)

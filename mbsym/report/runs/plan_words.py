@@ -13,18 +13,7 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.methods.interface import Setting
-from mbsym.numerics.planning.kinds import (
-    FINENESS,
-    GRAVITY,
-    LEFT_OUT,
-    LINEARITY,
-    MASSES,
-    METHOD,
-    PARTS,
-    RESTING,
-    SCALAR,
-    WELDED,
-)
+from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.models import Model
 from mbsym.numerics.planning.plan import (
     ARITHMETIC,
@@ -47,16 +36,16 @@ if TYPE_CHECKING:
     from mbsym.simulation import Request
 
 #: Lines of the plan by kinds of items; the tolerance stands with the method, and one motion needs no word on kernels.
-TITLES = {
-    GRAVITY: "gravity field",
-    LINEARITY: "equations",
-    LEFT_OUT: "left out",
-    MASSES: "masses",
-    RESTING: "resting",
-    PARTS: "parts",
-    WELDED: "welded",
-    METHOD: "method",
-    SCALAR: "arithmetic",
+TITLES: dict[str, str] = {
+    Kind.GRAVITY: "gravity field",
+    Kind.LINEARITY: "equations",
+    Kind.LEFT_OUT: "left out",
+    Kind.MASSES: "masses",
+    Kind.RESTING: "resting",
+    Kind.PARTS: "parts",
+    Kind.WELDED: "welded",
+    Kind.METHOD: "method",
+    Kind.SCALAR: "arithmetic",
 }
 
 
@@ -146,11 +135,11 @@ def share_words(share: Share) -> Message:
 def item_words(item: Item, plan: Plan) -> Message:
     """``dop853, tolerance 3.3e-08, 91 µs a run: ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
     chosen: str = worded(item.chosen)
-    if item.kind == METHOD:
-        fineness = next(one for one in plan.items if one.kind == FINENESS)
+    if item.kind == Kind.METHOD:
+        fineness = next(one for one in plan.items if one.kind == Kind.FINENESS)
         text, seconds = "[[method]], [[fineness]], [[seconds]] a run", duration(plan.seconds)
         chosen = Message(text, method=item.chosen, fineness=fineness.chosen, seconds=seconds)
-    if item.kind in (MASSES, RESTING, PARTS, WELDED):
+    if item.kind in (Kind.MASSES, Kind.RESTING, Kind.PARTS, Kind.WELDED):
         chosen = joined([", ".join(item.what), chosen])
     why = Message("[[chosen]]: [[why]]", chosen=chosen, why=item.why)
     return joined([why, *(refused_words(one, item.unit) for one in item.refused)], "; ")

@@ -35,10 +35,15 @@ def standing_words(found: Conservation) -> Message:
     return Message("[[standing]]", standing=found.standing)
 
 
-def conservation_line(found: Conservation) -> Message:
+#: A relative error e of coordinates and velocities is one of 2 e in T and in U, of which each may be as large as T.
+_ENERGY_ERRORS = 4
+
+
+def conservation_line(found: Conservation, error: float = 0.0) -> Message:
     """With how far the run keeps it, and what that is a part of: a drift is an error, a change is none.
 
-    What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.
+    What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.  ``error`` is
+    the relative one of the run: a change that it alone would make is not told from it.
     """
     said = standing_words(found)
     if found.standing is Standing.CHANGING and found.change == 0:
@@ -47,6 +52,9 @@ def conservation_line(found: Conservation) -> Message:
         return said
     if found.standing in (Standing.PROVED, Standing.VERIFIED):
         return Message("[[standing]]; largest drift [[measured]]", standing=said, measured=_measured(found))
+    if found.standing is Standing.CHANGING and found.change <= _ENERGY_ERRORS * error:
+        text = "[[standing]]; the change in this run, [[measured]], is not told from its error"
+        return Message(text, standing=said, measured=_measured(found))
     return Message("[[standing]]; largest change [[measured]]", standing=said, measured=_measured(found))
 
 
@@ -59,8 +67,11 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
     given = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
 
+    # Where the two runs part nobody knows the state, but the energy may be kept all the same.
+    error = run.error.largest if isinstance(run.error, ErrorEstimate) and run.error.parted is None else 0.0
+
     def told(found: Conservation) -> Message:
-        line = conservation_line(found)
+        line = conservation_line(found, error)
         if found.standing is not Standing.CHANGING or not given:
             return line
         return Message("[[line]] (U has no part of forces that are given as such)", line=line)

@@ -40,7 +40,7 @@ def data(found: Energy, system: System, write: Write) -> doc.Energy:
         A0=write(found.A0),
         force_function=write(found.force_function),
         cyclic=list(found.cyclic),
-        speeds=list(getattr(found, "speeds", ())) if system.speeds else UNSET,
+        speeds=list(found.speeds) if system.speeds else UNSET,
     )
 
 

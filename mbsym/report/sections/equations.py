@@ -13,6 +13,8 @@ from mbsym.expressions.rates import acceleration_name, velocity_name
 from mbsym.expressions.tree import Expression, add, multiply, number, power
 from mbsym.expressions.tree import Name as Variable
 from mbsym.formulas.formula import Formula
+from mbsym.formulas.shape import present
+from mbsym.formulas.tree import angles_or
 from mbsym.model.system import System
 from mbsym.problems.equations import Equations
 from mbsym.report.code.programs import programs_of
@@ -207,7 +209,7 @@ def content(results: Results) -> Iterator[Block]:
 
 
 #: Longer formulas (in characters), and more equations, are left to the report; of all of them, what fills a page.
-LONGEST, MOST_EQUATIONS, LONGEST_TOGETHER = 220, 6, 660
+LONGEST, MOST_EQUATIONS, LONGEST_TOGETHER = 220, 6, 720
 #: Formulas with more terms are not even written to be measured.
 MOST_TERMS = 24
 
@@ -257,14 +259,15 @@ def combination(terms: Sequence[tuple[Formula, Math]]) -> Iterator[Math | str]:
     for k, (coefficient, letter) in enumerate(terms):
         ring, polynomial = coefficient.ring, coefficient.polynomial
         number = abs(content_of(polynomial))
-        minus = all(x < 0 for x in polynomial.coeffs())
+        shape = present(ring, polynomial, angles_or("shorter")).terms
+        minus = all(term.coefficient < 0 for term in shape)
         factor = Formula(ring, polynomial / (-number if minus else number))
         if minus or k:
             yield "-" if minus else "+"
         if number != 1:
             yield Formula(ring, ring.one * number)
         yield letter
-        if factor.terms > 1:
+        if len(shape) > 1:
             yield Listed((factor,), brackets=True)
         elif factor != 1:
             yield factor

@@ -22,12 +22,13 @@ from mbsym.problems.stability.enclosed import numbers
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.word import Word
-from mbsym.report.brief import claims_counted, ranges, self_check, worst
+from mbsym.report.brief import claims_counted, self_check, worst
 from mbsym.report.conditions import OPPOSITE, CaseStatement, Statement, cases, label_meanings
 from mbsym.report.content import (
     Beside,
     Block,
     Drawing,
+    Elsewhere,
     Emphasis,
     Fact,
     Facts,
@@ -43,6 +44,7 @@ from mbsym.report.content import (
     Relation,
     Said,
     Symbol,
+    Text,
     Unit,
     joined,
     named,
@@ -70,6 +72,9 @@ MOST_CONDITIONS, MOST_CASES, MOST_COORDINATES = 4, 4, 8
 
 #: More letters, or what they stand for in more characters, are left to problem 5.
 MOST_LETTERS, LONGEST_MEANINGS = 12, 200
+
+#: What the results of problems are called here.
+TITLES_HERE = {3: "Equations", 4: "Motion", 6: "Stability", 7: "First integrals", 8: "Control"}
 
 #: Nor is a position told by more coordinates.
 MOST_DRAWN = 6
@@ -129,12 +134,12 @@ def _facts(results: Results) -> Iterator[Fact]:
         if found[6].numerical is not None and not _is_everywhere(found[6]):
             yield Fact(Said("At given values"), (_at_values(found[6], system),))
         lines = tuple(_stability(found[6], results))
-        yield Fact(Said("Stability"), (*lines, *_meanings(lines, system)))
+        yield Fact(Said("Stability"), (*lines, *_coefficients(lines), *_meanings(lines, system)))
     if 8 in found and found[8].control:
         yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(found[8])))
     if 7 in found:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        yield Fact(Said("First integrals"), tuple(map(_integral, found[7])) or none)
+        yield Fact(Said("First integrals"), tuple(_integrals(found[7])) or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
     yield from _missing(results)
@@ -143,7 +148,7 @@ def _facts(results: Results) -> Iterator[Fact]:
 
 
 def _size(system: System, found: dict[int, Any]) -> Fact:
-    """Coordinates, constraints, what is left of freedom, cyclic coordinates, bodies."""
+    """Coordinates, constraints, what is left of freedom, cyclic coordinates, inputs."""
     tied: Constraints | None = found[3].constraints if 3 in found else None
     said: list[Inline] = [named(system.coordinates)]
     if len(system.coordinates) > 1:
@@ -158,9 +163,9 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
     cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
+    cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:
         said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
-    said += ["; ", say("bodies and frames: [[count]]", count=str(len(system.bodies)))]
     if system.inputs:
         said += ["; ", say("inputs: $[[names]]$", names=named(x.name for x in system.inputs))]
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
@@ -179,9 +184,9 @@ def _equations(found: dict[int, Any], system: System) -> Iterator[Inline]:
     else:
         return
     if not shown:
-        text = "[[count]], the longest with [[terms]] (problem [[number]])"
         terms = Counted(max(x.terms for x in rows), "term")
-        yield Link(say(text, count=str(len(rows)), terms=terms, number=str(number)), f"problem-{number}")
+        size = say("[[count]], the longest with [[terms]]", count=str(len(rows)), terms=terms)
+        yield Phrase((size, " (", Elsewhere("equations", number), ")"))
 
 
 def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
@@ -196,16 +201,21 @@ def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
         yield Phrase((*told, exists_if(found), " ", wanted))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
-        yield Phrase((*told, Link(say(text, count=str(len(found.conditions))), "problem-4")))
+        conditions = say(text, count=str(len(found.conditions)))
+        yield Phrase((*told, conditions, " (", Elsewhere("motion", 4), ")"))
 
 
-def _integral(found: Integral) -> Inline:
-    """Its name, how surely it is one, and what it is where that is short, else how long it is."""
-    named_surely = (title(found), " (", worded(found.status), ")")
-    if is_short(found.formula):
-        return Phrase((*named_surely, ": ", Relation(found.formula, "=", CONSTANT)))
-    length = say("[[terms]] (problem [[number]])", terms=Counted(found.formula.terms, "term"), number="7")
-    return Link(Phrase((*named_surely, ", ", length)), "problem-7")
+def _integrals(found: Sequence[Integral]) -> Iterator[Inline]:
+    """The name of each, how surely it is one, and what it is where that is short, else how long it is."""
+    long = [one for one in found if not is_short(one.formula)]
+    for one in found:
+        named_surely = Phrase((title(one), " (", worded(one.status), ")"))
+        if one not in long:
+            yield Phrase((named_surely, ": ", Relation(one.formula, "=", CONSTANT)))
+            continue
+        terms = Counted(one.formula.terms, "term")
+        place = (" (", Elsewhere("integrals", 7), ")") if one is long[-1] else ()
+        yield Phrase((say("[[integral]], [[terms]]", integral=named_surely, terms=terms), *place))
 
 
 def _is_everywhere(found: Stability) -> bool:
@@ -240,7 +250,7 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
     word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in found.subsystems)
-    if alike and (word.stable or word is Word.UNSTABLE) and all(len(lines) == 1 for lines in told):
+    if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in told):
         return
     for part, (first, *further) in zip(found.subsystems, told, strict=True):
         yield Phrase((named(part.coordinates), ": ", first))
@@ -251,25 +261,40 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
         yield worded(sentence(reason))
 
 
+def _coefficients(lines: Iterable[Inline]) -> Iterator[Inline]:
+    """Where the coefficients and discriminants stand that the conditions call by a letter or a word."""
+    relations = [part for part in _within(tuple(lines)) if isinstance(part, Relation)]
+    letters = dict.fromkeys(part.parts[0] for part in relations if isinstance(part.parts[0], Symbol | Text))
+    if any(isinstance(letter, Symbol) for letter in letters):
+        text = "[[letters]]: of the characteristic polynomial ([[place]])"
+        yield say(text, letters=tuple(letters), place=Elsewhere("conditions", 6))
+
+
 def _meanings(lines: Iterable[Inline], system: System) -> Iterator[Inline]:
     """What the author's letters in the conditions stand for; where that is long, where it is told."""
-    meant = letters_of(system).definitions(_names(lines))
+    formulas = (part for part in _within(tuple(lines)) if isinstance(part, Formula))
+    names = {x.ring.generators[k].name for x in formulas for k in occurring([x.polynomial])}
+    meant = letters_of(system).definitions(names)
     if len(meant) > MOST_LETTERS or sum(len(text(value)) for _, value in meant) > LONGEST_MEANINGS:
-        yield Link(say("[[letters]]: letters of problem 5", letters=named(name for name, _ in meant)), "problem-5")
+        letters = named(name for name, _ in meant)
+        yield say(
+            "[[letters]]: letters of the description ([[place]])", letters=letters, place=Elsewhere("conditions", 5)
+        )
     elif meant:
         definitions = joined((Relation(Name(name), "=", value) for name, value in meant), ", ")
         yield say("where [[definitions]]", definitions=definitions)
 
 
-def _names(part: object) -> set[str]:
-    """The names in the formulas of a line, however deep they stand in it."""
-    if isinstance(part, Formula):
-        return {part.ring.generators[k].name for k in occurring([part.polynomial])}
+def _within(part: object) -> Iterator[object]:
+    """A part of a line, and all that stands in it, however deep."""
+    yield part
     if isinstance(part, Said):
-        return _names(tuple(part.gaps.values()))
-    if isinstance(part, tuple | list):
-        return set().union(*map(_names, part))
-    return _names([getattr(part, x.name) for x in fields(part)]) if is_dataclass(part) else set()
+        yield from _within(tuple(part.gaps.values()))
+    elif isinstance(part, tuple | list):
+        for one in part:
+            yield from _within(one)
+    elif is_dataclass(part) and not isinstance(part, Formula):
+        yield from _within(tuple(getattr(part, x.name) for x in fields(part)))
 
 
 def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
@@ -324,13 +349,14 @@ def _counted(case: CaseStatement) -> Inline:
         return verdict
     count = len(case.all_of) + len(case.any_of)
     if count == 1:
-        return Link(say("[[verdict]], if one condition holds", verdict=verdict), "problem-6")
-    text = "[[verdict]], if all [[count]] conditions of problem 6 hold"
-    if case.theorems:
-        text = "[[verdict]] if all [[count]] conditions of problem 6 hold"
-    if not case.all_of:
-        text = "[[verdict]] if one or more of [[count]] conditions of problem 6 hold"
-    return Link(say(text, verdict=verdict, count=str(count)), "problem-6")
+        text = "[[verdict]], if one condition holds ([[place]])"
+    elif not case.all_of:
+        text = "[[verdict]] if one or more of [[count]] conditions hold ([[place]])"
+    elif case.theorems:
+        text = "[[verdict]] if all [[count]] conditions hold ([[place]])"
+    else:
+        text = "[[verdict]], if all [[count]] conditions hold ([[place]])"
+    return say(text, verdict=verdict, count=str(count), place=Elsewhere("conditions", 6))
 
 
 def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition], before: list[_Condition]) -> Inline:
@@ -339,11 +365,9 @@ def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition
     if len(either) > 1 and not every and [one.parts for one, _ in either] == [_reversed(one) for one, _ in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    place = (" (", Link(Said("characteristic polynomial, problem 6"), "problem-6"), ")")
-    of = place if any(_is_named(one) for one, _ in (*every, *either)) else ()
     told = joined((Phrase((one, *number)) for one, number in every), ", ")
     others = joined((Phrase((one, *number)) for one, number in either), " ", Said("or"), " ")
-    conditions = Phrase((told, *between, others, *of))
+    conditions = Phrase((told, *between, others))
     # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
     text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
     return say(text, verdict=verdict, conditions=conditions)
@@ -372,10 +396,6 @@ def _numbered(left: Formula, relation: Math | str, keys: Keys) -> tuple[Numbered
         ):
             return (Numbered(key),)
     return ()
-
-
-def _is_named(one: Relation) -> bool:
-    return isinstance(one.parts[0], Symbol)
 
 
 def _reversed(one: Relation) -> tuple[Math | str, ...]:
@@ -424,11 +444,10 @@ def _claims(results: Results) -> Iterator[Inline]:
 def _missing(results: Results) -> Iterator[Fact]:
     """Problems and forms without a result, and why."""
     for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
-        numbers_of = [number for number, _ in several]
-        hint = results.failures[numbers_of[0]].hint
-        more = (" (", worded(hint), ")") if hint else ()
-        text = "Problem [[number]]" if len(numbers_of) == 1 else "Problems [[number]]"
-        title = Link(say(text, number=ranges(numbers_of)), f"problem-{numbers_of[0]}")
-        yield Fact(title, (Phrase((Said("no result"), ": ", worded(reason), *more)),))
+        last, failure = [*several][-1]  # what the others lead to
+        more = (" (", worded(failure.hint), ")") if failure.hint else ()
+        title = Said(TITLES_HERE[last]) if last in TITLES_HERE else say("Problem [[number]]", number=str(last))
+        no_result = Phrase((Said("no result"), ": ", worded(reason), *more))
+        yield Fact(Link(title, f"problem-{last}"), (no_result,))
     for form, failure in results.forms.forms.failures:
         yield Fact(Said(TITLES[form]), (Phrase((Said("no result"), ": ", worded(failure.reason))),))

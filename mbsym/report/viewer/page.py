@@ -28,14 +28,34 @@ from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.documents.base import plain
 from mbsym.report.html.environment import embedded, hash_of
+from mbsym.report.language import Language
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.viewer.modes import modes, modes_json
 from mbsym.report.viewer.motion import motion, motion_json, moving_picture
 from mbsym.simulation import Request, Simulation
 
+#: The words of the viewer itself (editor/src/picture/viewer.ts), which a page brings in its language.
+WORDS = (
+    "Play", "Pause", "Time", "Speed", "Coordinates", "Motion", "Linear modes", "Equilibria", "Values", "In words",
+    "Closer", "Further", "First view", "Amplitude", "How it was computed", "Shown in the picture", "Names",
+    "Names of bodies", "Axes", "Axes of bodies: the first red, the second green, the third blue", "Forces",
+    "Forces and torques of loads", "Paths", "Paths of mass centres", "Inertia",
+    "Ellipsoids of inertia, of rods and in the plane, too",
+    "kinetic energy (line)", "energy (its change dashed)", "of a family: ", "any position", "The list is complete.",
+    "The list may be incomplete.", "no initial value is given", "initial value", "initial velocity",
+    "No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another.",
+)  # fmt: skip
+
 #: Where the bundles are that `make page` builds.
 BUNDLES = Path(__file__).parents[2] / "serving" / "page"
 
+
+AFTER = "After [[source]]."
+NEEDED = "The picture needs JavaScript; nothing of it comes from the network."
+KEYS = (
+    "Drag or arrow keys: turn; Shift: move; wheel or + and -: closer; 0: first view; space: play; comma and full stop: "
+    "a hundredth on."
+)
 
 Values = Mapping[str, Expression]
 
@@ -79,7 +99,7 @@ def view_page(
     equilibria: dict[str, Any] | None = None,
 ) -> str:
     """The file's text, of what ``as_json``, ``motion_json``, ``modes_json`` and ``at_rest_json`` give."""
-    return _page(system, _data(picture, motion, modes, equilibria))
+    return _page(system, _data(Language(system.language), picture, motion, modes, equilibria))
 
 
 def _page(system: System, data: Markup) -> str:
@@ -89,17 +109,18 @@ def _page(system: System, data: Markup) -> str:
         "base-uri 'none'; form-action 'none'"
     )
     said = " ".join(system.description.split())
-    source = f" After {escape(system.source.rstrip('.'))}." if system.source else ""
+    language = Language(system.language)
+    source = f" {escape(language.say(AFTER).replace('[[source]]', system.source.rstrip('.')))}" if system.source else ""
+    needed, keys = map(language.say, (NEEDED, KEYS))
     return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<!doctype html>\n<html lang="{escape(system.language)}">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n<meta name="referrer" '
         f'content="no-referrer">\n<title>{escape(system.name)}</title>\n<style>{style}</style>\n</head>\n'
         '<body class="view">\n'
         f"<header>\n<h1>{escape(system.name)}</h1>\n<p>{escape(said)}{source}</p>\n</header>\n"
-        '<main id="viewer"><noscript>The picture needs JavaScript; nothing of it comes from the network.</noscript>'
-        f"</main>\n<footer>Made by mbsym {escape(__version__)}. Drag or arrow keys: turn; Shift: move; "
-        "wheel or + and -: closer; 0: first view; space: play; comma and full stop: a hundredth on.</footer>\n"
+        f'<main id="viewer"><noscript>{escape(needed)}</noscript>'
+        f"</main>\n<footer>mbsym {escape(__version__)}. {escape(keys)}</footer>\n"
         f'<script type="application/json" id="picture-data">{data}</script>\n<script>{script}</script>\n'
         "</body>\n</html>\n"
     )
@@ -110,20 +131,26 @@ def animation_page(run: Simulation) -> str:
     return _page(run.system, run_data(run))
 
 
-def run_data(run: Simulation) -> Markup:
-    """What the viewer reads of a run.  Raises Failure as ``moving_picture`` does."""
+def run_data(run: Simulation, language: Language | None = None) -> Markup:
+    """What the viewer reads of a run; the language is that of the description.
+
+    Raises Failure as ``moving_picture`` does.
+    """
     drawn, moving = moving_picture(run)
     picture = as_json(drawn)
-    return _data(picture, motion_json(moving, picture["program"]["inputs"]))
+    own = language or Language(run.system.language)
+    return _data(own, picture, motion_json(moving, picture["program"]["inputs"]))
 
 
 def _data(
+    language: Language,
     picture: dict[str, Any],
     motion: dict[str, Any] | None = None,
     modes: dict[str, Any] | None = None,
     equilibria: dict[str, Any] | None = None,
 ) -> Markup:
-    return embedded({"picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
+    words = {} if language.name == "en" else {word: language.say(word) for word in WORDS}
+    return embedded({"words": words, "picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
 
 
 def bundle() -> tuple[str, str]:

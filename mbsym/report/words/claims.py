@@ -12,7 +12,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.claims import DIFFERS, FACTOR, SCALED, UNDECIDED, ClaimResult, Part
+from mbsym.problems.claims import ClaimResult, Outcome, Part
 from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
 from mbsym.problems.claims.result import ENTRY
 from mbsym.problems.stability import Stability
@@ -63,12 +63,12 @@ def _about(claim: Claim) -> Iterator[tuple[str, Inline]]:
 
 def _outcome(result: ClaimResult) -> Iterator[Inline]:
     factor = None if result.factor is None else _shown(result.factor)
-    if factor is not None and result.outcome == SCALED:
+    if factor is not None and result.outcome == Outcome.SCALED:
         yield say("differs by the factor [[factor]]", factor=factor)
     else:
         yield worded(result.outcome)
         yield from (" ", worded(result.where)) if result.where else ()
-        if factor is not None and result.outcome == FACTOR:
+        if factor is not None and result.outcome == Outcome.FACTOR:
             yield from (": ", say("claimed = [[factor]] times derived", factor=factor))
         elif factor is not None:
             yield from (" (", say("compared with [[factor]] times derived", factor=factor), ")")
@@ -80,8 +80,8 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
     if result.digits is not None and result.digits != result.printed_digits:
         right, printed = str(result.digits), str(result.printed_digits)
         yield from (", ", say("[[right]] of [[printed]] digits right", right=right, printed=printed))
-    if result.remark and (result.outcome in (UNDECIDED, DIFFERS) or not result.parts):
-        yield ", " if result.outcome == FACTOR else ": "
+    if result.remark and (result.outcome in (Outcome.UNDECIDED, Outcome.DIFFERS) or not result.parts):
+        yield ", " if result.outcome == Outcome.FACTOR else ": "
         yield remarks(result)
 
 
@@ -222,5 +222,4 @@ def decided(found: Stability) -> str:
     """How the verdict at given values was found, if it is one: irrational values have enclosures."""
     if found.numerical is None or found.numerical.word == Word.UNDECIDED:
         return ""
-    enclosed = any(part.theory.at_point is None for part in found.subsystems)
-    return ", decided by rigorous enclosures" if enclosed else ", decided exactly"
+    return ", decided by rigorous enclosures" if found.enclosed else ", decided exactly"

@@ -79,7 +79,7 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     """What is known of the list as a whole."""
     values: Gaps = {"degree": str(found.degree), "count": str(found.independent), "names": named(found.aside)}
     if not found.generators:
-        vectors = found.field.relations and not any(name.startswith(("sin(", "exp(")) for name in found.field.variables)
+        vectors = found.field.relations and all(name.isidentifier() for name in found.field.variables)
         none = _NONE_BUT_LENGTHS if vectors else _NONE
         none = _NONE_WITHOUT if found.aside and not vectors else none
         yield Said(none[bool(found.field.parameters)] if found.complete else "None was found.", values)

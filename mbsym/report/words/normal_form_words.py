@@ -52,6 +52,9 @@ REASONS = {
     "characteristic polynomial are rational numbers: not decided.",
 }
 
+#: In place of a reason, where no term of higher order could have decided.
+LINEAR = "The equations are exactly linear: there are no terms of higher order that could decide."
+
 #: Arnold and Moser's theorem asks for a normal form of fourth order in the actions alone, however that comes about.
 ABSENT = (
     "The terms that the resonance of third order would leave are exactly zero, so that the normal form of fourth order "
@@ -115,7 +118,7 @@ def sentences(found: NormalForms) -> Iterator[Said]:
     if isinstance(found.in_symbols, InSymbols):
         yield from _in_symbols(found.in_symbols, found.everywhere)
     elif isinstance(found.in_symbols, Focus):
-        yield from _focus(found.in_symbols, found.everywhere)
+        yield from _focus(found.in_symbols, found)
     elif found.no_symbols:
         yield say("There is no formula in parameters: [[why]].", why=worded(found.no_symbols))
     elif found.at_values is None:
@@ -128,7 +131,7 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
         yield say(text, values=tuple(map(_number, found.frequencies)))
     for one in found.resonances:
         text = "A resonance of order [[order]] holds exactly: [[relation]]."
-        yield say(text, order=str(one.order), relation=_relation(one.vector))
+        yield say(text, order=str(one.order), relation=_relation(one.vector, found.frequencies))
     if found.quadratic:
         yield say("Normal form of fourth order in the actions: [[form]].", form=_form(found.quadratic))
     for order, value in found.determinants:
@@ -156,7 +159,7 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
         absent = found.theorem is Theorem.ARNOLD_MOSER and any(one.order <= 4 for one in found.resonances)
         yield Said(ABSENT if absent else THEOREMS[found.theorem], _gaps(found))
     if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
-        yield Said(REASONS[found.why])
+        yield Said(LINEAR if whole.linear_at_values else REASONS[found.why])
     weak = found.outcome in (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)
     if weak and whole.first is not None and not whole.first.open:
         yield Said("That is no matter: problem 6 has decided already.")
@@ -246,11 +249,15 @@ def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
     )
 
 
-def _focus(found: Focus, everywhere: Word | None) -> Iterator[Said]:
-    if found.coefficient.is_zero and everywhere is not None:
+def _focus(found: Focus, whole: NormalForms) -> Iterator[Said]:
+    if found.coefficient.is_zero and (whole.everywhere is not None or whole.linear):
         text = "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]."
         yield say(text, square=found.square)
-        yield say("For all parameters problem 6 has decided already: [[word]].", word=worded(everywhere.value))
+        if whole.linear and whole.at_values is None:
+            yield Said(LINEAR)
+        if whole.everywhere is not None:
+            told = "For all parameters problem 6 has decided already: [[word]]."
+            yield say(told, word=worded(whole.everywhere.value))
         return
     if found.coefficient.is_zero:
         yield say(
@@ -272,12 +279,13 @@ def _focus(found: Focus, everywhere: Word | None) -> Iterator[Said]:
     )
 
 
-def _relation(vector: Sequence[int]) -> Notation:
-    """omega1 = 2 omega2."""
+def _relation(vector: Sequence[int], frequencies: Sequence[Any]) -> Notation:
+    """omega1 = 2 |omega2|, where the second one is told with the sign of a negative energy."""
     sides: tuple[list[str], list[str]] = ([], [])
-    for place, k in enumerate(vector, start=1):
+    for place, (k, frequency) in enumerate(zip(vector, frequencies, strict=True), start=1):
         if k:
-            sides[k < 0].append((f"{abs(k)} " if abs(k) > 1 else "") + f"\\omega_{place}")
+            size = f"|\\omega_{place}|" if frequency < 0 else f"\\omega_{place}"
+            sides[k < 0].append((f"{abs(k)} " if abs(k) > 1 else "") + size)
     return Notation(" = ".join(" + ".join(side) or "0" for side in sides))
 
 

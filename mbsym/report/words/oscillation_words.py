@@ -102,6 +102,10 @@ _MEASURED = (
     "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] "
     "halved from [[from]] to [[to]] the errors fall like its powers [[orders]] (not proved)."
 )
+_ROUNDING = (
+    "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] = "
+    "[[to]] the errors of [[names]] are no more than rounding."
+)
 _EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
 _TOO_SLOW = (
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
@@ -249,17 +253,18 @@ def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Ite
         return
     expected = told.found.order + 1
     values: Gaps = {"small": Name(told.found.small), "expected": str(expected)}
-    orders = tuple(
-        Phrase((f"{'?' if order is None else format(order, '.2f')} (", Name(name), ")"))
-        for name, order in zip(measured.names, measured.orders, strict=True)
-    )
-    ends = {
-        "from": f"{measured.small * float(measured.parts[-2]):.3g}",
-        "to": f"{measured.small * float(measured.parts[-1]):.3g}",
-    }
-    yield say(_MEASURED, **values, **ends, orders=orders)
-    yield Said(_EXPECTED, values)
-    late = [n for n, k in zip(measured.names, measured.orders, strict=True) if k is not None and k < expected - SLACK]
+    rows = tuple(zip(measured.names, measured.orders, measured.halved, strict=True))
+    at = [f"{measured.small * float(part):.3g}" for part in measured.parts]
+    if rounding := tuple(name for name, order, _ in rows if order is None):
+        yield say(_ROUNDING, **values, to=at[-1], names=named(rounding))
+    for place in sorted({k for _, order, k in rows if order is not None}):
+        orders = tuple(
+            Phrase((f"{order:.2f} (", Name(name), ")")) for name, order, k in rows if order is not None and k == place
+        )
+        yield say(_MEASURED, **values, **{"from": at[place], "to": at[place + 1]}, orders=orders)
+    if len(rounding) < len(rows):
+        yield Said(_EXPECTED, values)
+    late = [name for name, order, _ in rows if order is not None and order < expected - SLACK]
     if late:
         yield say(_TOO_SLOW, **values, names=named(late))
 

@@ -237,7 +237,9 @@ class _Writer:
         if any(one.joint.kind == "free" for one in moving):
             place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground
         number = len(self.names) + 1
-        *before, last = steps(self._lengths(place, f"p{number}", link.name), turned, tuple(moving))
+        *before, last = steps(
+            self._lengths(place, f"p{number}", f"origin of {link.name} on its carrier"), turned, tuple(moving)
+        )
         parent = self.names.get(link.parent, GROUND)
         for index, step in enumerate(before, 1):
             frame = self._free_name(f"{link.name} frame {index}")
@@ -251,7 +253,9 @@ class _Writer:
         for inertial in [*apart, *others]:
             if not _is_nothing(inertial):
                 name = self._free_name(f"{link.name} inertial")
-                there = Step(self._lengths(inertial.centre, f"c{number}", link.name), inertial.turned)
+                there = Step(
+                    self._lengths(inertial.centre, f"c{number}", f"mass centre of {link.name}"), inertial.turned
+                )
                 self._body(name, own, there, self._matter(inertial, number, link.name, apart=True))
         for one in moving:
             if one.joint.armature != "0":
@@ -356,7 +360,8 @@ class _Writer:
     def _matter(self, found: Inertial, number: int, link: str, apart: bool = False) -> list[str]:
         lines = []
         if not apart and found.centre != NOWHERE:
-            lines.append(f"mass centre: {_list(self._lengths(found.centre, f'c{number}', link))}")
+            centre = self._lengths(found.centre, f"c{number}", f"mass centre of {link}")
+            lines.append(f"mass centre: {_list(centre)}")
         lines.append(f"mass: {self._named(f'm{number}', found.mass, f'mass of {link}')}")
         xx, xy, xz, yy, yz, zz = found.tensor
         if any(value != "0" for value in found.tensor):
@@ -373,9 +378,10 @@ class _Writer:
 
     # --- symbols ---
 
-    def _lengths(self, values: Texts, stem: str, link: str) -> Texts:
+    def _lengths(self, values: Texts, stem: str, meaning: str) -> Texts:
         named = [
-            self._named(f"{stem}{axis}", value, f"length of {link}") for axis, value in zip("xyz", values, strict=True)
+            self._named(f"{stem}{axis}", value, f"{meaning} along {axis}")
+            for axis, value in zip("xyz", values, strict=True)
         ]
         return named[0], named[1], named[2]
 

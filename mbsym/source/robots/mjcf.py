@@ -14,7 +14,18 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
 from mbsym.source.robots.orientation import TURNING, Angles, orientation
-from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, check_spelling, decimal, degrees, number
+from mbsym.source.robots.reader import (
+    NOWHERE,
+    Element,
+    Reader,
+    Spelling,
+    Texts,
+    check_spelling,
+    decimal,
+    degrees,
+    number,
+    words_of,
+)
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
@@ -45,6 +56,66 @@ _WORDS = {
 }
 _INSIDE = {"composite": "composite body", "flexcomp": "flexible body", "replicate": ""}
 
+_TURNS = "quat axisangle xyaxes zaxis euler"
+_EQUALITY = "name class active solref solimp"
+
+#: What matters here: what weighs, turns, slides, is tied, and how all of it is read (MuJoCo 3, XML reference).
+_ATTRIBUTES = words_of(
+    {
+        "compiler": "autolimits boundmass boundinertia settotalmass balanceinertia strippath coordinate angle fitaabb "
+        "eulerseq meshdir texturedir assetdir discardvisual usethread fusestatic inertiafromgeom inertiagrouprange "
+        "saveinertial exactmeshinertia convexhull alignfree",
+        "option": "timestep apirate impratio gravity wind magnetic density viscosity o_margin o_solref o_solimp "
+        "o_friction integrator collision cone jacobian solver iterations tolerance ls_iterations ls_tolerance "
+        "noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance sleep_tolerance "
+        "sdf_iterations sdf_initpoints actuatorgroupdisable",
+        "worldbody": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
+        "body": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
+        "frame": f"name childclass pos {_TURNS}",
+        "inertial": f"pos {_TURNS} mass diaginertia fullinertia",
+        "joint": "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit "
+        "solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref armature "
+        "damping frictionloss user",
+        "freejoint": "name group align",
+        "geom": "name class type contype conaffinity condim group priority size material friction mass density "
+        f"shellinertia solmix solref solimp margin gap fromto pos {_TURNS} hfield mesh fitscale rgba fluidshape "
+        "fluidcoef user",
+        "flag": "constraint equality frictionloss limit contact passive spring damper gravity clampctrl warmstart "
+        "filterparent actuation refsafe sensor midphase eulerdamp autoreset nativeccd island override energy fwdinv "
+        "invdiscrete multiccd sleep diagexact",
+        "equality/joint": f"{_EQUALITY} joint1 joint2 polycoef",
+        "equality/connect": f"{_EQUALITY} body1 body2 anchor site1 site2",
+        "equality/weld": f"{_EQUALITY} body1 body2 relpose anchor site1 site2 torquescale",
+    }
+)
+
+#: What may stand in a body.
+_ELEMENTS = "body inertial joint freejoint geom site camera light plugin composite flexcomp attach frame replicate"
+
+_SPELLING = Spelling(
+    _ATTRIBUTES,
+    words_of(dict.fromkeys(("body", "worldbody", "frame"), _ELEMENTS)),
+    words_of({"body": "inertial freejoint"}),
+)
+
+
+def _read(root: Element) -> Iterator[tuple[str, Element]]:
+    """What is read: settings, default classes, bodies with what stands in them, and ties, each with its section."""
+    for section in root.children:
+        if section.tag in ("compiler", "option", "equality"):
+            yield from ((section.tag, element) for element in section.walk())
+        elif section.tag in ("default", "worldbody"):
+            yield from ((section.tag, element) for element in _within(section))
+
+
+def _within(element: Element) -> Iterator[Element]:
+    yield element
+    for child in element.children:
+        if child.tag in ("body", "frame", "default"):
+            yield from _within(child)
+        else:
+            yield child
+
 
 _MAIN = "main"
 
@@ -55,7 +126,7 @@ def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
     for element in root.walk():
         if element.tag in _NOT_READ:
             reader.error("unsupported", f"<{element.tag}> is not read: {_NOT_READ[element.tag]}", element, _COMPILED)
-    check_spelling(root, reader)
+    check_spelling(_read(root), _SPELLING, reader)
     for section in root.children:
         for _ in section.children if section.tag in _SECTIONS else ():
             reader.leave_out(_SECTIONS[section.tag])
@@ -70,7 +141,7 @@ def read_mjcf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
         reader.error("missing-key", "there is no <body>", worlds[0])
     name = root.get("model") or "robot"
     gravity = _gravity(root, reader)
-    tied = tuple(ties(root, {link.name: link for link in links}, bodies.site_links, reader))
+    tied = tuple(ties(bodies.tied(root), {link.name: link for link in links}, bodies.site_links, reader))
     if not complaints.errors:
         links = _of_mass(links, root, reader)
     if complaints.errors:
@@ -122,16 +193,21 @@ def _gravity(root: Element, reader: Reader) -> Texts:
     for key, told in (("density", "density"), ("viscosity", "viscosity")):
         if float(reader.number(option, key)):
             reader.leave_out(f"forces of a fluid ({told})")
-    return NOWHERE if _together(option, "flag").get("gravity") == "disable" else gravity
+    return NOWHERE if "gravity" in _disabled(root) else gravity
 
 
-def _driven(root: Element, reader: Reader, defaults: Defaults) -> set[str]:
+def _disabled(root: Element) -> set[str]:
+    """What the flags of <option> switch off; ``passive`` is what springs and dampers were together before 3.3."""
+    flags = {key for key, word in _together(_together(root, "option"), "flag").attributes.items() if word == "disable"}
+    return flags | ({"spring", "damper"} if "passive" in flags else set())
+
+
+def _driven(root: Element, reader: Reader, defaults: Defaults, joints: set[str]) -> set[str]:
     """The joints that an actuator drives; what else actuators do is left out.
 
     The input is the torque or force in the joint: that of an actuator times its gear.
     """
     found = set()
-    joints = {x.get("name") for world in root.all("worldbody") for x in world.walk() if x.tag in ("joint", "freejoint")}
     for section in root.all("actuator"):
         for element in (defaults.of(child, "") for child in section.children):
             joint = element.get("joint") or element.get("jointinparent")
@@ -166,19 +242,36 @@ class _Bodies:
         self.groups = tuple(map(float, reader.numbers(section, "inertiagrouprange", 2, "0 5")))
         self.angles = Angles(compiler.get("angle", "degree") != "radian", compiler.get("eulerseq", "xyz"))
         self.autolimits = compiler.get("autolimits", "true") != "false"
-        self.driven = _driven(root, reader, self.defaults)
+        inside = [element for world in root.all("worldbody") for element in world.walk()]
+        self.joint_names = reader.names((x for x in inside if x.tag in ("joint", "freejoint")), "joint")
+        self.driven = _driven(root, reader, self.defaults, self.joint_names)
+        self.disabled = _disabled(root)
         self.from_geoms = compiler.get("inertiafromgeom", "auto")
         self.names: set[str] = set()
         self.sites: set[str] = set()
         self.site_links: dict[str, str] = {}
         self.world_frames: set[str] = {GROUND}
-        inside = [element for world in root.all("worldbody") for element in world.walk()]
         self.bodies = {element.get("name") for element in inside if element.tag == "body"}
         for key in ("balanceinertia", "boundmass", "boundinertia"):
             if compiler.get(key, "0") not in ("0", "false", "-1"):
                 reader.leave_out(f"setting of the compiler ({key})")
         if compiler.get("coordinate", "local") != "local":
             reader.error("unsupported", "global coordinates are not read", section)
+
+    def tied(self, root: Element) -> Iterator[Element]:
+        """The elements of <equality>, with what their classes say of them; none where constraints are switched off."""
+        for element in (child for section in root.all("equality") for child in section.children):
+            given = self.defaults.of(element, "", "equality")
+            off = self.disabled & {"equality", "constraint"}
+            yield replace(given, attributes={**given.attributes, "active": "false"}) if off else given
+
+    def nameless(self, body: str) -> str:
+        """What a joint without a name is called: as its body, or so that no other joint is called so."""
+        name, index = body, 2
+        while name in self.joint_names:
+            name, index = f"{body} {index}", index + 1
+        self.joint_names.add(name)
+        return name
 
     def childclass(self, element: Element, above: str) -> str:
         """The default class of what is inside an element."""
@@ -302,7 +395,7 @@ class _Bodies:
     def joints(self, body: str, element: Element, childclass: str) -> Iterator[Joint]:
         for child in element.children:
             if child.tag == "freejoint":
-                yield Joint(child.get("name") or body, "free")
+                yield Joint(child.get("name") or self.nameless(body), "free")
             elif child.tag == "joint":
                 yield self.joint(body, self.defaults.of(child, childclass))
 
@@ -342,18 +435,19 @@ class _Bodies:
             element.get("range")
             and (limited == "true" or (limited == "auto" and self.autolimits))
             and kind in ("turn", "slide")
+            and not self.disabled & {"limit", "constraint"}
         ):
             low, high = reader.numbers(element, "range", 2)
             limits = (self.angle(low), self.angle(high)) if turns else (low, high)
         rest = reader.number(element, "springref")
         return Joint(
-            element.get("name") or body,
+            element.get("name") or self.nameless(body),
             kind,
             axis,
             reader.three(element, "pos") if kind in ("turn", "ball") else NOWHERE,
             limits,
-            reader.number(element, "damping"),
-            reader.number(element, "stiffness"),
+            "0" if "damper" in self.disabled else reader.number(element, "damping"),
+            "0" if "spring" in self.disabled else reader.number(element, "stiffness"),
             self.angle(rest) if turns else rest,
             armature,
             kind in ("turn", "slide") and element.get("name") in self.driven,
@@ -369,6 +463,10 @@ class _Bodies:
         mass = reader.number(element, "mass", None)
         if float(mass) < 0:
             reader.error("impossible-mass", "a mass is not negative", element)
+        turned_besides = [key for key in ("diaginertia", *TURNING) if element.get(key)]
+        if element.get("fullinertia") and turned_besides:
+            message = f"<inertial> has 'fullinertia' and '{turned_besides[0]}'"
+            reader.error("conflicting-keys", message, element, "'fullinertia' is in the axes of the body")
         if element.get("fullinertia"):
             xx, yy, zz, xy, xz, yz = reader.numbers(element, "fullinertia", 6)
             return Inertial(mass, place, turned, (xx, xy, xz, yy, yz, zz))
@@ -401,10 +499,13 @@ class Defaults:
         for child in element.all("default"):
             self._read(child, child.get("class"), own)
 
-    def of(self, element: Element, childclass: str) -> Element:
-        """The element with what its class, or that of the bodies around it, says beside its own attributes."""
+    def of(self, element: Element, childclass: str, tag: str = "") -> Element:
+        """The element with what its class, or that of the bodies around it, says beside its own attributes.
+
+        ``tag``: what classes call it, where that is not its own.
+        """
         name = self.checked(element, "class") or childclass or _MAIN
-        given = self.known.get(name, {}).get(element.tag, {})
+        given = self.known.get(name, {}).get(tag or element.tag, {})
         if any(key in element.attributes for key in TURNING):  # one way to turn stands for all others
             given = {key: value for key, value in given.items() if key not in TURNING}
         return Element(element.tag, {**given, **element.attributes}, element.span, element.children)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from decimal import Context, Decimal, InvalidOperation
 from fractions import Fraction
@@ -82,6 +83,16 @@ class Reader:
         """``1.5708 as pi/2``, in the order of the file."""
         return tuple(f"{text} as {words}" for text, words in self.parts_of_pi.items())
 
+    def names(self, elements: Iterator[Element], what: str) -> set[str]:
+        """The names of elements that have one; complains about each that stands twice."""
+        names: set[str] = set()
+        for element in elements:
+            name = element.get("name")
+            if name and name in names:
+                self.error("repeated-name", f"a second {what} called {ascii_safe(name)}", element)
+            names.add(name)
+        return names - {""}
+
     def leave_out(self, what: str) -> None:
         """Notes something that a description of rigid bodies in a tree has no place for."""
         self.omitted[what] += 1
@@ -96,90 +107,63 @@ def _three(text: str) -> Texts:
     return first, second, third
 
 
-# Attributes and elements of MJCF that are none (MuJoCo 3, XML reference): a misspelt one must not go by in silence.
+# What may stand in a file: a misspelt attribute, or a second element where one holds, must not go by in silence.
 
 
-_TURNS = "quat axisangle xyaxes zaxis euler"
+@dataclass(frozen=True)
+class Spelling:
+    """What a format knows, as far as it is read here.
 
-#: What matters here: what weighs, turns, slides, and how all of it is read.
-_ATTRIBUTES = {
-    tag: frozenset(words.split())
-    for tag, words in {
-        "compiler": "autolimits boundmass boundinertia settotalmass balanceinertia strippath coordinate angle fitaabb "
-        "eulerseq meshdir texturedir assetdir discardvisual usethread fusestatic inertiafromgeom inertiagrouprange "
-        "saveinertial exactmeshinertia convexhull alignfree",
-        "option": "timestep apirate impratio gravity wind magnetic density viscosity o_margin o_solref o_solimp "
-        "o_friction integrator collision cone jacobian solver iterations tolerance ls_iterations ls_tolerance "
-        "noslip_iterations noslip_tolerance mpr_iterations mpr_tolerance ccd_iterations ccd_tolerance sleep_tolerance "
-        "sdf_iterations sdf_initpoints actuatorgroupdisable",
-        "worldbody": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
-        "body": f"name childclass pos {_TURNS} gravcomp mocap sleep user",
-        "frame": f"name childclass pos {_TURNS}",
-        "inertial": f"pos {_TURNS} mass diaginertia fullinertia",
-        "joint": "name class type group pos axis springdamper limited actuatorfrclimited solreflimit solimplimit "
-        "solreffriction solimpfriction stiffness range actuatorfrcrange actuatorgravcomp margin ref springref armature "
-        "damping frictionloss user",
-        "freejoint": "name group align",
-        "geom": "name class type contype conaffinity condim group priority size material friction mass density "
-        f"shellinertia solmix solref solimp margin gap fromto pos {_TURNS} hfield mesh fitscale rgba fluidshape "
-        "fluidcoef user",
-    }.items()
-}
+    ``attributes`` of elements by their tag, or by ``section/tag`` where sections mean different things by one tag;
+    ``elements`` inside an element, and those of them that stand there ``once``.
+    """
 
-#: What may stand in a body.
-_ELEMENTS = "body inertial joint freejoint geom site camera light plugin composite flexcomp attach frame replicate"
-_INSIDE = frozenset(_ELEMENTS.split())
+    attributes: Mapping[str, frozenset[str]]
+    elements: Mapping[str, frozenset[str]]
+    once: Mapping[str, frozenset[str]]
+
+
+def words_of(lists: Mapping[str, str]) -> dict[str, frozenset[str]]:
+    """Lists of words, each written as one text."""
+    return {tag: frozenset(words.split()) for tag, words in lists.items()}
+
 
 #: So much has a slip of the pen in common with what was meant (``mas``, ``dampng``, ``diagInertia``).
 _ALIKE = 0.75
 
 
-def check_spelling(root: Element, reader: Reader) -> None:
+def check_spelling(elements: Iterator[tuple[str, Element]], spelling: Spelling, reader: Reader) -> None:
     """Complains about what looks like a slip of the pen, at its element; what looks like nothing known is left out.
 
-    The latter may be of a later MuJoCo.  Only what is read here is looked at: sections that are left out have elements
-    of the same names with other attributes.
+    The latter may be of a later version.  ``elements`` are those that are read, each with the name of its section.
     """
-    for element in _read(root):
-        known = _ATTRIBUTES.get(element.tag, frozenset())
+    for section, element in elements:
+        tag = element.tag
+        known = spelling.attributes.get(f"{section}/{tag}", spelling.attributes.get(tag, frozenset()))
         for name in element.attributes if known else ():
-            if name not in known:
-                _tell(f"attribute {ascii_safe(name)} of <{element.tag}>", name, known, element, reader)
-        for child in element.children if element.tag in ("body", "worldbody", "frame") else ():
-            if child.tag not in _INSIDE:
-                _tell(
-                    f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>",
-                    child.tag,
-                    _INSIDE,
-                    child,
-                    reader,
-                )
+            if name not in known and ":" not in name:
+                _tell(f"attribute {ascii_safe(name)} of <{tag}>", name, known, element, reader)
+        inside = spelling.elements.get(tag, frozenset())
+        for child in element.children if inside else ():
+            if child.tag not in inside and ":" not in child.tag:
+                what = f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{tag}>"
+                _tell(what, child.tag, inside, child, reader)
+        for one in sorted(spelling.once.get(tag, frozenset())):
+            for child in element.all(one)[1:]:
+                reader.error("repeated-key", f"a second <{one}> in <{tag}>", child)
+
+
+def _of_more_words(long: str, short: str) -> bool:
+    """``gear_velocity`` is no slip of the pen for ``velocity``."""
+    return set(long.split("_")) > set(short.split("_"))
 
 
 def _tell(what: str, word: str, known: frozenset[str], element: Element, reader: Reader) -> None:
     meant = closest(word, sorted(known), _ALIKE)
-    if meant is None:
+    if meant is None or _of_more_words(word, meant) or _of_more_words(meant, word):
         reader.leave_out(f"unknown {what}")
     else:
         reader.error("unknown-key", f"unknown {what}", element, f"did you mean '{meant}'?")
-
-
-def _read(root: Element) -> Iterator[Element]:
-    """What is read: settings, default classes, and bodies with what stands in them."""
-    for section in root.children:
-        if section.tag in ("compiler", "option"):
-            yield section
-        elif section.tag in ("default", "worldbody"):
-            yield from _within(section)
-
-
-def _within(element: Element) -> Iterator[Element]:
-    yield element
-    for child in element.children:
-        if child.tag in ("body", "frame", "default"):
-            yield from _within(child)
-        else:
-            yield child
 
 
 # Numbers as they are printed in a file: exact decimals, and angles that are rounded parts of pi.
@@ -199,8 +183,14 @@ _SMALLEST, _EXACTLY = Decimal(1).scaleb(-MAX_DIGITS), Context(prec=2 * MAX_DIGIT
 _PLAIN_POWER = 6
 
 
+#: As XML Schema and C print one; Python would read ``1_0`` and digits of other scripts, too.
+_PRINTED = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
+
+
 def decimal(text: str) -> Decimal | None:
     """The number that a text is, or None: infinities and monsters are none."""
+    if not _PRINTED.match(text.strip()):
+        return None
     try:
         value = Decimal(text.strip())
     except InvalidOperation:

@@ -141,11 +141,11 @@ _COEFFICIENTS = ("0", "1", "0", "0", "0")
 
 
 def ties(
-    root: Element, links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
+    elements: Iterable[Element], links: Mapping[str, Link], sites: Mapping[str, str], reader: Reader
 ) -> Iterator[JointTie | PointTie]:
-    """Those that are active; ``sites`` are the links that stand for sites."""
+    """Those that are active of the elements of <equality>; ``sites`` are the links that stand for sites."""
     joints = {joint.name for link in links.values() for joint in link.joints if joint.kind in ("turn", "slide")}
-    for element in (child for section in root.all("equality") for child in section.children):
+    for element in elements:
         if element.get("active") == "false":
             reader.leave_out(f"inactive constraint (<{element.tag}>)")
             continue

@@ -7,13 +7,22 @@ digits that were printed are spelled so, and told, unless they are to stay as th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.reader import Element, Reader, Texts, is_nonnegative, number
+from mbsym.source.robots.reader import (
+    Element,
+    Reader,
+    Spelling,
+    Texts,
+    check_spelling,
+    is_nonnegative,
+    number,
+    words_of,
+)
 from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Shape, Turns
 
 #: The attributes of an inertia.
@@ -27,25 +36,59 @@ _LEFT_OUT = {
     "gazebo": "settings of a simulator (<gazebo>)",
     "sensor": "sensor",
     "ros2_control": "controller (<ros2_control>)",
+    "loop_joint": "joint that closes a loop (<loop_joint>)",
 }
 
 
-#: What URDF and its common extensions have inside these elements; another one is most likely a slip of the pen.
-_KNOWN = {
-    "robot": ("link", "joint", "material", *_LEFT_OUT, "group", "loop_joint"),
-    "link": ("inertial", "visual", "collision", "self_collision_checking", "contact", *_LEFT_OUT),
-    "joint": ("origin", "parent", "child", "axis", "calibration", "dynamics", "limit", "mimic", "safety_controller"),
-    "inertial": ("origin", "mass", "inertia"),
-}
+#: What URDF and its common extensions have; another element or attribute is most likely a slip of the pen.
+_SPELLING = Spelling(
+    words_of(
+        {
+            "robot": "name version",
+            "link": "name type",
+            "joint": "name type",
+            "origin": "xyz rpy quat_xyzw",
+            "mass": "value",
+            "inertia": " ".join(MOMENTS),
+            "parent": "link",
+            "child": "link",
+            "axis": "xyz",
+            "dynamics": "damping friction",
+            "limit": "lower upper effort velocity acceleration deceleration jerk",
+            "mimic": "joint multiplier offset",
+            "box": "size",
+            "sphere": "radius",
+            "cylinder": "radius length",
+            "capsule": "radius length",
+        }
+    ),
+    words_of(
+        {
+            "robot": f"link joint material group {' '.join(_LEFT_OUT)}",
+            "link": f"inertial visual collision self_collision_checking contact {' '.join(_LEFT_OUT)}",
+            "joint": "origin parent child axis calibration dynamics limit mimic safety_controller",
+            "inertial": "origin mass inertia",
+        }
+    ),
+    words_of(
+        {
+            "link": "inertial",
+            "joint": "origin parent child axis dynamics limit mimic",
+            "inertial": "origin mass inertia",
+            "visual": "origin geometry",
+        }
+    ),
+)
 
 
-def _slips(root: Element, reader: Reader) -> None:
-    """Notes the elements that nothing knows, so that a misspelled <origin> does not go by in silence."""
-    bodies = [*root.all("link"), *root.all("joint")]
-    for element in (root, *bodies, *(inertial for body in bodies for inertial in body.all("inertial"))):
-        for child in element.children:
-            if child.tag not in _KNOWN[element.tag] and ":" not in child.tag:
-                reader.leave_out(f"unknown element <{ascii_safe(child.tag).strip(chr(39))}> in <{element.tag}>")
+def _read(root: Element) -> Iterator[tuple[str, Element]]:
+    """The elements that say how a robot moves and looks, but for what is in those that are left out."""
+    yield "", root
+    for body in (*root.all("link"), *root.all("joint")):
+        yield "", body
+        for part in body.children:
+            if part.tag not in (*_LEFT_OUT, "collision"):
+                yield from (("", element) for element in part.walk())
 
 
 def read_urdf(root: Element, complaints: Complaints, exact: bool = False) -> Robot | None:
@@ -55,7 +98,8 @@ def read_urdf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
     if template is not None:
         reader.error("unsupported", "this is a template, no URDF yet", template, "expand it with xacro first")
         return None
-    _slips(root, reader)
+    check_spelling(_read(root), _SPELLING, reader)
+    reader.names(iter(root.all("joint")), "joint")
     links = _links(root, reader)
     joints = _joints(root, links, reader)
     for element in root.walk():
@@ -167,6 +211,9 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
         reader.leave_out("safety controller")
     dynamics, limit = element.first("dynamics"), element.first("limit")
     damping = "0" if dynamics is None else reader.number(dynamics, "damping")
+    if kind == "free" and float(damping):
+        reader.leave_out("damping of a floating joint")
+        damping = "0"
     if dynamics is not None and float(reader.number(dynamics, "friction")):
         reader.leave_out("dry friction of a joint")
     limits = None

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def other_lines(there: Setting, found: OtherLevels | None) -> Iterator[str]:
     """What holds on single levels, and what is known of all others."""
     if found is None:
-        yield "not looked for: several unit vectors or angles are related, which is not looked at here"
+        yield "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
         return
     for one in found.levels:
         yield from _of(there, found, one)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
-    Obstacle.NOT_HOMOGENEOUS: "relations between variables, of several unit vectors or angles, are not looked at here",
+    Obstacle.NOT_HOMOGENEOUS: "relations between variables, of several unit vectors, angles or roots, "
+    "are not looked at here",
     Obstacle.MIXED: "a K of that weight may hold products of variables, which is not looked at",
     Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
     Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
@@ -52,7 +53,7 @@ def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
 def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels | None) -> Iterator[str]:
     """What holds where an integral of the list is zero, and that nothing else does."""
     if levels is None:
-        yield "not looked for: several unit vectors or angles are related, which is not looked at here"
+        yield "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
         return
     if levels.weights not in (None, found.grading.weights):
         yield f"weights are {weights_text(there.field.variables, levels.weights or ())} here"
@@ -81,7 +82,7 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
         yield f"weight {one.weight}: {there.formula(one.polynomial)} = 0"
         yield f"  K = {there.quotient(one.cofactor, there.field.denominator)}"
         if not one.defined:
-            yield "  no relation of motions: the equations are not defined where it is zero"
+            yield "  no relation of motions: it is zero nowhere, or the equations are not defined there"
     for count in found.counts:
         if not count.complete:
             cofactor = there.quotient(count.cofactor, there.field.denominator)
@@ -109,7 +110,7 @@ def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlo
             yield f"  weight {f.weight}: {there.formula(f.polynomial)} = 0"
             yield f"    K = {there.quotient_over(one.field, f.cofactor)}"
             if not f.defined:
-                yield "    no relation of motions: the equations are not defined where it is zero"
+                yield "    no relation of motions: it is zero nowhere, or the equations are not defined there"
     if found.general.obstacle in UNLOOKED:
         yield f"not looked for: {UNDECIDED[found.general.obstacle]}"
         return

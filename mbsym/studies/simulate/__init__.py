@@ -7,12 +7,14 @@ does not go together and what that leaves to be integrated, ``files`` what is wr
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
+from mbsym.expressions.message import Message
 from mbsym.studies.described import Source, analysis_of, laws_of, public
 from mbsym.studies.request import (
     Errors,
@@ -59,7 +61,7 @@ DECLARED = "declared"
 #: Words of ``--gravity``.
 ORDERS = ("2", "3", "4", "exact")
 
-FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif")
+FORMATS = ("csv", "svg", "png", "pdf", "bodies-csv", "html", "gif", "mp4")
 
 #: More names than this are not varied at once.
 MOST_VARIED = 32
@@ -184,7 +186,7 @@ class Command(Request):
 
     Formats: csv, bodies-csv (of each body place, velocity, acceleration of the mass centre in inertial axes, angular
     velocity in its own axes, kinetic energy; T, U, T - U), figures as svg, png, pdf, and the moving system in three
-    dimensions as html (one page with time controls, without network) and gif.
+    dimensions as html (one page with time controls, without network), as on paper as gif, and mp4 (by ffmpeg).
 
     Methods: auto looks at the system and says why it chose what; dop853, rk45 (explicit); rodas5p (stiff systems,
     compiled), radau, lsoda, bdf (stiff systems, of SciPy), scipy-rk45, scipy-dop853; taylor (very exact, needs heyoka);
@@ -409,7 +411,14 @@ def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
 def unfit(asked: Asked, request: Command) -> Iterator[Unfit]:
     from mbsym.studies.simulate.fitting import settled
 
-    return iter(settled(asked, request).wrong)
+    if "mp4" in request.formats and shutil.which("ffmpeg") is None:
+        yield Unfit(
+            "--format",
+            "no-ffmpeg",
+            Message("ffmpeg makes mp4, and there is none on the path"),
+            Message("install it, or take gif or html"),
+        )
+    yield from settled(asked, request).wrong
 
 
 def derive(asked: Asked, request: Command, watch: Watch) -> Result:

@@ -121,16 +121,7 @@ def _ended(run: Simulation, folder: Path) -> tuple[list[str], Exit]:
 
 def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[str]:
     """What happened, when, and in which state; what was kept."""
-    from mbsym.numerics.methods.interface import (
-        BLOW_UP,
-        NOT_SMOOTH,
-        OUT_OF_REACH,
-        SINGULAR,
-        SINGULAR_CONSTRAINTS,
-        STEP_LIMIT,
-        STUCK,
-        UNDEFINED,
-    )
+    from mbsym.numerics.methods.interface import Cause
     from mbsym.numerics.methods.sides import OUTSIDE, SWITCHING
 
     system, time = trajectory.system, pretty(time_unit(trajectory.system))
@@ -141,34 +132,36 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
         for name, value in zip(names, ended.state, strict=True)
     )
     hints = {
-        BLOW_UP: Message(
+        Cause.BLOW_UP: Message(
             "the motion grows without an end in sight, in finite time or exponentially; is a sign of the forces right?"
             if ended.time > 0
             else "choose other initial values, or units in which the numbers are smaller"
         ),
-        SINGULAR: Message(
+        Cause.SINGULAR: Message(
             "a coordinate loses its meaning in this state: a distance has shrunk to zero (a collision, a fall to the "
             "centre), or angles are singular (a pole; other angles help); or a mass is zero. Start elsewhere or stop "
             "earlier"
         ),
-        SINGULAR_CONSTRAINTS: Message(
+        Cause.SINGULAR_CONSTRAINTS: Message(
             "a mechanism in a singular position (links in line, branches that meet): the accelerations do not follow "
             "from the constraints there; start beside it"
         ),
-        OUT_OF_REACH: Message(
+        Cause.OUT_OF_REACH: Message(
             "what moves the constraints leads the mechanism to the end of its reach (links stretched out, or blocked): "
             "stop earlier, or let it move less far"
         ),
-        STEP_LIMIT: Message(
+        Cause.STEP_LIMIT: Message(
             "raise --step-limit, or choose a larger --tolerance or --step; a stiff system needs --method rodas5p"
         ),
-        NOT_SMOOTH: Message("--method dop853 does without them"),
-        UNDEFINED: Message("the model says nothing beyond this state; is the sign under a root or a logarithm right?"),
+        Cause.NOT_SMOOTH: Message("--method dop853 does without them"),
+        Cause.UNDEFINED: Message(
+            "the model says nothing beyond this state; is the sign under a root or a logarithm right?"
+        ),
         OUTSIDE: Message("choose a shorter --time, give more points, or say how the table goes on, as 'outside: hold'"),
         SWITCHING: Message(
             "a force that jumps leads back to its jump from both sides: a smooth one, as tanh, goes through it"
         ),
-        STUCK: Message("a larger --tolerance may pass; look for a singularity of forces at this state"),
+        Cause.STUCK: Message("a larger --tolerance may pass; look for a singularity of forces at this state"),
     }
     happened = "[[kind]] at t = [[time]]: [[message]]"
     at = with_unit(f"{ended.time:.9g}", time)

@@ -181,16 +181,22 @@ def _animated_page(run: Simulation) -> bytes:
 
 
 def _animated_gif(run: Simulation) -> bytes:
-    from mbsym.report.figures.animation_gif import animation_gif
+    from mbsym.report.figures.animation import animation_gif
 
     return animation_gif(run)
+
+
+def _video(run: Simulation) -> bytes:
+    from mbsym.report.figures.animation import animation_mp4
+
+    return animation_mp4(run)
 
 
 def _animation(run: Simulation, formats: Sequence[str]) -> tuple[dict[str, bytes], tuple[str, ...]]:
     """The moving system; nothing, and a word about it, where there is nothing to be seen."""
     made: dict[str, bytes] = {}
     lacking = []
-    for kind, drawn in (("html", _animated_page), ("gif", _animated_gif)):
+    for kind, drawn in (("html", _animated_page), ("gif", _animated_gif), ("mp4", _video)):
         name = f"animation.{kind}"
         try:
             made |= {name: drawn(run)} if kind in formats else {}

@@ -16,11 +16,12 @@ from mbsym.analysis.judge import exceptional
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.normal_forms import NormalForms, Outcome, Theorem, Why
 from mbsym.report.messages import messages
+from mbsym.report.plain_writer import Writer
 from mbsym.report.results_json import render
 from mbsym.report.schemas import schema
 from mbsym.report.targets import TARGETS
 from mbsym.report.words.exceptional_values import VANISHING, as_text
-from mbsym.report.words.normal_form_words import REASONS, THEOREMS, sentences
+from mbsym.report.words.normal_form_words import LINEAR, REASONS, THEOREMS, sentences
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 SOFT = """
@@ -266,3 +267,52 @@ loads:
     said = " ".join(told(mbsym.loads(text), 11))
     assert "may decide" not in said
     assert "For all parameters problem 6 has decided already: stable." in said
+
+
+PENNING = """
+mbsym: 1
+name: a charge in a quadrupole and a magnetic field
+parameters: {w: positive, c: positive}
+bodies:
+  - {name: P, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}
+loads:
+  - potential: w**2*(z**2 - (x**2 + y**2)/2)/2
+  - generalized force: {x: c*y_dot, y: -c*x_dot}
+motion: {x: 0, y: 0, z: 0}
+values: {w: 1, c: C}
+"""
+
+
+@pytest.mark.parametrize(("c", "relation"), [("2", "omega_1 + |omega_3| = 2 omega_2"), ("9/4", "omega_1 = 2 omega_2")])
+def test_a_resonance_is_one_of_the_frequencies_that_stand_above_it(c, relation):
+    """omega = (c +- sqrt(c^2 - 2 w^2))/2, the lower one of negative energy (H. Dehmelt's magnetron motion), and w.
+
+    c = 2: the sum of the sizes is 2 w; c = 9/4: 2 is twice w.
+    """
+    found = mbsym.loads(PENNING.replace("C}", c + "}"), (6, 11)).normal_forms
+    lines = [Writer().said(said) for said in sentences(found)]
+    assert [float(x) for x in found.at_values.frequencies][2] < 0
+    assert next(one for one in lines if one.startswith("A resonance of order")).endswith(f"exactly: {relation}.")
+
+
+@pytest.mark.parametrize(
+    ("force", "values", "linear"),
+    [
+        ("-c*x_dot", "{w: 2, c: 1, e: 1}", True),
+        ("-c*x_dot", "{}", True),
+        ("-c*x_dot - e*x**3", "{w: 2, c: 1, e: 0}", True),
+        ("-c*x_dot - e*x**5", "{w: 2, c: 1, e: 1}", False),
+    ],
+)
+def test_of_linear_equations_no_term_of_higher_order_is_said_to_decide(force: str, values: str, linear: bool) -> None:
+    """A damped mass beside an undamped one, y'' + w^2 y = 0: there is nothing of second order or more."""
+    text = SOFT.replace("FORCE", force).replace("values: {w: 2}", f"values: {values}")
+    text = text.replace("w: {sign: positive}", "w: {sign: positive}, c: {sign: positive}, e: {}")
+    text = text.replace(
+        "loads:", "  - {name: b, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}\nloads:"
+    )
+    text = text.replace("w**2*x**2/2", "w**2*(x**2 + y**2)/2").replace("{x: 0}", "{x: 0, y: 0}")
+    lines = [str(one.text) for one in sentences(mbsym.loads(text, (6, 11)).normal_forms)]
+    nonlinear_for_others = "e*x" in force  # what is said in parameters is of all their values
+    assert any("higher order may decide" in one for one in lines) is nonlinear_for_others
+    assert (LINEAR in lines) is linear

@@ -62,3 +62,24 @@ def test_a_circle_is_looked_at_with_its_relation():
     sphere = replace(field, denominator=(u**2 + s**2), relations=(u**2 + s**2 + c**2 - 1,))
     assert not is_regular_on(sphere, c - 1)
     assert is_regular_on(sphere, c)
+
+
+LINE = """
+mbsym: 1
+name: two points on lines
+bodies:
+  - {name: one, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+  - {name: two, attached to: 0, connection point: [0, y, 0], mass: 1, coordinates: [y]}
+loads:
+  - potential: POTENTIAL
+"""
+
+
+def test_what_vanishes_nowhere_is_no_relation_of_motions():
+    """exp(x - y)' = (x' - y') exp(x - y), and no state has exp(x - y) = 0; nor 1/(x^2 + y^2) = 0."""
+    there = polynomial.setting(mbsym.loads(LINE.replace("POTENTIAL", "exp(x - y)")))
+    found = darboux_polynomials(polynomial.integrals_of(there, 2))
+    assert {str(there.formula(one.polynomial)): one.defined for one in found.polynomials} == {"exp(x - y)": False}
+    there = polynomial.setting(mbsym.loads(LINE.replace("POTENTIAL", "-1/sqrt(x**2 + y**2)")))
+    assert there.field.units == {"sqrt(x**2 + y**2)", "1/(x**2 + y**2)"}
+    assert linear_relations(there.field, (1,) * 6, (), free=False).relations == ()

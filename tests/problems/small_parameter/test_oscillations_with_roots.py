@@ -10,6 +10,7 @@ import pytest
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.oscillating import oscillating
+from mbsym.report.words.oscillation_words import measured_sentences
 from mbsym.simulation.oscillating import measured_orders
 
 BODIES = Path(__file__).parents[3] / "systems" / "three-bodies.yaml"
@@ -82,3 +83,55 @@ motion: {x: 0}
     assert str(at.formula(at.found.frequency * at.found.frequency)) == "2*k/m"
     with pytest.raises(NoClosedForm, match="does not oscillate"):
         oscillating(mbsym.loads(text.replace("sqrt(b)", "-sqrt(b)")), 1, {"b": Fraction(4)})
+
+
+TIED = """
+mbsym: 1
+name: a pendulum that a spring with a length of its own ties to a wall
+parameters: {m: positive, l: positive, a: positive, k: positive, s: positive}
+bodies:
+  - {name: rod, attached to: 0, rotation: {axes: [3], angles: [x]}, mass centre: [l, 0, 0], mass: m}
+loads:
+  - potential: k*(sqrt(l**2 + a**2 - 2*a*l*cos(x)) - s)**2/2
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize("longer", ["l", "a"])
+def test_the_root_of_a_square_is_not_negative(longer):
+    """V = k (r - s)^2/2, r = |l - a| + a l x^2/(2 |l - a|) + ...: m l^2 w^2 = k a l (|l - a| - s)/|l - a|."""
+    with pytest.raises(NoClosedForm, match="either sign"):
+        oscillating(mbsym.loads(TIED), 1)
+    shorter = "al".replace(longer, "")
+    at = oscillating(mbsym.loads(TIED + f"assumptions: [{longer} > {shorter}]\n"), 1)
+    ring = at.ring
+    m, l, a, k, s = (ring.generator("parameter", name) for name in "mlaks")
+    size = l - a if longer == "l" else a - l
+    square = at.formula(at.found.frequency * at.found.frequency).polynomial
+    assert ring.is_zero(ring.times(square, m * l * size) - a * k * (size - s))
+
+
+LINEAR = """
+mbsym: 1
+name: two springs
+parameters: {k: positive}
+bodies: [{name: a, attached to: 0, connection point: [x, y, 0], coordinates: [x, y], mass: 1}]
+loads: [{spring: {coordinate: x, stiffness: k}}, {spring: {coordinate: y, stiffness: 4*k}}NONLINEAR]
+motion: {x: 0, y: 0}
+values: {k: 1}
+initial: {x: 1, y: 1}
+"""
+
+
+@pytest.mark.parametrize(("nonlinear", "rounding"), [("", True), (", {potential: x**4}", False)])
+def test_errors_that_are_rounding_fall_like_no_power(nonlinear, rounding):
+    """x = a cos(sqrt(k) t) is the whole solution: nothing is left that could fall; with x^4 there is more in x."""
+    analysis = mbsym.loads(LINEAR.replace("NONLINEAR", nonlinear))
+    found = oscillating(analysis, 2, leading="x")
+    measured = measured_orders(analysis.system, found)
+    orders = dict(zip(measured.names, measured.orders, strict=True))
+    assert (orders["x"] is None) is rounding
+    assert orders["y"] is None  # nothing drives it
+    lines = [one.text for one in measured_sentences(found, measured)]
+    assert any("no more than rounding" in one for one in lines)
+    assert any("fall like its powers" in one for one in lines) is not rounding

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from flint import arb
 
+import mbsym
 from mbsym.problems.stability.enclosed import enclosed_verdict
 from mbsym.problems.stability.word import Word
+from mbsym.report.words.claims import decided
 
 NOTHING = [[arb(0), arb(0)], [arb(0), arb(0)]]
 UNIT = [[arb(1), arb(0)], [arb(0), arb(1)]]
@@ -41,3 +44,45 @@ def test_partial_damping() -> None:
     assert enclosed_verdict(parts, False).word is Word.UNDECIDED
     negative = [UNIT, diagonal(-1, 0), NOTHING, diagonal(2, 2), NOTHING]
     assert enclosed_verdict(negative, False).word is Word.UNSTABLE
+
+
+CONE = """
+mbsym: 1
+name: conical motion that a torque keeps up
+parameters: {{m: positive, l: positive, g: positive, w: positive, a: real, c: nonnegative}}
+bodies:
+  - name: bob
+    attached to: 0
+    rotation: {{axes: [3, 1], angles: [phi, theta]}}
+    mass centre: [0, 0, -l]
+    mass: m
+loads:
+  - uniform gravity: {{vector: [0, 0, -g]}}
+  - damper: {{coordinate: phi, coefficient: c}}
+  - generalized force: {{phi: c*w}}
+motion: {{phi: {{rate: w}}, theta: a}}
+values: {{m: 1, l: 1, g: 8, w: {w}, a: {a}, c: {c}}}
+"""
+
+
+@pytest.mark.parametrize(("w", "a"), [("4", "pi/3"), ("sqrt(8*sqrt(2))", "pi/4"), ("sqrt(16/sqrt(3))", "pi/6")])
+def test_a_motion_at_an_angle_like_pi_3_is_known_to_exist(w: str, a: str) -> None:
+    """l w^2 cos a = g exactly.  With S = w^2 sin(a)^2, C = w^2 cos(a)^2 and d = c/(m l^2 sin(a)^2) the first
+    approximation has the roots 0 and those of s^3 + d s^2 + (S + 4 C) s + d S: d (S + 4 C) > d S, all left."""
+    found = mbsym.loads(CONE.format(w=w, a=a, c=0)).stability.numerical
+    assert (found.word, found.theorems) == (Word.STABLE_BUT_CYCLIC, ("Routh",))
+    damped = mbsym.loads(CONE.format(w=w, a=a, c="1/10")).stability
+    assert damped.numerical.word is Word.ASYMPTOTIC_BUT_CYCLIC
+    assert "enclosures" in decided(damped)
+    assert "does not exist" in mbsym.loads(CONE.format(w="401/100", a=a, c=0)).stability.numerical.explanation
+
+
+@pytest.mark.parametrize(("angle", "word"), [("pi/3", Word.UNSTABLE), ("pi/4", Word.STABLE), ("pi/2", Word.UNSTABLE)])
+def test_a_border_at_an_angle_whose_cosine_is_rational(angle: str, word: Word) -> None:
+    """x'' + (cos(a) - 1/2) x = 0: at a = pi/3 x'' = 0, and x grows."""
+    text = (
+        "mbsym: 1\nname: x\nparameters: {a: real}\nlinear system: {coordinates: [x], K: [[cos(a) - 1/2]]}\nvalues: {a: "
+    )
+    found = mbsym.loads(f"{text}{angle}}}\n").stability
+    assert found.numerical.word is word
+    assert ("exactly" in decided(found)) == (angle == "pi/3")  # elsewhere balls tell the sign

@@ -16,7 +16,7 @@ from mbsym.analysis import symmetric
 from mbsym.analysis.pipeline import Analysis
 from mbsym.analysis.symmetric import symmetries_of
 from mbsym.problems.polynomial_integrals import FUNCTION
-from mbsym.problems.symmetries import in_speeds
+from mbsym.problems.symmetries import blocks
 from mbsym.problems.symmetries.search import DEPENDENT
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
@@ -159,11 +159,11 @@ def test_a_mistake_in_the_equations_is_found_by_the_second_route(monkeypatch):
     """The torque about the third axis left out: q of the condition would be conserved, dI/dt is not zero."""
     text = ODD.replace("[0, A, 0]", "[0, A + C, 0]")
 
-    def wrong(form, energy, equations, images):
-        blocks = in_speeds(form, energy, equations, images)
-        return replace(blocks, rates=(*blocks.rates[:2], blocks.ring.zero))
+    def wrong(*derived):
+        right = blocks(*derived)
+        return replace(right, rates=(*right.rates[:2], right.ring.zero))
 
-    monkeypatch.setattr(symmetric, "in_speeds", wrong)
+    monkeypatch.setattr(symmetric, "blocks", wrong)
     result = found(text)
     assert {name for one in result.symmetries for name, _ in one.directions} & {"r"} == set()
     assert not result.complete
@@ -187,3 +187,42 @@ def test_roots_are_told_apart_by_their_radicands():
     roots = [ring.square_root(square), ring.square_root(square * (x * x + 1)), ring.square_root(x * x + 1)]
     assert independent(ring, roots[:2])
     assert not independent(ring, [ring.context.gen(0), *roots])  # the second may be the product of the others
+
+
+TODA = (
+    TWO
+    + """  - potential: "POTENTIAL"
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("potential", "moved"),
+    [
+        ("exp(k*(x - y))", {"x": "1", "y": "1"}),  # both go together
+        ("exp(k*x + n*y) + exp(-k*x - n*y)", {"x": "-n", "y": "k"}),
+        ("exp(x - y) + exp(2*y - 2*x) + (x - y)**4", {"x": "1", "y": "1"}),
+        ("exp(x - y) + exp(y)", None),
+        ("exp(k*x) + exp(k*y) + exp(-k*x - k*y)", None),  # the product of all three is 1
+    ],
+)
+def test_what_exponentials_leave(potential, moved):
+    """The momentum along what no exponent changes with; with two exponents none.  All of it proved, by ranks."""
+    result = found(TODA.replace("POTENTIAL", potential))
+    assert result.complete
+    assert not result.compared
+    energy, *others = result.symmetries
+    assert (energy.time.is_zero, energy.certainty) == (False, Certainty.PROVED)
+    assert [{name: str(xi) for name, xi in one.directions} for one in others] == ([moved] if moved else [])
+    assert all(one.is_new for one in others)
+
+
+def test_roots_of_cosines_are_independent_but_of_half_angles():
+    """1 - cos x = 2 sin(x/2)^2 is a square; 3 - cos x is none, nor are two of such with each other."""
+    ring = mbsym.loads(TODA.replace("POTENTIAL", "cos(x) + cos(y)")).ring
+    x, y = (ring.generator("cosine", name) for name in "xy")
+    roots = [ring.square_root(one) for one in (3 - x, 3 - y, (3 - x) * (3 - y), 1 - x)]
+    assert independent(ring, roots[:2])
+    assert not independent(ring, roots[:3])
+    assert not independent(ring, roots[3:])
+    assert not independent(ring, [ring.square_root(3 - ring.generator("sine", "x"))])  # undecided, and told so

@@ -7,6 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, Meta, UnsetType
 
 from mbsym.model.claims import CLAIMS
+from mbsym.problems.claims.result import Outcome
 from mbsym.report.documents.base import Part, words
 from mbsym.report.documents.parts import Formula
 
@@ -43,26 +44,7 @@ class Claim(Part, frozen=True):
     place: Annotated[str, "where it is printed"]
     title: Annotated[str, "what it is about, in words"]
     word: Annotated[str, words("held", "refuted", "undecided"), "the outcome in one word"]
-    outcome: Annotated[
-        str,
-        words(
-            "holds exactly",
-            "holds on the relations between the parameters",
-            "holds up to a factor",
-            "holds on every motion",
-            "holds but for border cases",
-            "holds up to a total time derivative",
-            "holds to the digits printed",
-            "holds within the tolerance",
-            "holds to the rounding of double precision",
-            "verified numerically",
-            "undecided",
-            "differs",
-            "differs by a factor",
-            "does not hold",
-        ),
-        "the outcome",
-    ]
+    outcome: Annotated[str, words(*(x.value for x in Outcome)), "the outcome"]
     role: Annotated[
         str | UnsetType, words("necessary", "sufficient"), "what a condition is said to be of stability, if it is said"
     ] = UNSET

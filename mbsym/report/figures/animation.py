@@ -1,9 +1,14 @@
-"""``animation.gif``: the moving system as it is drawn on paper, in a loop of some seconds, for slides and chats."""
+"""``animation.gif``, ``animation.mp4``: the moving system as it is drawn on paper, some seconds of it, for slides and
+chats; the latter by ffmpeg."""
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from collections.abc import Sequence
 from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -18,6 +23,10 @@ from mbsym.simulation import Simulation
 
 #: Pixels of the picture, how many times larger it is drawn, most frames, and seconds of the loop.
 WIDE, TALL, FINER, MOST, SECONDS = 560, 420, 2, 120, 6.0
+#: Of a video, which takes more frames.
+MOST_OF_VIDEO, SECONDS_OF_VIDEO = 240, 8.0
+#: The program that makes videos, as it is found on the path.
+FFMPEG = "ffmpeg"
 #: Hundredths of a second that a frame stands at least: viewers do not go faster.
 SHORTEST = 4
 #: Height of the words above.
@@ -34,13 +43,7 @@ def animation_gif(run: Simulation) -> bytes:
 
     Raises Failure as ``moving_picture`` does, and where nothing is drawn on paper.
     """
-    picture, motion = moving_picture(run)
-    film = Film(picture, run.system, motion.times, {**motion.coordinates, **motion.velocities})
-    count = len(motion.times)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST)).round().astype(int))
-    drawn = _Picture(film, [int(k) for k in chosen], run)
-    if not drawn.size > 0:
-        raise Failure(Message("no body has a place that could be drawn"))
+    drawn = _picture(run, MOST)
     frames = [drawn.frame(k) for k in drawn.marks]
     each = max(SHORTEST, round(100 * SECONDS / len(frames)))
     palette = frames[-1].quantize(64, Image.Quantize.MEDIANCUT)
@@ -48,6 +51,43 @@ def animation_gif(run: Simulation) -> bytes:
     stream = BytesIO()
     shown[0].save(stream, "gif", save_all=True, append_images=shown[1:], duration=10 * each, loop=0, disposal=1)
     return stream.getvalue()
+
+
+def animation_mp4(run: Simulation) -> bytes:
+    """The same as a video.  Raises Failure as ``animation_gif`` does, and where ffmpeg makes none."""
+    drawn = _picture(run, MOST_OF_VIDEO)
+    rate = f"{len(drawn.marks) / SECONDS_OF_VIDEO:.6g}"
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "animation.mp4"
+        raw = ["-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{WIDE}x{TALL}", "-r", rate, "-i", "-"]
+        # One thread and no dates: the same run gives the same bytes, with one version of ffmpeg.
+        same = ["-threads", "1", "-fflags", "+bitexact", "-flags:v", "+bitexact"]
+        shown = ["-pix_fmt", "yuv420p", "-movflags", "+faststart"]  # which players in browsers and slides want
+        try:
+            program = shutil.which(FFMPEG) or FFMPEG
+            words = [program, "-nostdin", "-hide_banner", "-loglevel", "error", *raw, *same, *shown, str(path)]
+            frames = b"".join(drawn.frame(k).tobytes() for k in drawn.marks)
+            done = subprocess.run(words, input=frames, capture_output=True, check=False)
+        except OSError as error:
+            raise Failure(Message("ffmpeg cannot be run: [[why]]", why=error.strerror or str(error))) from error
+        if done.returncode != 0 or not path.is_file():
+            last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
+            raise Failure(
+                Message("ffmpeg made no video: [[why]]", why=" ".join(last) or f"exit code {done.returncode}")
+            )
+        return path.read_bytes()
+
+
+def _picture(run: Simulation, most: int) -> _Picture:
+    """So many frames of it at most.  Raises Failure where nothing is drawn."""
+    picture, motion = moving_picture(run)
+    film = Film(picture, run.system, motion.times, {**motion.coordinates, **motion.velocities})
+    count = len(motion.times)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+    drawn = _Picture(film, [int(k) for k in chosen], run)
+    if not drawn.size > 0:
+        raise Failure(Message("no body has a place that could be drawn"))
+    return drawn
 
 
 class _Picture:
