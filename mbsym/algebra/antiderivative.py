@@ -74,7 +74,12 @@ def _used(ring: Ring, formulas: Iterable[Polynomial]) -> list[int]:
     found = set(occurring(formulas))
     for k in tuple(found):  # a sine with its cosine
         g = ring.generators[k]
-        found |= {ring.index(kind, g.name) for kind in ("sine", "cosine") if g.kind in ("sine", "cosine") and g.name}
+        if g.kind not in ("sine", "cosine"):
+            continue
+        if g.argument is None:
+            found |= {ring.index(kind, g.name) for kind in ("sine", "cosine")}
+        else:  # adjoined in pairs, the sine first
+            found.add(k + 1 if g.kind == "sine" else k - 1)
     return sorted(found)
 
 

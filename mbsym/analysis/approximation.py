@@ -11,20 +11,20 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.certainty import Certainty
-from mbsym.algebra.failures import Failure
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message, joined
-from mbsym.expressions.tree import Call, Expression, Name, Number, Operation, children, names, walk
+from mbsym.expressions.tree import Call, Expression, Name, Number, Operation, children, names, number, walk
 from mbsym.formulas.formula import Column, column
 from mbsym.mechanics import newton_euler
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import is_steady, turning
 from mbsym.mechanics.rotation_orders import rotation_orders
 from mbsym.mechanics.variables import expressions
-from mbsym.model.system import MotionEntry, System
+from mbsym.model.system import MotionEntry, Relation, System
 from mbsym.problems import equilibrium, linearisation
 from mbsym.problems.equilibrium import Displacement
 from mbsym.problems.linearisation import Linearisation
@@ -221,6 +221,30 @@ def judgeable(analysis: Analysis) -> Linearisation:
         )
         raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
     return found
+
+
+def judgeable_with_zeros(system: System, vanishing: Sequence[str]) -> tuple[str, ...]:
+    """Of parameters, those that have to be 0 identically for problem 6 to judge; none where it does, or still does not.
+
+    A relation says so, where a value is but one of many.
+    """
+    from mbsym.analysis.pipeline import Analysis
+
+    def judged(zeros: Sequence[str]) -> bool:
+        held = (*system.relations, *(Relation(name, number(0)) for name in zeros))
+        try:
+            Analysis(replace(system, relations=held), ()).judgeable  # noqa: B018
+        except NOT_THERE:
+            return False
+        return True
+
+    needed = [*vanishing]
+    if judged([]) or not judged(needed):
+        return ()
+    for name in vanishing:
+        if judged([one for one in needed if one != name]):
+            needed.remove(name)
+    return tuple(needed)
 
 
 def _vanish(*matrices: Matrix) -> bool:

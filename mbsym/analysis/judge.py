@@ -6,6 +6,8 @@ Asked in this order, each only where those before leave the nonlinear system ope
 2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
 3. terms of higher order: normal forms, centre manifolds (problem 11).
 
+Relations that give coordinates explicitly are put in before 2: the motion does not know which coordinates tell it.
+
 Step 3 is asked, too, where an energy that does not grow shows stability and dissipation of higher order may make it
 asymptotic.
 """
@@ -18,17 +20,19 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from mbsym.algebra.failures import NOT_THERE
+from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.analysis import higher
 from mbsym.analysis.higher import ignorable
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
+from mbsym.model.constraints import Relation
+from mbsym.model.substitution import without_explicit_relations
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import HigherOrder
-from mbsym.problems.stability.verdict import Verdict, undecided
+from mbsym.problems.stability.verdict import Flaw, Verdict, undecided
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -66,19 +70,28 @@ class Judge:
     def may_add(self, verdict: Verdict) -> bool:
         """Whether the nonlinear system may decide more: of an open verdict, or of stability by an energy that may fall.
 
-        What has constraints or speeds of its own is not judged further.
+        What has speeds of its own is not judged further, nor what has constraints that give no coordinate explicitly.
         """
         of = self.analysis
-        if of.system.linear is not None or of.system.constraints or of.system.speeds:
+        if of.system.linear is not None or of.system.speeds:
             return False
+        if of.system.constraints:
+            return self._in_fewer is not None and self._in_fewer.may_add(verdict)
         if verdict.word is Word.STABLE:
-            return self._may_lose_energy
+            curved = verdict.because(Because.HIGHER_MINIMUM)  # friction of first order may decay there, too
+            return self._loses_energy if curved else self._may_lose_energy
         return verdict.word.open and not verdict.coordinates_singular and not any(map(verdict.because, _NO_MOTION))
 
     @cached_property
     def _may_lose_energy(self) -> bool:
-        known = higher.forces_bend(self.analysis) and installed("mbsym.problems.normal_forms")
-        return known and not ignorable(self.analysis)[0]
+        return higher.forces_bend(self.analysis) and self._loses_energy
+
+    @cached_property
+    def _loses_energy(self) -> bool:
+        try:
+            return installed("mbsym.problems.normal_forms") and not ignorable(self.analysis)[0]
+        except Failure:
+            return False
 
     def decided(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
         """A verdict of step 1, with what the nonlinear system adds: steps 2 and 3.
@@ -87,11 +100,13 @@ class Judge:
         """
         if not self.may_add(verdict):
             return verdict
+        if self._in_fewer is not None:
+            return self._told_in_fewer(verdict, values)
         if verdict.word.open and all(isinstance(x, Fraction) for x in values.values()):
             from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
 
             verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
-            if not verdict.word.open or verdict.coordinates_singular:
+            if not self.may_add(verdict):
                 return verdict
         if not installed("mbsym.problems.normal_forms"):
             return verdict
@@ -100,6 +115,34 @@ class Judge:
         if further is None or (verdict.stable and not further.word.asymptotic):
             return verdict
         return further
+
+    @cached_property
+    def _in_fewer(self) -> Judge | None:
+        """The judge of this motion in the coordinates that explicit relations leave; None with other constraints."""
+        of = self.analysis
+        if not any(isinstance(one, Relation) for one in of.system.constraints):
+            return None
+        system = without_explicit_relations(of.system)
+        if system.constraints:
+            from mbsym.mechanics.constraints.rows import said_rows
+
+            if said_rows(type(of)(system, (), of.terms).scene):  # those that say 0 = 0 followed from what is put in
+                return None
+        return Judge(type(of)(replace(system, constraints=()), (), of.terms, suggests=False))
+
+    def _told_in_fewer(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
+        """What the coordinates say that are left; not where others follow a drift unevenly: their rates do not stay."""
+        assert self._in_fewer is not None
+        try:
+            further = self._in_fewer(values)
+            drift = self._in_fewer.analysis.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
+            every = self.analysis.system.coordinates if Flaw.HERE in further.flawed else drift
+            rows = self.analysis.constraints.jacobian.polynomials
+        except (Failure, *NOT_THERE):
+            return verdict
+        ring = self.analysis.ring
+        uneven = any(ring.dependencies(x, every) for row in rows for x in row)
+        return verdict if further.word.open or uneven else further
 
     @cached_property
     def _of_higher_order(self) -> Any:

@@ -21,7 +21,6 @@ from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:
@@ -40,12 +39,11 @@ def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Eq
     """Verdicts at isolated places that are open, or rest on an energy that may fall, judged further."""
     if not installed("mbsym.problems.normal_forms") or len(system.coordinates) > MOST_COORDINATES:
         return found
-    words = {one.verdict.word for one in found.equilibria}
     bare = at_numbers(system, values)
-    further = {word for word in words if word.open}
-    if Word.STABLE in words and not system.constraints and higher.forces_bend(Analysis(bare, ())):
-        further.add(Word.STABLE)
-    listed = (_decided(bare, one) if one.verdict.word in further else one for one in found.equilibria)
+    judge = Judge(Analysis(bare, ()))
+    listed = (
+        _decided(bare, one) if one.verdict.word.open or judge.may_add(one.verdict) else one for one in found.equilibria
+    )
     return replace(found, equilibria=tuple(listed))
 
 
@@ -60,11 +58,10 @@ def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
     )
     analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
-        if bare.constraints:  # of velocities, where the whole of problem 6 knows more than the list
-            known = not enclosed and one.verdict.because(Because.NO_EQUATIONS)
-            found = analysis.stability if known else None
+        if one.verdict.because(Because.NO_EQUATIONS):  # of velocities: the whole of problem 6 knows more than the list
+            found = None if enclosed else analysis.stability
             return one if found is None else replace(one, verdict=found.numerical or found.verdict)
-        if not {*one.free} <= higher.ignorable(analysis)[1]:
+        if (bare.constraints and one.free) or not {*one.free} <= higher.ignorable(analysis)[1]:
             return one
         return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))
     except (Failure, *NOT_THERE):

@@ -30,7 +30,18 @@ from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Table
-from mbsym.expressions.tree import FUNCTIONS, SIGNATURES, Call, Expression, Name, Negative, Number, Operation
+from mbsym.expressions.tree import (
+    FUNCTIONS,
+    SIGNATURES,
+    Call,
+    Expression,
+    Name,
+    Negative,
+    Number,
+    Operation,
+    multiply,
+    text,
+)
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
 MAX_LENGTH = 20_000
@@ -399,13 +410,15 @@ class _Parser:
         if self.next.text != "**":
             return base
         self.advance()
-        exponent = self.exponent()
+        exponent = self.exponent(base)
+        if not isinstance(exponent, Number):
+            return exponent  # what it holds is looked at, too
         if _is_zero(base) and exponent.value <= 0:
             self.complain("division-by-zero", "zero has no such power", start, self.last_end)
         return self.grown(Operation("**", base, exponent, self.span_of(start, self.last_end)), base)
 
-    def exponent(self) -> Number:
-        """One rational number: ``x**(1/2)`` is folded here, symbols are refused."""
+    def exponent(self, base: Expression) -> Expression:
+        """One rational number: ``x**(1/2)`` is folded here, symbols are refused, which gives no number."""
         start = self.next.start
         self.nest(self.next)
         tree = self.signed()
@@ -413,8 +426,11 @@ class _Parser:
         end = self.last_end
         form = linear_form(tree)
         if form is None or not form.is_constant:
-            self.complain("bad-exponent", "an exponent must be a rational number", start, end)
-            return Number(Fraction(1))
+            of_euler = base == Name("e")
+            written = text(Call("exp", tree if of_euler else multiply(tree, Call("log", base))))
+            hint = Message("[[base]] to this power is [[written]]", base=text(base), written=written)
+            self.complain("bad-exponent", "an exponent must be a rational number", start, end, hint)
+            return tree if of_euler else self.grown(Operation("*", base, tree, self.span_of(start, end)), base, tree)
         value = form.constant
         if abs(value) > MAX_EXPONENT or value.denominator > MAX_DENOMINATOR:
             bounds = Message(

@@ -7,23 +7,32 @@ from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import (
     ZERO,
     Call,
+    Derivation,
     Expression,
     Name,
     Negative,
     Number,
     Operation,
     add,
+    differentiate,
+    divide,
     is_number,
     multiply,
     names,
     negative,
+    number,
+    power,
+    sign_by_structure,
     substitute,
     subtract,
 )
+from mbsym.model.constraints import Relation
 from mbsym.model.inputs import Input
+from mbsym.model.loads import CoordinateDamper, CoordinateSpring, ForceFunction, GeneralizedForce, Load, Rayleigh
 from mbsym.model.system import System
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
@@ -91,3 +100,71 @@ def held(system: System) -> System:
 def with_held(inputs: tuple[Input, ...], values: Mapping[str, Expression]) -> tuple[Input, ...]:
     """The inputs with their constant values on the unperturbed motion, where these are given."""
     return tuple(replace(one, held=values.get(one.name, ZERO)) for one in inputs)
+
+
+# A system with expressions in place of coordinates that its relations give.
+
+
+def without_explicit_relations(system: System) -> System:
+    """The same motions in fewer coordinates: a relation c s = f(q), c a number or a parameter of known sign, gives s.
+
+    Generalised forces go with the displacements that are left, Q_q + Q_s ds/dq.  Relations that hold prescribed
+    quantities or t stay, and all that are not so.  What only tells of coordinates (claims, initial values) is left out.
+    """
+    if any(isinstance(one, Relation) for one in system.constraints):
+        system = replace(held(system), claims=(), abbreviations=(), notation=(), outputs=(), reactions=())
+        system = replace(system, initial=(), start=(), limits=(), order=(), dependent=())
+    while (explicit := _explicit(system)) is not None:
+        system = _without(system, *explicit)
+    return system
+
+
+def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
+    """A relation, a coordinate and what that is by it; None where there is none."""
+    signs = {one.name: one.sign for one in system.parameters}
+    still = {*system.coordinates, *signs}
+    for relation in system.constraints:
+        if not isinstance(relation, Relation) or not names(relation.left) | names(relation.right) <= still:
+            continue
+        zero = subtract(relation.left, relation.right)
+        for name in reversed(system.coordinates):
+            slope = differentiate(zero, name)
+            if not names(slope) & {*system.coordinates} and sign_by_structure(slope, signs) is not None:
+                return relation, name, divide(negative(folded(zero, {name: ZERO})), slope)
+    return None
+
+
+def _without(system: System, relation: Relation, name: str, value: Expression) -> System:
+    """The system with the value of a coordinate put in, and its rate for its velocity."""
+    free = [one for one in system.coordinates if one != name]
+    rate = Derivation({one: Name(velocity_name(one)) for one in free})(value)
+    images = {name: value, velocity_name(name): rate}
+
+    def acting(load: Load) -> Load:
+        match load:
+            case CoordinateSpring(coordinate, stiffness, rest) if coordinate == name:
+                square = power(subtract(value, rest), number(2))
+                return ForceFunction(negative(divide(multiply(stiffness, square), number(2))))
+            case CoordinateDamper(coordinate, coefficient) if coordinate == name:
+                return Rayleigh(divide(multiply(coefficient, power(rate, number(2))), number(2)))
+            case GeneralizedForce(components):
+                forces = dict.fromkeys(free, ZERO) | {one: force for one, force in components if one != name}
+                for one in free:
+                    forces[one] = add(
+                        forces[one], multiply(dict(components).get(name, ZERO), differentiate(value, one))
+                    )
+                return GeneralizedForce(tuple(forces.items()))
+        return load
+
+    bodies = tuple(
+        replace(body, coordinates=tuple(one for one in body.coordinates if one != name), relative_velocity=None)
+        for body in system.bodies
+    )
+    there = replace(
+        system,
+        bodies=bodies,
+        loads=tuple(kept for load in system.loads if (kept := acting(load).simplified()) is not None),
+        constraints=tuple(one for one in system.constraints if one is not relation),
+        motion=tuple(entry for entry in system.motion if entry.coordinate != name),
+    )
+    return put(there, images, folded)

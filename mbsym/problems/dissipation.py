@@ -32,7 +32,7 @@ from itertools import product as choices
 from typing import Any
 
 from mbsym.algebra.characteristic import leading_minors
-from mbsym.algebra.factors import occurring
+from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
@@ -677,9 +677,18 @@ class _Loss:
             return EnergyLaw.CONSERVED
         if min(map(sum, parts)) < 2:
             return EnergyLaw.UNKNOWN
-        if self._even(parts) or self._definite(parts) or self._by_degree(parts):
+        if self._even(parts) or self._definite(parts) or self._by_degree(parts) or self._beside_squares():
             return EnergyLaw.NOT_GROWING
         return EnergyLaw.UNKNOWN
+
+    def _beside_squares(self) -> bool:
+        """-P = s^2 r with r nowhere negative: in other coordinates squares of sums are written out."""
+        unit, powers = irreducible_factors(self.loss)
+        rest = self.loss * 0 + unit
+        for factor, exponent in powers:
+            rest = rest * factor if exponent % 2 else rest
+        parts = _by_velocities(self.ring, rest, self.coordinates)
+        return parts is not None and self._by_degree(parts)
 
     def _even(self, parts: Mapping[tuple[int, ...], Polynomial]) -> bool:
         """Even powers only, with coefficients that are not negative."""

@@ -19,7 +19,8 @@ from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, R
 from mbsym.problems.stability.word import Word
 
 #: Places that are told with the condition: the others are those of the list as a whole.
-_TOLD = (Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE, Place.EQUALITY, Place.DRIFTS)
+_TOLD = {Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE}
+_TOLD |= {Place.EQUALITY, Place.MERELY, Place.DRIFTS}
 
 
 #: A formula of so many characters that was shown before is written again, rather than its name.

@@ -292,6 +292,8 @@ class Scope:
             return "a number is wanted here"
         if allowed.kinds == ("coordinate",):
             return listed("the coordinates are", self.of_kind("coordinate"))
+        if name == "e" and "parameter" in allowed.kinds:
+            return "declare it under 'parameters'; Euler's number is exp(1)"
         if "abbreviation" in allowed.kinds:
             return "declare it under 'abbreviations' or 'parameters'"
         return "declare it under 'parameters'" if "parameter" in allowed.kinds else None

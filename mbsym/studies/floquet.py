@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
@@ -61,41 +60,19 @@ def answer(asked: Asked, request: Request, found: Judged) -> Answer:
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+    from mbsym.analysis.approximation import judgeable_with_zeros
     from mbsym.numerics.orbits.floquet import ConstantCoefficients, NotPeriodic
 
-    if isinstance(error, ConstantCoefficients) and (zeros := _relations_to_zero(asked)):
+    vanishing = [name for name, value in asked.motion.parameters.items() if value == 0]
+    if isinstance(error, ConstantCoefficients) and (zeros := judgeable_with_zeros(asked.system, vanishing)):
         text = (
             "its coefficients are constant at these values: with 'relations: {[[zeros]]}' in place of these values "
             "problem 6 judges it (mbsym run)"
         )
-        error = NotPeriodic(Message(text, zeros=zeros))
+        error = NotPeriodic(Message(text, zeros=", ".join(f"{name}: 0" for name in zeros)))
     if isinstance(error, NotPeriodic):
         return refused("there is no periodic first approximation to judge", error)
     return no_program(error, asked, request)
-
-
-def _relations_to_zero(asked: Asked) -> str:
-    """``q: 0``: which parameters of value 0 make problem 6 an answer; nothing where it has one, or they do not."""
-    from mbsym.algebra.failures import NOT_THERE
-    from mbsym.analysis.pipeline import Analysis
-    from mbsym.expressions.tree import number
-    from mbsym.model.system import Relation
-
-    def judged(zeros: Sequence[str]) -> bool:
-        held = (*asked.system.relations, *(Relation(name, number(0)) for name in zeros))
-        try:
-            Analysis(replace(asked.system, relations=held), ()).judgeable  # noqa: B018
-        except NOT_THERE:
-            return False
-        return True
-
-    zeros = [name for name, value in asked.motion.parameters.items() if value == 0]
-    if judged([]) or not judged(zeros):
-        return ""
-    for name in zeros[:]:
-        if judged([one for one in zeros if one != name]):
-            zeros.remove(name)
-    return ", ".join(f"{name}: 0" for name in zeros)
 
 
 STUDY = Study("floquet", Request, floquet.derive, answer, refusal, constraints=True, out=Folder(json=True))

@@ -213,3 +213,11 @@ def test_no_closed_form_is_not_called_no_energy() -> None:
     assert found.integrals == ()
     assert found.stability.verdict.theorem == "Lagrange-Dirichlet"
     assert told(found, 7) == ["None in closed form of the kinds that are looked for."]
+
+
+def test_a_force_with_the_cosine_of_a_square_has_an_energy() -> None:
+    """x'' = -x cos(x^2): V = sin(x^2)/2; and x'' = -x cos(x^2 + x), of which no W is a polynomial in x, sin, cos."""
+    found = mbsym.loads(TRACK.replace("LOAD", 'generalized force: {x: "-k*x*cos(x**2)"}').replace("+ V", ""))
+    assert [item.status for item in found.integrals] == ["proved"]
+    found = mbsym.loads(TRACK.replace("LOAD", 'generalized force: {x: "-k*x*cos(x**2 + x)"}').replace("+ V", ""))
+    assert found.integrals == ()

@@ -24,6 +24,7 @@ import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, compiled_kernel
+from mbsym.numerics.orbits.periodic import autonomous
 from mbsym.numerics.orbits.variational import Flow
 
 #: Blocks of the second half of the time; Student's factor for 95 % with BLOCKS - 1 degrees of freedom.
@@ -55,7 +56,8 @@ class Exponents:
     and ``sum_error`` how far the sum of all exponents is from it; nan where not all were asked for.
 
     ``linear``: the equations are linear in the state (proved: their Jacobian does not know it), so that all motions
-    part alike and none is chaotic; ``resting``: the motion is a rest in every digit.
+    part alike and none is chaotic; ``planar``: smooth equations without the time move two variables, and no such
+    motion is chaotic (Poincare and Bendixson); ``resting``: the motion is a rest in every digit.
     """
 
     values: Any
@@ -67,6 +69,7 @@ class Exponents:
     time: float
     ended: Breakdown | None = None
     linear: bool = False
+    planar: bool = False
     resting: bool = False
 
     @property
@@ -141,7 +144,8 @@ def exponents(
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
     doubt, linear = _uncertainty(rates, times), dynamics.linear
-    return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, resting)
+    planar = most == 2 and autonomous(dynamics)
+    return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, planar, resting)
 
 
 def _directions(size: int, columns: int) -> Any:

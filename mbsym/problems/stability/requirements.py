@@ -53,6 +53,8 @@ class Place(StrEnum):
     BESIDE = "with equality, the other conditions holding, the motion is unstable"
     #: In exactly linear equations: where p = 0 and the other conditions hold the motion is stable.
     EQUALITY = "with equality, the other conditions holding, the motion is stable, too"
+    #: In exactly linear equations: where p = 0 and the other conditions hold nothing grows, but not all decays.
+    MERELY = "with equality, the other conditions holding, the motion is stable, but not asymptotically"
     #: The same, but along directions on which nothing depends then it drifts.
     DRIFTS = "with equality, the other conditions holding, the motion is stable but for a drift"
     #: Without it the first approximation has solutions that grow (linearly in time); the motion may be stable.

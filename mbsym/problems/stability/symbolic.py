@@ -281,8 +281,8 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     factors = _factors(polynomial[::2] if even else polynomial)
     turned = None if even else _turned_factor(system, factors)
     requirements, remarks = _requirements(system, factors, even, signs, known, turned)
-    if system.exact and even and borders:
-        requirements = tuple(_with_equality(system, r, requirements, known) for r in requirements)
+    if system.exact and borders:
+        requirements = tuple(_with_equality(system, r, requirements, known, even) for r in requirements)
     if mass.word is not Definite.POSITIVE:
         remarks.append("M is taken to be positive definite, as the matrix of a kinetic energy is.")
     if zero_power:
@@ -331,7 +331,31 @@ def _with_blocks(system: LinearSystem, known: Signs, further: bool = True) -> Ve
     even = system.exact and theory.variable == "lambda^2" and theory.verdict.word is not Word.UNSTABLE
     if even and any(_has_blocks(system, factor, known, further) for factor in theory.factors):
         return concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
+    if system.exact and theory.verdict.word.open and _one_pair_beside_decay(theory, known):
+        return bounded({Fact.EXACTLY_LINEAR})
     return theory.verdict
+
+
+def _one_pair_beside_decay(theory: Theory, known: Signs) -> bool:
+    """Whether at all parameters one simple pair of roots is imaginary, all others to the left."""
+    if theory.zero_power or theory.method is not Method.HURWITZ or theory.mass.word is not Definite.POSITIVE:
+        return False
+    pairs = 0
+    for factor in theory.factors:
+        p = factor.coefficients
+        if len(p) == 3 and p[1] == 0:
+            pairs += factor.multiplicity
+            wanted = [p[0] * p[2]]
+        else:
+            word = known.sign(p[-1])
+            p = tuple(-x for x in p) if word == "negative" else p
+            try:
+                wanted = [p[-1], *(x for _, x in lienard_chipart(p)[1:])]
+            except TooLargeError:
+                return False
+        if any(known.sign(x) != "positive" for x in wanted):
+            return False
+    return pairs == 1
 
 
 def _has_blocks(system: LinearSystem, factor: Factor, known: Signs, further: bool) -> bool:
@@ -357,9 +381,9 @@ def _has_blocks(system: LinearSystem, factor: Factor, known: Signs, further: boo
 
 
 def _with_equality(
-    system: LinearSystem, wanted: Requirement, every: Sequence[Requirement], known: Signs
+    system: LinearSystem, wanted: Requirement, every: Sequence[Requirement], known: Signs, even: bool
 ) -> Requirement:
-    """The requirement with the places that the verdicts on its borders give it."""
+    """The requirement with the places that the verdicts on its borders give it; ``even``: none decays anywhere."""
     condition = wanted.condition
     if condition.kind not in ("inequality", "nonzero") or Place.HARMLESS in (wanted.place, wanted.strict):
         return wanted
@@ -370,7 +394,7 @@ def _with_equality(
         found: set[Place | None] = set()
         for x in polynomials:
             beside = [*others, *((y, "!=") for y in apart if y is not x)]
-            found.add(_place_of_equality(system, x, known, beside))
+            found.add(_place_of_equality(system, x, known, beside, even))
         places.append(found.pop() if len(found) == 1 else None)
     return replace(wanted, place=places[0] or wanted.place, strict=places[1] or wanted.strict)
 
@@ -383,7 +407,7 @@ def _facts_of(r: Requirement) -> Iterator[tuple[Polynomial, str]]:
 
 
 def _place_of_equality(
-    system: LinearSystem, p: Polynomial, known: Signs, beside: Sequence[tuple[Polynomial, str]]
+    system: LinearSystem, p: Polynomial, known: Signs, beside: Sequence[tuple[Polynomial, str]], even: bool
 ) -> Place | None:
     verdict = on_border(system, known, p)
     if verdict is not None and verdict.word is Word.UNSTABLE:
@@ -398,7 +422,9 @@ def _place_of_equality(
         return None
     if Flaw.HERE in verdict.flawed:
         return Place.DRIFTS
-    return Place.EQUALITY if Flaw.CYCLIC not in verdict.flawed or verdict.counted is Word.STABLE else None
+    if Flaw.CYCLIC in verdict.flawed and verdict.counted is not Word.STABLE:
+        return None
+    return Place.EQUALITY if even or verdict.word is Word.ASYMPTOTIC else Place.MERELY
 
 
 def _turned_factor(system: LinearSystem, factors: tuple[Factor, ...]) -> int | None:

@@ -99,6 +99,11 @@ def _judged(found: Exponents) -> Message:
             )
         case Parting.POSITIVE if found.resting:
             return Message("the motion is a rest, and neighbouring motions leave it exponentially over this time")
+        case Parting.POSITIVE if found.planar:
+            return Message(
+                "neighbouring motions part exponentially over this time; two variables and no time in the equations: "
+                "none of their motions is chaotic"
+            )
         case Parting.POSITIVE:
             return Message(
                 "neighbouring motions part exponentially over this time, as chaotic ones do; this is no proof of chaos"
@@ -111,6 +116,13 @@ def _judged(found: Exponents) -> Message:
             "the largest exponent is not distinguishable from zero, which takes three times its "
             "uncertainty and three times "
             "log(T)/T = [[bound]]; the equations are linear: none of their motions is chaotic",
+            bound=bound,
+        )
+    if found.planar:
+        return Message(
+            "the largest exponent is not distinguishable from zero, which takes three times its "
+            "uncertainty and three times "
+            "log(T)/T = [[bound]]; two variables and no time in the equations: none of their motions is chaotic",
             bound=bound,
         )
     if found.falling:

@@ -12,6 +12,7 @@ By hand, of x'' + g y' + a x = 0, y'' - g x' + b y = 0 (a particle in a magnetic
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
 from conftest import at_values
@@ -19,6 +20,7 @@ from terminal import told
 
 import mbsym
 from mbsym.problems.stability.requirements import Place
+from mbsym.problems.stability.word import Word
 from mbsym.report.conditions import statements
 
 FIELD = """
@@ -102,6 +104,45 @@ def test_the_judge_agrees_at_points_of_every_border(tmp_path) -> None:
                 assert stable is (x.place is Place.EQUALITY), (x, g, a)
                 seen.add(x.place)
     assert Place.EQUALITY in seen
+
+
+#: Friction d, stiffness k, circulation n: z'' + d z' + (k - i n) z = 0 with z = x + i y has z = exp(i w t) where
+#: k = w^2 and d w = n: k d^2 = n^2, the other root to the left of it; one oscillator has d = 0 < k, or k = 0 < d.
+DECAYING = {
+    "{coordinates: [x, y], D: [[d, 0], [0, d]], K: [[k, 0], [0, k]], N: [[0, n], [-n, 0]]}": {"k*d**2 - n**2"},
+    "{coordinates: [x], D: [[d]], K: [[k + 0*n]]}": {"d", "k"},
+    "{coordinates: [x, y], D: [[d, 0], [0, 0]], K: [[k, -n], [-n, k]]}": set(),
+    "{coordinates: [x, y], D: [[d, 0], [0, d]], G: [[0, n], [-n, 0]], K: [[k, 0], [0, k]]}": set(),
+}
+
+
+@pytest.mark.parametrize("linear", DECAYING)
+@pytest.mark.parametrize("signs", ["d: positive, k: positive, n: positive", "d: real, k: real, n: positive"])
+def test_borders_of_what_decays(linear: str, signs: str, tmp_path) -> None:
+    """What is told of equality, against the exact verdict at points of every border."""
+    text = f"mbsym: 1\nname: decaying\nparameters: {{{signs}}}\nlinear system: {linear}\n"
+    path = tmp_path / "decaying.yaml"
+    path.write_text(text, encoding="utf-8")
+    (part,) = mbsym.load(path).stability.subsystems
+    listed = [x for x in statements(part.ring, part.theory.requirements) if x.formula is not None]
+    merely = {str(x.formula) for x in listed if x.place is Place.MERELY}
+    assert merely >= {x for x in DECAYING[linear] if x in {str(one.formula) for one in listed}}
+    for d, k, n in product(*[[Fraction(x) for x in ("-1", "0", "1", "2")]] * 3):
+        if n <= 0 or ("real" not in signs and min(d, k) <= 0):
+            continue
+        gaps = [eval(str(x.formula), {"__builtins__": {}}, {"d": d, "k": k, "n": n}) for x in listed]
+        word = at_values(path, d=str(d), k=str(k), n=str(n)).stability.numerical.word
+        for i, (x, gap) in enumerate(zip(listed, gaps, strict=True)):
+            others = all(
+                y != 0 if z.relation == "!=" else y > 0 for z, y in zip(listed, gaps, strict=True) if z is not x
+            )
+            if gap == 0 and (x.place is Place.STRICTLY or (others and x.place is Place.BESIDE)):
+                assert word is Word.UNSTABLE, (i, d, k, n)
+            if gap == 0 and others and x.place is Place.MERELY:
+                assert word.stable, (i, d, k, n)
+                assert word is not Word.ASYMPTOTIC, (i, d, k, n)
+            if gap == 0 and others and x.place is Place.EQUALITY:
+                assert word.stable, (i, d, k, n)
 
 
 BODY = """

@@ -42,7 +42,8 @@ class Condition(Statement, frozen=True, kw_only=True):
         "the motion may still be asymptotically stable), sufficient (nothing), method (this method decides nothing "
         "then), harmless (nothing: a vanishing discriminant of a potential system), strictly (necessary: with equality "
         "the motion is unstable, too), beside (with equality, the other conditions holding, the motion is unstable), "
-        "equality (with equality, the other conditions holding, the motion is stable, too)",
+        "equality (with equality, the other conditions holding, the motion is stable, too), merely (with equality, the "
+        "other conditions holding, the motion is stable, but not asymptotically)",
     ]
 
 
