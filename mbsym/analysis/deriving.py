@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
+    from mbsym.problems.reduction import Reduction
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -182,10 +183,31 @@ def balance_of(analysis: Analysis) -> Balance:
         redundant = () if tied is None or tied.in_speeds else tied.redundant
         proved = frozenset(row.name for row in redundant if row.certainty is Certainty.PROVED)
         about = analysis.reduced.about
-        return ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=about, following=proved)
+        return ConstrainedBalance(
+            analysis.scene,
+            energies,
+            analysis.signs,
+            {},
+            about=about,
+            following=proved,
+            oscillating=_oscillating(analysis, about),
+        )
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )
+
+
+def _oscillating(analysis: Analysis, about: Reduction) -> str:
+    """The one position that the velocities of a nonholonomic system follow along every motion, or nothing."""
+    positions = [name for name in about.coordinates if name not in about.idle]
+    if about.holonomic or about.leaf or about.following or len(positions) != 1:
+        return ""
+    from mbsym.problems.constraints.motion import oscillating_position
+
+    derived = analysis.optional("equations")
+    if derived is None or derived.embedded is None:
+        return ""
+    return oscillating_position(analysis.ring, derived.embedded, analysis.system.coordinates)
 
 
 def state_space_of(analysis: Analysis) -> StateSpace:

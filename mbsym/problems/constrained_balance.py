@@ -32,11 +32,13 @@ MOST_ENTRIES = 4_000_000
 class ConstrainedBalance(Balance):
     """The balance of the open tree, as far as it holds under constraints; ``about`` says what they leave free.
 
-    ``following`` are rows on velocities that are proved to follow from others: they say nothing further.
+    ``oscillating`` is the position of ``constraints.motion.oscillating_position``, "" without one.  ``following`` are
+    rows on velocities that are proved to follow from others: they say nothing further.
     """
 
     about: Reduction | None = None
     following: frozenset[RowName] = frozenset()
+    oscillating: str = ""
 
     @cached_property
     def law(self) -> EnergyLaw:

@@ -12,15 +12,19 @@ Sources: G. A. Maggi, Principii di stereodinamica (1901); Neimark & Fufaev, chap
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.constraints.embedding import projected
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Equations
+
+#: Kinds of generators that are analytic functions of positions, velocities and parameters, and not of the time.
+_SMOOTH = frozenset({"parameter", "coordinate", "velocity", "sine", "cosine", "reciprocal", "root"})
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,6 +50,41 @@ def embedded_equations(form: SpeedForm, equations: Equations, found: Constraints
     images = dependent_velocities(form, found.solved)
     right = [ring.reduce(ring.substitute(x, images)) for x in right]
     return Embedded(found.free, Matrix.of(ring, matrix), column(ring, right))
+
+
+def oscillating_position(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> str:
+    """The one position q with  M(q) (q', w)' = f(q, q', w)  where a reversal of q' alone reverses the time; "" if none.
+
+    M has no entry between q and w, the equation of q is even in q', and those of w are q' times functions of q and w:
+
+        w' = q' A(q, w),    q'' = F(q, q'^2, w).
+
+    So w is a function of q along every motion, w = w(q; c), with as many constants c as there are velocities w: bodies
+    of revolution that roll on a plane (Chaplygin 1897, Appell and Korteweg 1899), where no integral has a closed form.
+    """
+    matrix, forcing = embedded.mass_matrix.polynomials, [x.polynomial for x in embedded.forcing]
+    entries = [*(x for row in matrix for x in row), *forcing]
+    moving = [name for name in coordinates if any(ring.depends_on(x, name) for x in entries)]
+    if len(moving) != 1 or moving[0] not in embedded.free or len(embedded.free) == 1:
+        return ""
+    held = [ring.generators[k] for k in ring.held(entries)]
+    if any(g.kind not in _SMOOTH or (g.kind == "velocity" and g.name not in embedded.free) for g in held):
+        return ""
+    place = embedded.free.index(moving[0])
+    rate = ring.generator("velocity", moving[0])
+    reversed_rate = {ring.index("velocity", moving[0]): -rate}
+    for i, force in enumerate(forcing):
+        parity = ring.one if i == place else -ring.one
+        if not ring.reduce(ring.substitute(force, reversed_rate) - parity * force).is_zero():
+            return ""
+        if i != place and not (matrix[i][place].is_zero() and _is_linear(ring, force, moving[0])):
+            return ""
+    return moving[0]
+
+
+def _is_linear(ring: Ring, p: Polynomial, velocity: str) -> bool:
+    slope = ring.velocity_derivative(p, velocity)
+    return bool(ring.reduce(ring.velocity_derivative(slope, velocity)).is_zero())
 
 
 def dependent_velocities(form: SpeedForm, solved: Solved) -> dict[int, Polynomial]:

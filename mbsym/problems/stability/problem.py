@@ -416,6 +416,7 @@ def _form(
 
     closed = isinstance(balance, ConstrainedBalance) and balance.closed
     at = [about.about.index(name) for name in part.coordinates]
+    oscillating = balance.oscillating if isinstance(balance, ConstrainedBalance) else ""
     return NonholonomicForm(
         idle=tuple(i for i, name in enumerate(part.coordinates) if name in about.idle),
         family=about.dimension(at, signs) if free else 0,
@@ -423,6 +424,7 @@ def _form(
         open_names=() if closed else about.idle,
         outside=outside,
         following=tuple(i for i, name in enumerate(part.coordinates) if name in about.following),
+        pairs=int(oscillating in part.coordinates) if oscillating else None,
     )
 
 

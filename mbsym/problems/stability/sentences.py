@@ -79,6 +79,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "The equations of motion are exactly linear: but for shifts on which they do not depend every disturbed motion "
         "stays near."
     ),
+    Because.FOLLOWS_ONE: (
+        "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
+        "form), and this position oscillates as in a system of one degree of freedom."
+    ),
     Because.LINEAR_GROWS: (
         "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
         "there are disturbances that grow like a power of t."
