@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
-    from mbsym.problems.reduction import Reduction
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
     from mbsym.problems.state_space import StateSpace
@@ -190,24 +189,29 @@ def balance_of(analysis: Analysis) -> Balance:
             {},
             about=about,
             following=proved,
-            oscillating=_oscillating(analysis, about),
+            **_of_the_steady_motions(analysis),
         )
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )
 
 
-def _oscillating(analysis: Analysis, about: Reduction) -> str:
-    """The one position that the velocities of a nonholonomic system follow along every motion, or nothing."""
-    positions = [name for name in about.coordinates if name not in about.idle]
-    if about.holonomic or about.leaf or about.following or len(positions) != 1:
-        return ""
-    from mbsym.problems.constraints.motion import oscillating_position
+def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
+    """Of a nonholonomic system: the position that velocities follow, and the dimension of the steady motions."""
+    about = analysis.reduced.about
+    if about.holonomic or about.leaf or about.following:
+        return {}
+    from mbsym.problems.constraints.motion import oscillating_position, steady_motions
 
     derived = analysis.optional("equations")
     if derived is None or derived.embedded is None:
-        return ""
-    return oscillating_position(analysis.ring, derived.embedded, analysis.system.coordinates)
+        return {}
+    ring, names = analysis.ring, analysis.system.coordinates
+    at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    return {
+        "oscillating": oscillating_position(ring, derived.embedded, names),
+        "steady": steady_motions(ring, derived.embedded, names, about.idle, at, analysis.signs),
+    }
 
 
 def state_space_of(analysis: Analysis) -> StateSpace:

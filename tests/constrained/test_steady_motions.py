@@ -81,16 +81,19 @@ def test_a_sleigh_is_stable_forwards_and_unstable_backwards() -> None:
     assert backwards.word is Word.UNSTABLE
 
 
-def test_a_family_that_is_not_given_leaves_the_zero_root_open() -> None:
-    """The speed as a number: then nothing says that other speeds are steady, too."""
+@pytest.mark.parametrize(
+    ("speed", "word"), [("3", Word.ASYMPTOTIC_BUT_STEADY), ("-3", Word.UNSTABLE), ("0", Word.UNDECIDED)]
+)
+def test_a_family_is_found_where_the_speed_is_a_number(speed: str, word: Word) -> None:
+    """Other speeds are steady, whoever says so; at rest two roots are zero, and only one direction is steady."""
     found = changed(
         "sleigh.yaml",
-        ("x: {rate: v}", "x: {rate: 3}"),
+        ("x: {rate: v}", f"x: {{rate: {speed}}}"),
         ("  v: {sign: real, value: 3, meaning: speed along the edge}\n", ""),
     )
     verdict = found.stability.verdict
-    assert verdict.word is Word.UNDECIDED
-    assert verdict.because(Because.MORE_ZERO_ROOTS)
+    assert verdict.word is word
+    assert verdict.because(Because.MORE_ZERO_ROOTS) is (word is Word.UNDECIDED)
 
 
 def test_a_sleigh_on_a_slope_says_nothing_of_a_heading_that_matters() -> None:

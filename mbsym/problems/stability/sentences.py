@@ -54,9 +54,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "motion tends to one near by, with other values of them."
     ),
     Because.STEADY_DECAYS: (
-        "All roots have negative real parts but the zero ones, which are as many as the family of steady motions that "
-        "the description gives has dimensions: a disturbed motion tends to a steady motion near by, and coordinates on "
-        "which no equation depends may end elsewhere."
+        "All roots have negative real parts but the zero ones, which are as many as the steady motions near by have "
+        "dimensions: a disturbed motion tends to one of these, and coordinates on which no equation depends may end "
+        "elsewhere."
     ),
     Because.MINIMUM: "$K > 0$: the (changed) potential energy has a strict minimum.",
     Because.MINIMUM_AND_DISSIPATION: (
@@ -185,8 +185,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "equations: terms of higher order decide."
     ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots beside those of coordinates that drop out: [[1]]; of these the steady motions under 'motion:' "
-        "explain [[2]]. Terms of higher order decide."
+        "Zero roots beside those of coordinates that drop out: [[1]]; of these a family of steady motions explains "
+        "[[2]]. Terms of higher order decide."
     ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",
