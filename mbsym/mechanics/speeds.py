@@ -18,26 +18,25 @@ Where no speeds are declared u is q' and s is q: Y = 1.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import Failure, SingularPoint
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.matrices import determinant, solved
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import Tensor, Vector, tensor_of
-from mbsym.expressions.tree import ZERO, divide, number
+from mbsym.expressions.tree import divide, number
 from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
-from mbsym.mechanics.motion import unperturbed
+from mbsym.mechanics.motion import places, vanishing
 from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
-from mbsym.model.system import Body, MotionEntry, System, acceleration_name, velocity_name
+from mbsym.model.system import Body, System, acceleration_name, velocity_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,33 +176,25 @@ class SpeedForm:
     def _chosen(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...]:
         """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first.
 
-        Of several such sets one that is regular on the unperturbed motion and in the initial position, where one is.
+        Of several such sets one that is regular on the unperturbed motion, and in the initial position, where one is.
         """
         own = {name for body in self.system.bodies if body.speeds for name in body.coordinates}
         order = sorted(range(len(self.coordinates)), key=lambda k: self.coordinates[k] not in own)
         touched = [k for k in order if any(not self.ring.vanishes(row[k]) for row in rows)]
-        first: tuple[int, ...] | None = None
+        known = places(Scene(self.system, self.ring, self._plain, self.ring, bodies=False), initial=True)
+        best: tuple[list[bool], tuple[int, ...]] | None = None
         for chosen in combinations(touched, len(rows)):
             size = determinant(self.ring, [[row[k] for k in chosen] for row in rows])
             if self.ring.vanishes(size):
                 continue
-            if not any(self.ring.is_zero(self.ring.substitute(size, place)) for place in self._places):
-                return chosen
-            first = first or chosen
-        if first is None:
+            lost = vanishing(self.ring, size, known)
+            if best is None or lost < best[0]:
+                best = lost, chosen
+            if not any(lost):
+                break
+        if best is None:
             raise SingularPoint("the speeds do not determine the generalised velocities")
-        return first
-
-    @cached_property
-    def _places(self) -> list[dict[int, Polynomial]]:
-        """The unperturbed motion and the initial position, as far as the ring has their values."""
-        system, found = self.system, []
-        begun = tuple(MotionEntry(x.coordinate, x.position, ZERO) for x in system.initial if x.position is not None)
-        for entries in (system.motion, begun):
-            with suppress(Failure):
-                scene = Scene(replace(system, motion=entries), self.ring, self._plain, self.ring, bodies=False)
-                found += [unperturbed(scene)] if entries else []
-        return found
+        return best[1]
 
     def _speeds(self, kept: set[str]) -> list[Variable]:
         found = []
