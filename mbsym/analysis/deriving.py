@@ -313,8 +313,11 @@ def analysis(source: Analysis) -> Analysis:
             [x.derivative(ring.index("velocity", name)) for name in system.coordinates] for x in form.in_coordinates
         ]
         if ring.is_zero(ring.substitute(determinant(ring, rows), at)) is not False:
-            reason = "on the given motion the angles are singular: the speeds do not determine their rates there"
-            hint = "choose other axes of 'rotation'; those of unit vectors may be any"
+            reason = (
+                "on the given motion the speeds do not determine the velocities of coordinates: angles are singular "
+                "there, or speeds dependent"
+            )
+            hint = "choose other axes of 'rotation' (those of unit vectors may be any), or other speeds"
             raise Unavailable("motion", NoResult(reason, hint, "singular angles", "singular-angles"))
     return _same(source, system)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.factors import occurring
@@ -16,7 +17,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.tree import ZERO, Expression, Name, add, divide, multiply, number, subtract
 from mbsym.mechanics.kinematics import Scene
-from mbsym.model.system import System
+from mbsym.model.system import MotionEntry, System
 
 
 def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
@@ -61,6 +62,23 @@ def unperturbed(scene: Scene) -> dict[int, Polynomial]:
             continue
         images |= _standing(scene, "coordinate", name, value)
     return images | carried(scene)
+
+
+def places(scene: Scene, initial: bool = False) -> list[dict[int, Polynomial]]:
+    """``unperturbed`` where a motion is given, and the same of the ``initial`` position, where the ring has them."""
+    system, found = scene.system, []
+    given = [(x.coordinate, x.position) for x in system.initial if initial]
+    begun = tuple(MotionEntry(name, position, ZERO) for name, position in given if position is not None)
+    for entries in filter(None, (system.motion, begun)):
+        with suppress(Failure):
+            there = Scene(replace(system, motion=entries), scene.ring, scene.environment, scene.ring, bodies=False)
+            found.append(unperturbed(there))
+    return found
+
+
+def vanishing(ring: Ring, x: Polynomial, places: Iterable[Mapping[int, Polynomial]]) -> list[bool]:
+    """In which of the ``places`` it is known to be zero."""
+    return [ring.is_zero(ring.substitute(x, dict(place))) is True for place in places]
 
 
 def in_step(ring: Ring, rates: Mapping[str, Polynomial]) -> dict[str, tuple[str, int]]:

@@ -33,6 +33,7 @@ from mbsym.expressions.tree import divide, number
 from mbsym.mechanics import frames as quaternions
 from mbsym.mechanics.frames import direction_cosines
 from mbsym.mechanics.kinematics import Given, Scene
+from mbsym.mechanics.motion import places, vanishing
 from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
@@ -78,6 +79,8 @@ class SpeedForm:
         still = {ring.index("velocity", name): ring.zero for name in self.coordinates}
         drifts = [ring.substitute(x, still) for x in forms]
         chosen = self._chosen(rows)
+        #: Where it vanishes the speeds do not determine the velocities that they replace.
+        self.determinant = determinant(ring, [[row[k] for k in chosen] for row in rows])
         left = [k for k in range(len(self.coordinates)) if k not in chosen]
         velocity = [ring.generator("velocity", name) for name in self.coordinates]
         targets = []
@@ -171,14 +174,27 @@ class SpeedForm:
         return [Lowering(self.ring, {**self._plain, **spin})(x.form) for x, spin in zip(speeds, spins, strict=True)]
 
     def _chosen(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...]:
-        """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first."""
+        """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first.
+
+        Of several such sets one that is regular on the unperturbed motion, and in the initial position, where one is.
+        """
         own = {name for body in self.system.bodies if body.speeds for name in body.coordinates}
         order = sorted(range(len(self.coordinates)), key=lambda k: self.coordinates[k] not in own)
         touched = [k for k in order if any(not self.ring.vanishes(row[k]) for row in rows)]
+        known = places(Scene(self.system, self.ring, self._plain, self.ring, bodies=False), initial=True)
+        best: tuple[list[bool], tuple[int, ...]] | None = None
         for chosen in combinations(touched, len(rows)):
-            if not self.ring.vanishes(determinant(self.ring, [[row[k] for k in chosen] for row in rows])):
-                return chosen
-        raise SingularPoint("the speeds do not determine the generalised velocities")
+            size = determinant(self.ring, [[row[k] for k in chosen] for row in rows])
+            if self.ring.vanishes(size):
+                continue
+            lost = vanishing(self.ring, size, known)
+            if best is None or lost < best[0]:
+                best = lost, chosen
+            if not any(lost):
+                break
+        if best is None:
+            raise SingularPoint("the speeds do not determine the generalised velocities")
+        return best[1]
 
     def _speeds(self, kept: set[str]) -> list[Variable]:
         found = []

@@ -26,7 +26,7 @@ from mbsym.model.states import InStates
 from mbsym.numerics.constrained import Constraints
 from mbsym.numerics.kernels.precise import precise
 from mbsym.numerics.scenario import PRECISION, Scenario, rounded
-from mbsym.numerics.states import dynamics_of, scenario_in_states
+from mbsym.numerics.states import dynamics_of, scenario_in_states, scenario_in_velocities
 
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
@@ -150,15 +150,17 @@ def fitted(scenario: Scenario, declared: bool) -> Scenario:
     """The scenario in the variables in which it is fitted to constraints: what is given in declared ones, in these."""
     if not scenario.system.speeds or isinstance(scenario.system, InStates):
         return scenario
-    if not declared:
-        return replace(scenario, system=scenario.system.without_speeds)
-    return scenario_in_states(scenario) if scenario.declared else scenario
+    in_angles = not any(body.orientation for body in scenario.system.bodies)
+    if scenario.declared and (declared or in_angles):
+        return scenario_in_states(scenario)
+    return scenario if declared else replace(scenario, system=scenario.system.without_speeds)
 
 
 def shown(scenario: Scenario, declared: bool) -> Scenario:
     """In the variables of the run."""
-    own = declared and bool(scenario.system.speeds) and not isinstance(scenario.system, InStates)
-    return scenario_in_states(scenario) if own else scenario
+    if isinstance(scenario.system, InStates):
+        return scenario if declared else scenario_in_velocities(scenario)
+    return scenario_in_states(scenario) if declared and scenario.system.speeds else scenario
 
 
 def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:

@@ -17,6 +17,7 @@ from typing import Any
 from flint import arb, arb_mat, ctx
 
 from mbsym.algebra.derivative import jacobian
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.matrices import dot
 from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Program
@@ -101,6 +102,10 @@ class _Start:
             return DeclaredStart(missing=tuple(self.missing), wrong=tuple(self.wrong))
         q = {name: x for name, x in self.positions.items() if x is not None}
         u, rates = self._speeds(q, bool(given))
+        if given and not self._determined(q):
+            names = ", ".join(sorted(given))
+            text = f"in the initial state the velocities of coordinates do not follow from {names}"
+            self.wrong.append((min(given), f"{text}: choose other speeds, or other axes of 'rotation'"))
         if self.wrong:
             return DeclaredStart(wrong=tuple(self.wrong))
         s = [self._position(x.name, q) for x in self.form.positions]
@@ -204,6 +209,11 @@ class _Start:
             return [arb.atan2(a[j][i], -sign * a[k][i]), middle, arb.atan2(a[i][j], sign * a[i][k])]
         middle = arb.asin(_within(sign * a[i][k]))
         return [arb.atan2(-sign * a[j][k], a[k][k]), middle, arb.atan2(-sign * a[i][j], a[i][i])]
+
+    def _determined(self, q: Mapping[str, arb]) -> bool:
+        """Whether the speeds determine the velocities that they replace."""
+        values = self.numbers | dict(q) | self.oriented
+        return bool(abs(Carrier(self.form.ring, Balls(values), values)(self.form.determinant)) > arb(2) ** -200)
 
     # --- speeds ------------------------------------------------------------------------------------------------------
 

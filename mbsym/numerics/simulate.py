@@ -31,6 +31,7 @@ from mbsym.numerics.methods.interface import (
 )
 from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.planning.prices import Meter
+from mbsym.numerics.states import StateDynamics
 
 if TYPE_CHECKING:
     from mbsym.numerics.streamed import Table
@@ -368,6 +369,9 @@ LARGEST_START = 1e30
 #: A pivot of M that has become so much smaller than it was means that M is singular for practical purposes.
 SINGULAR_PIVOT = 1e-11
 
+#: The determinant of speeds beside what it was, where a step has failed: formulas of the velocities divide by it.
+SINGULAR_SPEEDS = 1e-4
+
 #: The same for an initial state beside its neighbours: sin(x)**2 where x is zero but for rounding.
 SINGULAR_AT_ONCE = 1e-24
 
@@ -445,6 +449,9 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
             return Breakdown(Cause.OUT_OF_REACH, message, at, last)
     if found.kind not in (Cause.BLOW_UP, Cause.STUCK):
         return found
+    if _dependent_speeds(dynamics, found.time, state, past):
+        message = "the speeds do not determine the velocities of coordinates in this state"
+        return Breakdown(Cause.SINGULAR_SPEEDS, message, found.time, found.state)
     message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
     if message:
         return Breakdown(Cause.SINGULAR, message, found.time, found.state)
@@ -480,6 +487,15 @@ def _undefined(dynamics: Dynamics, t: float, state: Any) -> bool:
             return False
         steps = np.array(AHEAD) * (1 + float(np.max(np.abs(state)))) / speed
         return bool(np.any(np.isnan(rhs(np.vstack([t + steps, state[:, None] + np.outer(rates, steps)])))))
+
+
+def _dependent_speeds(dynamics: Dynamics, t: float, state: Any, past: Any) -> bool:
+    """Whether the determinant of the declared speeds is next to nothing beside what it was."""
+    if not isinstance(dynamics, StateDynamics) or not np.all(np.isfinite(state)):
+        return False
+    size = compiled_kernel(dynamics, "determinant")
+    here, usual = abs(size(np.concatenate(([t], state)))[0]), np.max(np.abs(size(past)))
+    return bool(here < SINGULAR_SPEEDS * usual)
 
 
 def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: float) -> str:

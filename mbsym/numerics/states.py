@@ -24,6 +24,7 @@ from flint import arb, ctx
 
 from mbsym.algebra.derivative import gradient
 from mbsym.algebra.evaluate import Carrier
+from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.matrices import dot
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Ring
@@ -38,7 +39,7 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.variables import program_environment, ring_of
 from mbsym.model.speeds import Quaternion
 from mbsym.model.states import InStates, described, in_states
-from mbsym.model.system import Body, System
+from mbsym.model.system import Body, System, velocity_name
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
@@ -70,6 +71,24 @@ def scenario_in_states(given: Scenario) -> Scenario:
         found = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
     state = tuple(rounded(value) for value in found)
     return replace(given, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
+
+
+def scenario_in_velocities(given: Scenario) -> Scenario:
+    """The scenario in (q, q'), of one in (s, u) whose positions are the coordinates.  Raises Failure, SingularPoint."""
+    from mbsym.numerics.declared_start import declared_start  # few descriptions have any
+
+    system, values = described(given.system), dict(zip(given.system.velocities, given.velocities, strict=True))
+    own = {speed.name: values[speed.name] for speed in system.speeds}
+    rates = {name: values.get(velocity_name(name)) for name in system.coordinates}
+    known = dict(given.parameters) | {name: initial for name, (initial, _) in given.prescribed.items()}
+    positions = dict(zip(given.system.coordinates, given.positions, strict=True))
+    found = declared_start(system, own, positions, rates, known)
+    if found.velocities is None:
+        raise SingularPoint("the speeds do not determine the generalised velocities")
+    q = tuple(positions[name] for name in system.coordinates)
+    return replace(
+        given, system=system.without_speeds, positions=q, velocities=tuple(map(rounded, found.velocities)), typed={}
+    )
 
 
 class StateDynamics(Dynamics):
@@ -124,6 +143,13 @@ class StateDynamics(Dynamics):
     def pivots(self) -> Code:
         """(t, s, u) -> the pivots of M."""
         return self._code(list(self._accelerated[1]))
+
+    @cached_property
+    def determinant(self) -> Code:
+        """(t, s, u) -> the determinant of the speeds by the velocities that they replace."""
+        program = Program()
+        carry = Carrier(self.form.ring, program, dict(program_environment(self.described, program)))
+        return self._code(substituted(program, [carry(self.form.determinant)], self._specialised))
 
     @cached_property
     def mass_matrix(self) -> Code:

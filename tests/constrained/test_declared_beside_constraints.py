@@ -31,11 +31,14 @@ import mbsym
 from mbsym.numerics.closing import closed
 from mbsym.numerics.conservation import Standing
 from mbsym.numerics.kernels import arrays
-from mbsym.numerics.scenario import scenario
+from mbsym.numerics.methods.interface import Cause
+from mbsym.numerics.scenario import Incomplete, scenario
 from mbsym.numerics.states import StateDynamics, scenario_in_states
 from mbsym.report.code import c_source
 from mbsym.report.code.identifiers import prefix_of
 from mbsym.report.targets import FORMATS
+from mbsym.simulation import read_values
+from tests.constrained.test_flow_on_the_manifold import numbers
 
 COMPILER = shutil.which("cc")
 
@@ -420,3 +423,86 @@ def test_the_energy_of_a_long_constrained_system_is_proved_by_its_multipliers() 
     text = text.replace(ground, "on: belt").replace("bodies:\n", f"bodies:\n  - {belt}\n")
     text = text.replace("parameters: {", "parameters: {v: positive, ")
     assert "generalised energy" not in [x.name for x in mbsym.loads(text, (7,)).integrals]
+
+
+#: A knife edge under the connection point, the mass centre a = 1/3 before it, a moment 1:
+#: u' = a w^2,  (1/2 + a^2) w' = 1 - a u w,  h' = w.
+SLEIGH = """\
+mbsym: 1
+name: sleigh
+bodies:
+  - name: sleigh
+    attached to: 0
+    connection point: [x, y, 0]
+    rotation: {axes: [3], angles: [h]}
+    coordinates: [x, y, h]
+    mass: 1
+    mass centre: [1/3, 0, 0]
+    inertia about: mass centre
+    inertia: [1/2, 1/2, 1/2]
+    speeds: {w: omega3, u: x_dot*cos(h) + y_dot*sin(h)}
+constraints: [velocity: x_dot*sin(h) = y_dot*cos(h)]
+loads: [generalized force: {h: 1}]
+initial: {x: 0, y: 0, h: HEADING, w: 1, u: 1}
+"""
+
+
+def by_hand(heading: float, times: Any) -> Any:
+    def rates(t: float, z: Any) -> list[float]:
+        _, _, h, w, u = z
+        return [u * np.cos(h), u * np.sin(h), w, (1 - u * w / 3) / (1 / 2 + 1 / 9), w * w / 3]
+
+    found = solve_ivp(rates, (0, times[-1]), [0, 0, heading, 1, 1], "DOP853", times, rtol=1e-12, atol=1e-13)
+    return found.y
+
+
+@pytest.mark.parametrize(
+    ("heading", "rate"), [("0", "y_dot"), ("pi/2", "x_dot"), ("3*pi/2", "x_dot"), ("0.3", "y_dot")]
+)
+def test_beside_a_forward_speed_a_velocity_is_kept_that_does_not_depend_on_it_at_the_start(
+    heading: str, rate: str
+) -> None:
+    found = mbsym.loads(SLEIGH.replace("HEADING", heading), (3,))
+    assert [u.name for u in found.form.speeds] == ["w", "u", rate]
+
+
+@pytest.mark.parametrize(("heading", "ahead"), [("0", "x"), ("pi/2", "y"), ("3*pi/2", "y")])
+def test_a_sleigh_along_an_axis_is_linearised_in_speeds_as_in_coordinates(heading: str, ahead: str) -> None:
+    """Without the moment it goes straight ahead, along whichever axis: the root is -u a/(1/2 + a^2) = -6/11.
+
+    What is solved for beside the constraint is regular on the motion.
+    """
+    text = SLEIGH.replace("HEADING", "0").replace("loads: [generalized force: {h: 1}]\n", "")
+    u = -1 if heading == "3*pi/2" else 1
+    text += f"motion: {{{ahead}: {{rate: {u}}}, h: {heading}}}\n"
+    plain = text.replace("    speeds: {w: omega3, u: x_dot*cos(h) + y_dot*sin(h)}\n", "").replace("w: 1, u: 1", "")
+    found = mbsym.loads(text, (5,))
+    for form in (found.first_order, found.state_space, mbsym.loads(plain, (5,)).state_space):
+        assert min(np.linalg.eigvals(numbers(form.A.polynomials)).real) == pytest.approx(-6 / 11)
+
+
+def of_sleigh(heading: str, **how: Any) -> Any:
+    analysis = mbsym.loads(SLEIGH.replace("HEADING", heading), (3,))
+    return mbsym.simulate(analysis, 8.0, tolerance=1e-12, samples=17, estimate=False, **how)
+
+
+@pytest.mark.parametrize(("heading", "angle"), [("0.3", 0.3), ("pi/2", np.pi / 2)])
+def test_a_run_in_coordinates_begins_with_the_speeds_that_are_given(heading: str, angle: float) -> None:
+    run = of_sleigh(heading, variables="coordinates")
+    assert run.ended is None
+    assert run.trajectory.states[:3].astype(float) == pytest.approx(by_hand(angle, run.trajectory.times)[:3], abs=1e-9)
+
+
+def test_speeds_that_become_dependent_are_called_that() -> None:
+    """With y_dot beside u at h = pi/2, or at an odd multiple of it: one that a run steps over is no end."""
+    run = of_sleigh("0.3")
+    assert run.ended.kind == Cause.SINGULAR_SPEEDS
+    at = by_hand(0.3, [0.0, run.ended.time])
+    assert np.cos(at[2, -1]) == pytest.approx(0, abs=1e-3)
+
+
+@pytest.mark.parametrize("values", [{"h": "pi/2"}, {"h": "-pi/2"}])
+def test_a_start_in_which_speeds_are_dependent_is_refused(values: dict[str, str]) -> None:
+    system = mbsym.loads(SLEIGH.replace("HEADING", "0"), (3,)).system
+    with pytest.raises(Incomplete, match="do not follow from u, w"):
+        scenario(system, read_values(system, values), declared=True)

@@ -265,6 +265,7 @@ def of_runs() -> Iterator[str]:
     yield from (
         interface.Cause.BLOW_UP,
         interface.Cause.SINGULAR,
+        interface.Cause.SINGULAR_SPEEDS,
         interface.Cause.STEP_LIMIT,
         interface.Cause.STUCK,
         interface.Cause.UNDEFINED,

@@ -17,7 +17,7 @@ singular exactly where J_d is, and nowhere else.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations, islice
@@ -28,6 +28,7 @@ from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import Constrained, NoClosedForm
 from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.mechanics.motion import vanishing
 
 #: So many blocks of columns are tried for the shortest determinant; of more that are possible one is taken.
 MOST_BLOCKS, MOST_COMBINATIONS = 60, 5_000
@@ -150,9 +151,11 @@ def choose(
     columns: Sequence[int],
     regular: Callable[[Sequence[int], Sequence[int]], bool],
     required: Collection[int] = (),
+    places: Sequence[Mapping[int, Polynomial]] = (),
 ) -> Pivots:
     """Pivots for the independent rows, in all ``required`` columns and in others, the last ones preferred.
 
+    Where there are some that are not zero in ``places`` (by generators), these.
     ``regular(rows, columns)`` tells whether a square block of J is regular somewhere on the manifold.  Rows that have
     no columns in common (loops apart from each other) are chosen for apart.  Raises Constrained where none is.
     """
@@ -168,6 +171,7 @@ def choose(
             [k for k in columns if k in own_columns],
             regular,
             [k for k in required if k in own_columns],
+            places,
         )
         units += own.units
         rows += own.block_rows
@@ -199,6 +203,7 @@ def _choose(
     columns: Sequence[int],
     regular: Callable[[Sequence[int], Sequence[int]], bool],
     required: Collection[int],
+    places: Sequence[Mapping[int, Polynomial]],
 ) -> Pivots:
     for also in (columns, [k for k in columns if k in required]):  # units elsewhere may stand in the way
         units, rows = _units(ring, jacobian, independent, also, required)
@@ -215,12 +220,12 @@ def _choose(
         else:
             blocks = ((*missing, *x) for x in combinations(free, count))
             possible = (x for x in blocks if regular(sorted(independent), [*used, *x]))
-        best: tuple[int, tuple[int, ...]] | None = None
+        best: tuple[tuple[bool, int], tuple[int, ...]] | None = None
         for block in islice(possible, MOST_BLOCKS):
-            length = _length(ring, [[rows[i][k] for k in block] for i in left])
-            if length and (best is None or length < best[0]):
-                best = length, tuple(sorted(block))
-            if length == BEYOND:  # the others will hardly be shorter
+            size = _size(ring, [[rows[i][k] for k in block] for i in left], places)
+            if size[1] and (best is None or size < best[0]):
+                best = size, tuple(sorted(block))
+            if size[1] == BEYOND:  # the others will hardly be shorter
                 break
         if best is not None:
             return Pivots(tuple(units), tuple(left), best[1])
@@ -247,12 +252,17 @@ def _one_block(
     return [(*missing, *kept)] if len(taken) + len(kept) == len(rows) else []
 
 
-def _length(ring: Ring, block: Sequence[Sequence[Polynomial]]) -> int:
-    """The terms of its determinant; BEYOND the budget it is still what it is, as a program."""
+def _size(
+    ring: Ring, block: Sequence[Sequence[Polynomial]], places: Sequence[Mapping[int, Polynomial]]
+) -> tuple[bool, int]:
+    """Whether its determinant is zero in one of the places; its terms, BEYOND the budget, where it is a program."""
+    if not block:
+        return False, 1
     try:
-        return len(determinant(ring, block)) if block else 1
+        found = determinant(ring, block)
     except NoClosedForm:
-        return BEYOND
+        return False, BEYOND
+    return any(vanishing(ring, found, places)), len(found)
 
 
 def _units(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from mbsym.algebra.base import Scalar
@@ -31,42 +32,38 @@ class OracleRow:
 
 def oracle_rows(system: System, state: State) -> list[list[OracleRow]]:
     """The rows of every constraint at one state, trivial ones included."""
-    oracle = Oracle(system, state)
-    return [_Rows(system, oracle, one).rows() for one in system.constraints]
+    rows = _Rows(Oracle(system, state))
+    return [rows.of(one) for one in system.constraints]
 
 
 class _Rows:
-    def __init__(self, system: System, oracle: Oracle, constraint: Constraint) -> None:
-        self.system = system
+    def __init__(self, oracle: Oracle) -> None:
         self.oracle = oracle
-        self.constraint = constraint
+        self.system = oracle.system
         self.numbers = oracle.numbers
 
-    def rows(self) -> list[OracleRow]:
-        one = self.constraint
+    def of(self, one: Constraint) -> list[OracleRow]:
         if isinstance(one, Rolling):
             return self._rolling(one)
         if isinstance(one, Velocity):
             return [self._velocity(subtract(one.left, one.right))]
-        moving = self._series(self.oracle.moving)
-        two = self.numbers.number(2)
-        slopes = []
-        for name in self.system.coordinates:
-            place = Placement(self.system, self.oracle.state, self._along(name))
-            slopes.append([x.b for x in self._series(place)])
-        return [OracleRow(x.a, x.b, two * x.c, tuple(slope[k] for slope in slopes)) for k, x in enumerate(moving)]
+        two, slopes = self.numbers.number(2), [[x.b for x in self._series(one, place)] for place in self._along]
+        rows = self._series(one, self.oracle.moving)
+        return [OracleRow(x.a, x.b, two * x.c, tuple(slope[k] for slope in slopes)) for k, x in enumerate(rows)]
 
-    def _along(self, name: str) -> dict[str, Series]:
-        """Only one coordinate moves, with the rate 1."""
-        zero = self.numbers.zero
-        found = {key: Series(value, zero, zero) for key, value in self.oracle.state.values.items()}
-        found[name] = Series(self.oracle.state.values[name], self.numbers.one, zero)
-        return found
+    @cached_property
+    def _along(self) -> list[Placement]:
+        """By coordinate the system that moves with the rate 1 of this one alone."""
+        state, zero = self.oracle.state, self.numbers.zero
+        rest = {key: Series(value, zero, zero) for key, value in state.values.items()}
+        return [
+            Placement(self.system, state, rest | {name: Series(state.values[name], self.numbers.one, zero)})
+            for name in self.system.coordinates
+        ]
 
     # --- what is given by places ---
 
-    def _series(self, place: Placement) -> list[Series]:
-        one = self.constraint
+    def _series(self, one: Constraint, place: Placement) -> list[Series]:
         if isinstance(one, Relation):
             return [place.lower(subtract(one.left, one.right))]
         if isinstance(one, Parallel):
@@ -119,10 +116,7 @@ class _Rows:
     def _rolling(self, one: Rolling) -> list[OracleRow]:
         """V + omega x (c - r) of both bodies, each from rates of places: in time, and along each coordinate."""
         moving = self._slip(one, self.oracle.moving, 0), self._slip(one, self.oracle.moving, 1)
-        slopes = []
-        for name in self.system.coordinates:
-            place = Placement(self.system, self.oracle.state, self._along(name))
-            slopes.append(self._slip(one, place, 0))
+        slopes = [self._slip(one, place, 0) for place in self._along]
         return [OracleRow(None, moving[0][k], moving[1][k], tuple(slope[k] for slope in slopes)) for k in range(3)]
 
     def _slip(self, one: Rolling, place: Placement, order: int) -> list[Scalar]:

@@ -36,6 +36,7 @@ class Cause(StrEnum):
     SINGULAR = "singular mass matrix"
     STEP_LIMIT = "step limit"
     STUCK = "step size too small"
+    SINGULAR_SPEEDS = "dependent speeds"  # they do not determine the velocities; coordinates may pass
     SINGULAR_CONSTRAINTS = "singular constraints"  # their rows lose their rank: a mechanism in a singular position
     OUT_OF_REACH = "out of reach"  # constraints that move leave no position: a mechanism stretched out, or blocked
     NOT_SMOOTH = "no finite derivatives"  # the rates are finite: methods that need their derivatives cannot go on

@@ -29,6 +29,7 @@ from mbsym.mechanics.constraints.rows import Row
 from mbsym.mechanics.constraints.speed_rows import speed_rows
 from mbsym.mechanics.constraints.states import PRECISION, Manifold
 from mbsym.mechanics.kinematics import Scene
+from mbsym.mechanics.motion import places
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_states import completed
 from mbsym.mechanics.speeds import SpeedForm
@@ -46,7 +47,7 @@ def constraints_in_speeds(
     """
     ring, names = form.ring, tuple(u.name for u in form.speeds)
     rows = speed_rows(form, scene, tied.names)
-    pivots = _pivots(form, rows, tied, programs)
+    pivots = _pivots(form, scene, rows, tied, programs)
     still = {u.index: ring.zero for u in form.speeds}
     sides = [(ring.substitute(row.velocity, still), row.acceleration) for row in rows]
     try:
@@ -73,7 +74,9 @@ def wanted_speeds(form: SpeedForm) -> list[int]:
     return [k for k, u in enumerate(form.speeds) if u.name in named]
 
 
-def _pivots(form: SpeedForm, rows: Sequence[Row], tied: Constraints, programs: ConstrainedPrograms) -> Pivots:
+def _pivots(
+    form: SpeedForm, scene: Scene, rows: Sequence[Row], tied: Constraints, programs: ConstrainedPrograms
+) -> Pivots:
     """Which speeds depend on the others; kept velocities of plain coordinates rather than declared speeds."""
     required, rank = wanted_speeds(form), tied.velocity_rank
     if len(required) > rank:
@@ -91,9 +94,8 @@ def _pivots(form: SpeedForm, rows: Sequence[Row], tied: Constraints, programs: C
     with ctx.workprec(PRECISION):
         jacobians = _at_points(form, rows, programs)
         try:
-            return choose(
-                form.ring, [x.partials for x in rows], tied.independent, columns, regular_at(jacobians), required
-            )
+            partials, regular = [x.partials for x in rows], regular_at(jacobians)
+            return choose(form.ring, partials, tied.independent, columns, regular, required, places(scene))
         except Constrained as reason:
             if not required or not jacobians:
                 raise

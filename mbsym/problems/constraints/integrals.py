@@ -9,7 +9,8 @@ so that it is kept if J mu vanishes on the constraints, for every independent ro
 * the generalised energy T_2 - T_0 - U, mu = u - s0 (in coordinates q'):  J mu = -j there, so it is kept where the
   constraints are homogeneous in the velocities, j = 0 (and L does not contain the time, other loads do no work);
 * the momentum along a displacement xi of constant components, mu = xi, if L and the other forces do not feel it and the
-  constraints allow it, J xi = 0: a cyclic coordinate alone gives nothing that is kept where J xi is not zero;
+  constraints allow it, J xi = 0: a cyclic coordinate alone gives nothing that is kept where J xi is not zero.  All such
+  xi are found, from linear equations;
 * squares and products of unit vectors and quaternions, mu = 0.
 
 The same, components of the linear and angular momentum in inertial axes, and momenta dT/du of declared speeds are tried
@@ -34,6 +35,7 @@ from flint import ctx, fmpq_mat
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.kernel import kernel
 from mbsym.algebra.matrices import cramer, determinant
 from mbsym.algebra.ring import Polynomial
 from mbsym.mechanics.constraints.embedding import basis_vector
@@ -170,17 +172,23 @@ class _Kept(AlongMotion):
     """Whether and how well it is known that the motion keeps something."""
 
     def candidates(self, scene: Scene, energy: Energy) -> Iterator[Candidate]:
-        """Those of the tree, and momenta along the columns of Y whose entries are constants."""
-        form, ring, solved = self.form, self.ring, self.tied.solved
+        """Those of the tree, and momenta along displacements of constant components."""
+        along: list[tuple[str, list[Polynomial]]] = []
+        with suppress(Failure):
+            along += self.displacements(energy.kinetic_energy.polynomial)
+        yield from candidates(self.form, scene, energy, self.equations, along)
+
+    def displacements(self, kinetic: Polynomial) -> Iterator[tuple[str, list[Polynomial]]]:
+        """All constant xi with  J xi = 0  and  xi . (d/dt dT/du - E) = 0  on the velocities that constraints allow."""
+        form, ring = self.form, self.ring
         own = {velocity_name(name): name for name in form.coordinates}
-        moving = [*(x.name for x in form.positions), "t", *(item.name for item in form.system.prescribed)]
-        along = []
-        for place, k in enumerate(solved.embedding.free if solved is not None else ()):
-            assert solved is not None
-            xi = basis_vector(ring, solved.embedding, place)
-            if form.speeds[k].name in own and not any(ring.dependencies(x, moving) for x in xi):
-                along.append((own[form.speeds[k].name], xi))
-        yield from candidates(form, scene, energy, self.equations, along)
+        rates = [form.rate(ring.derivative(kinetic, u.name)) for u in form.speeds]
+        rest = [self.restricted(rate - one) for rate, one in zip(rates, self._residuals, strict=True)]
+        rows = [self.tied.jacobian.polynomials[i] for i in self.tied.independent]
+        for xi in kernel(ring, rest, *rows):
+            name = form.speeds[max(xi)].name
+            if len(xi) > 1:  # others are momenta of one coordinate or speed, which are tried anyway
+                yield own.get(name, name), [xi.get(k, ring.zero) for k in range(len(form.speeds))]
 
     def as_known(self, x: Polynomial) -> Polynomial:
         """x on the velocities that the constraints allow, where that is not too long: to be compared with others."""
@@ -215,12 +223,12 @@ class _Kept(AlongMotion):
         return None if self.ring.kinked else Certainty.VERIFIED
 
     def _by_multipliers(self, left: Polynomial, multipliers: Sequence[Polynomial]) -> bool:
-        """Whether a rate is mu . E identically, and J mu vanishes, or is J u + j, in every independent row."""
+        """Whether a rate is mu . E on allowed velocities, and J mu vanishes or is J u + j in every row."""
         form, ring, tied = self.form, self.ring, self.tied
         for factor, one in zip(multipliers, self._residuals, strict=False):
             if not ring.vanishes(factor):
                 left = left - ring.times(factor, one)
-        if form.vanishes(ring.reduce(left)) is not True:
+        if not self.vanishes(left):
             return False
         works = [ring.dot(tied.jacobian.polynomials[i], multipliers) for i in tied.independent if multipliers]
         rows = [tied.velocity[i].polynomial for i in tied.independent]

@@ -142,6 +142,10 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
             "centre), or angles are singular (a pole; other angles help); or a mass is zero. Start elsewhere or stop "
             "earlier"
         ),
+        Cause.SINGULAR_SPEEDS: Message(
+            "the motion may go on: --variables coordinates integrates coordinates and their velocities; or declare "
+            "speeds that determine these everywhere, as velocities along and across a vehicle"
+        ),
         Cause.SINGULAR_CONSTRAINTS: Message(
             "a mechanism in a singular position (links in line, branches that meet): the accelerations do not follow "
             "from the constraints there; start beside it"
