@@ -39,6 +39,7 @@ from mbsym.algebra.signs import Signs, sign_of_product
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import (
+    Call,
     Expression,
     Name,
     Negative,
@@ -524,7 +525,7 @@ class Balance:
         return word
 
     def _power_word(self, base: Expression, exponent: int) -> str:
-        if exponent % 2 == 0:
+        if exponent % 2 == 0 or (isinstance(base, Call) and base.function in ("abs", "sqrt", "exp", "cosh")):
             return "nonnegative"
         if not any(velocity in names(base) for velocity in self.scene.system.velocities):
             return self._word(self.scene.lower(base))

@@ -72,3 +72,11 @@ def test_one_potential_well() -> None:
     (part,) = a.stability.subsystems
     assert places(part) == {"v0": ("!=", Place.DRIFTS)}
     assert {r.place for r in part.theory.stiffness.requirements} == {Place.SUFFICIENT}
+
+
+def test_a_condition_that_another_one_implies_is_not_told() -> None:
+    """C^2 Omega^2 - 4 A m l g > 0 says that C^2 Omega^2 - 2 A m l g > 0, and is < 0 where that is."""
+    top = mbsym.load(CASES.parents[2] / "systems" / "heavy-top.yaml").stability
+    assert [str(x) for _, x, _ in top.subsystems[0].conditions] == ["C**2*Omega**2 - 4*A*m*l*g"]
+    pair = mbsym.load(CASES.parents[2] / "systems" / "gyroscopic-pair.yaml").stability
+    assert len(pair.subsystems[0].conditions) == 2  # g^2 - k1 - k2 is negative where g = 0
