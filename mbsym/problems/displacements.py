@@ -177,9 +177,11 @@ def symmetries(
     fields: Sequence[Direction],
     here: Callable[[Polynomial], Polynomial],
     standing: Sequence[str],
+    kept: Sequence[Polynomial] = (),
 ) -> list[tuple[Direction, Direction, bool]]:
     """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
 
+    They keep the functions ``kept`` of the position, which constraints hold at 0: these do no work along c, either.
     ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with independent values
     that are not 0.  Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of
     one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
@@ -191,7 +193,7 @@ def symmetries(
     tried = [*units, *fields][:MOST_FIELDS]
     if len(kinetic) + sum(map(len, forces)) > MOST_FIELD_TERMS:
         return []
-    lists = [[_lie(ring, coordinates, c, kinetic) for c in tried]]
+    lists = [[_lie(ring, coordinates, c, x) for c in tried] for x in (kinetic, *kept)]
     for j, name in enumerate(coordinates):
         lists.append(
             [

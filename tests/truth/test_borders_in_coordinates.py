@@ -324,3 +324,59 @@ def test_what_is_joined_may_drift_as_a_whole(last: str, c: str, wanted: Word | N
     """Nothing holds x + y + z; the spring between x and z is none of first order."""
     found = word(JOINED.replace("LAST", last).replace("C}", c + "}"))
     assert found in (Word.UNSTABLE, Word.UNDECIDED) if wanted is None else found is wanted
+
+
+ON_A_CYLINDER = """
+mbsym: 1
+name: on a cylinder
+parameters: {m: positive, k: positive, c: positive, l: positive}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, z], mass: m, coordinates: [x, y, z]}
+loads:
+  - potential: V
+  - LOAD
+constraints:
+  - relation: x**2 + y**2 = l**2
+motion: {x: 0, y: l, z: 0}
+values: {m: 1, k: 1, c: 2, l: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "load", "wanted"),
+    [
+        ("k*z**2", "rayleigh: 0*x_dot", Word.STABLE_BUT_CYCLIC),
+        ("-k*z**2", "rayleigh: 0*x_dot", Word.UNSTABLE),
+        ("k*z**2", "rayleigh: c*z_dot**2", Word.ASYMPTOTIC_BUT_CYCLIC),
+        ("k*z**2", "rayleigh: c*(x_dot**2 + y_dot**2 + z_dot**2)", Word.ASYMPTOTIC_BUT_CYCLIC),
+        # it is driven round wherever z is not 0, and z stays what it was
+        ("0*z", "generalized force: {x: -c*y*z, y: c*x*z}", Word.UNDECIDED),
+        ("k*x**2", "rayleigh: 0*x_dot", Word.STABLE_BUT_CYCLIC),  # free along z alone
+        ("-k*x**2", "rayleigh: 0*x_dot", Word.UNSTABLE),
+    ],
+)
+def test_a_turn_that_changes_nothing_is_a_drift_under_constraints(potential: str, load: str, wanted: Word) -> None:
+    assert word(ON_A_CYLINDER.replace("V", potential, 1).replace("LOAD", load)) is wanted
+
+
+def test_two_masses_on_a_rod_about_a_centre() -> None:
+    """x, y of the middle are held by springs of stiffness 4 k; the rod turns as it likes."""
+    ends = "{body: p, point: [0, 0, 0]}, {body: q, point: [0, 0, 0]}"
+    text = f"""
+mbsym: 1
+name: dumbbell
+parameters: {{m: positive, k: positive, l: positive}}
+bodies:
+  - {{name: p, attached to: 0, connection point: [x, y, 0], mass: m, coordinates: [x, y]}}
+  - {{name: q, attached to: 0, connection point: [u, v, 0], mass: m, coordinates: [u, v]}}
+loads:
+  - potential: k*(x**2 + y**2 + u**2 + v**2)
+constraints:
+  - distance: {{between: [{ends}], length: l}}
+motion: {{x: l/2, y: 0, u: -l/2, v: 0}}
+values: {{m: 1, k: 1, l: 1}}
+"""
+    assert word(text) is Word.STABLE_BUT_CYCLIC
+    across = text.replace("k*(x**2 + y**2 + u**2 + v**2)", "k*(x**2 + 2*y**2 + u**2 + 2*v**2)")
+    assert word(across) is Word.STABLE
+    assert word(across.replace("+ 2*", "+ ").replace("k*(x**2", "k*(2*x**2").replace("u**2", "2*u**2")) is Word.UNSTABLE
