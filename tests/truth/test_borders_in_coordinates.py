@@ -96,6 +96,28 @@ values: {m: 1}
     assert word(text.replace("y**2", "y")) is Word.STABLE_BUT_CYCLIC
 
 
+@pytest.mark.parametrize(
+    ("point", "potential", "wanted"),
+    [
+        (
+            "u - y**2, y, z",
+            "k*z**2",
+            None,
+        ),  # u' = x' + 2 y y' grows, although (2 y, 1) changes nothing
+        ("u - 2*y*z, y, z", "k*z**2", None),  # u' = x' + 2 (y z)', z oscillates and y drifts
+        ("u - 2*y, y, z", "k*z**2", Word.STABLE_BUT_CYCLIC),
+        ("u - z**2, y, z", "k*z**2", Word.STABLE_BUT_CYCLIC),
+    ],
+)
+def test_rates_that_grow_with_a_drift_are_none_without_constraints_either(
+    point: str, potential: str, wanted: Word | None
+) -> None:
+    text = ON_A_CYLINDER.replace("x, y, z", point, 1).replace("[x, y, z]", "[u, y, z]").replace("V", potential, 1)
+    text = text.replace("constraints:\n  - relation: x**2 + y**2 = l**2\n", "").replace("  - LOAD\n", "")
+    found = word(text.replace("{x: 0, y: l, z: 0}", "{u: 0, y: 0, z: 0}"))
+    assert found.open if wanted is None else found is wanted
+
+
 def test_the_judge_of_maps_and_sweeps_knows_it() -> None:
     """x'' + (a - b) x + x^3 = 0 beside s = x: stable at a = b, by x^4."""
     text = """
