@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
+from mbsym.analysis.approximation import kept_by_velocities
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
@@ -165,6 +166,14 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
     return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (order, positive, staying.word))))
 
 
+def on_a_leaf(analysis: Analysis) -> bool:
+    """Whether velocity constraints keep relations that a disturbance may change."""
+    if not analysis.system.constraints:
+        return False
+    about = analysis.reduced.about
+    return about.leaf > 0 or not about.holonomic
+
+
 def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     """What constraints leave near a rest, to any order.
 
@@ -179,7 +188,10 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     at_rest = not found.base.turning and all(x.is_zero() for x in found.base.rates)
     if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
         raise NotExpanded("under constraints only rests of systems that do not know the time are expanded")
-    if not (about.holonomic or about.leaf) or len(system.coordinates) - len(found.speeds) != tied.velocity_rank:
+    if (
+        not (about.holonomic or kept_by_velocities(analysis))
+        or len(system.coordinates) - len(found.speeds) != tied.velocity_rank
+    ):
         raise NotExpanded("the constraints leave no manifold that is known")
     return lambda order: on_manifold(scene, analysis.signs, found, order)
 

@@ -206,14 +206,21 @@ class Judge:
 
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
         momenta, too, if its conditions are inequalities (Dirichlet's theorem, Arnold and Moser's without resonance).
+        So it is with the relations that integrable velocity constraints keep; what is asymptotically stable at some
+        values of them is stable (it is so under constant perturbations, Malkin), and does not come back from others.
         """
         word = _WORDS.get(found.outcome.value)
         if word is None:
             return None
+        lasting = found.theorem in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER)
         if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
-            if found.theorem not in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER):
+            if not lasting:
                 return None
             word = Word.STABLE_BUT_CYCLIC
+        elif word is not Word.UNSTABLE and higher.on_a_leaf(self.analysis):
+            if word is Word.STABLE and not lasting:
+                return None
+            word = Word.STABLE
         return Verdict(word, (found.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
 
 

@@ -108,8 +108,8 @@ def expansion(
     if tied is not None:
         times, nothing = expanded.algebra.times, expanded.algebra.zero
         given = [applied[name] for name in scene.system.coordinates]
-        pulled = [(times(x, tied.slope(i, k)) for i, x in enumerate(given)) for k in range(n)]
-        applied = {name: sum(each, nothing) for name, each in zip(names, pulled, strict=True)}
+        pulled = [sum((times(x, tied.slope(i, k)) for i, x in enumerate(given)), nothing) for k in range(n)]
+        applied = dict(zip(names, pulled, strict=True))
     forces = tuple(parts(applied[name]) for name in names)
     cyclic = tuple(i for i, name in enumerate(names) if name in ignored)
     return Expansion(scene, names, order, lagrangian, forces, cyclic)
