@@ -198,7 +198,7 @@ def test_what_gives_no_coordinate_explicitly(load: str, tie: str) -> None:
 
 
 def test_forces_are_projected_on_every_coordinate_that_is_left() -> None:
-    """Q = x (y', -x') is gyroscopic in x and y, z = y^2 by whatever tells it: V = 3 y^2/2 - x^4 + ... has no minimum."""
+    """Q = x (y', -x') is gyroscopic, z = y^2 by whatever tells it: V = 3 y^2/2 - x^4 + ... has no minimum."""
     words = set()
     for relation in ("z = y**2", "(z - y**2)*(2 + z + x) = 0"):
         text = IN_A_PLANE.replace("[x, y, 0]", "[x, y, z]").replace("[x, y]", "[x, y, z]")
