@@ -504,14 +504,14 @@ def _requirements(
                 "discriminant (equal frequencies) does no harm."
             )
         )
-    return tuple(_without_following(requirements, known)), remarks
+    return tuple(_without_following(requirements, signs)), remarks
 
 
-def _without_following(wanted: Sequence[Requirement], known: Signs) -> Iterator[Requirement]:
+def _without_following(wanted: Sequence[Requirement], signs: Signs) -> Iterator[Requirement]:
     """p > 0 goes without saying where another q > 0 is wanted and q >= 0 shows it: p < 0 is nowhere but where q < 0."""
     standing = [r for r in wanted if _in_short(r)]
     for r in wanted:
-        by = next((q for q in standing if q is not r and _in_short(r) and _shows(q, r, known)), None)
+        by = next((q for q in standing if q is not r and _in_short(r) and _shows(q, r, signs)), None)
         if by is not None:
             standing = [q for q in standing if q is not r]
             r = replace(r, condition=Condition("always", r.condition.polynomial * 0 + 1))
