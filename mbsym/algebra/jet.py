@@ -25,6 +25,8 @@ from mbsym.expressions.tree import Expression
 Key = tuple[int, ...]
 Terms = dict[Key, Polynomial]
 
+_KINK = Message("[[name]] has a [[what]] at the motion that is expanded about", name="abs or sqrt", what="kink")
+
 
 class Jet:
     """``value`` + ``parts[0]`` + ``parts[1]`` + ..., the terms of degree 1, 2, ...; absent coefficients are zero."""
@@ -36,7 +38,13 @@ class Jet:
         self.parts = parts
 
     def degree(self, k: int) -> Terms:
-        """The terms of degree k > 0."""
+        """The terms of degree k > 0.  Raises NoClosedForm where |u| of a small u, or a root, stands among them."""
+        part = self._part(k)
+        if any(key[0] < 0 for key in part):
+            raise NoClosedForm(_KINK)
+        return part
+
+    def _part(self, k: int) -> Terms:
         return self.parts[k - 1] if k <= len(self.parts) else {}
 
     @property
@@ -93,15 +101,15 @@ class Jets(Algebra[Jet]):
     """Jets over a ring, to the given ``order``.
 
     ``motion`` gives each coordinate's unperturbed value as an expression in parameters; a coordinate that is not in it
-    (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i; ``values``
-    holds the unperturbed value of every name as a polynomial.
+    (one that turns uniformly) stays the ring's own generator.  ``deviations`` are the indices of the x_i, or the jets
+    of what deviates as a function of these; ``values`` holds the unperturbed value of every name as a polynomial.
     """
 
     def __init__(
         self,
         ring: Ring,
         motion: Mapping[str, Expression],
-        deviations: Mapping[str, int],
+        deviations: Mapping[str, int | Jet],
         values: Mapping[str, Polynomial],
         order: int = 2,
     ) -> None:
@@ -111,6 +119,7 @@ class Jets(Algebra[Jet]):
         self.motion = motion
         self.deviations = deviations
         self.zero, self.one = Jet(ring.zero), Jet(ring.one)
+        self._kinks = 0
 
     def number(self, value: Fraction | int) -> Jet:
         return Jet(self.ring.number(value))
@@ -118,6 +127,21 @@ class Jets(Algebra[Jet]):
     def deviation(self, index: int, base: Polynomial) -> Jet:
         """base + x_index."""
         return Jet(base, {(index,): self.ring.one})
+
+    def derivative(self, x: Jet, index: int) -> Jet:
+        """dx/dx_index."""
+        parts: list[Terms] = [{} for _ in x.parts]
+        for part, terms in zip(parts, x.parts, strict=True):
+            for key, value in terms.items():
+                if count := key.count(index):
+                    at = key.index(index)
+                    part[key[:at] + key[at + 1 :]] = value * count
+        return Jet(parts[0].get((), self.ring.zero) if parts else self.ring.zero, *parts[1:])
+
+    def eulerian(self, x: Jet) -> Jet:
+        """sum_i x_i dx/dx_i: each term times its degree."""
+        parts = ({key: value * k for key, value in part.items()} for k, part in enumerate(x.parts, start=1))
+        return Jet(self.ring.zero, *parts)
 
     def vanishes(self, x: Jet) -> bool:
         return x.is_constant and bool(x.value.is_zero())
@@ -127,10 +151,10 @@ class Jets(Algebra[Jet]):
         ring, parts, terms = self.ring, [], 0
         for k in range(1, min(self.order, len(a.parts) + len(b.parts)) + 1):
             part: Terms = {}
-            _accumulate(ring, part, a.degree(k), b.value)
-            _accumulate(ring, part, b.degree(k), a.value)
+            _accumulate(ring, part, a._part(k), b.value)
+            _accumulate(ring, part, b._part(k), a.value)
             for i in range(1, k):
-                _multiply(ring, part, a.degree(i), b.degree(k - i))
+                _multiply(ring, part, a._part(i), b._part(k - i))
             terms += len(part)
             parts.append(part)
         ring.spend(20 * (8 + terms))
@@ -144,10 +168,12 @@ class Jets(Algebra[Jet]):
     def sin_cos(self, angle: LinearForm) -> tuple[Jet, Jet]:
         base = LinearForm(turns=angle.turns)
         elsewhere: list[tuple[str, Fraction, Polynomial]] = []
-        first: Terms = {}
+        small = self.zero
         for name, coefficient in angle.coefficients:
             if name in self.deviations:
-                first[self.deviations[name],] = self.ring.number(coefficient)
+                by = self.deviations[name]
+                moved = self.deviation(by, self.ring.zero) if isinstance(by, int) else _small(by)
+                small = small + self.times(self.number(coefficient), moved)
             form: LinearForm | None = LinearForm(((name, Fraction(1)),))
             if name in self.motion:
                 form = linear_form(self.motion[name])
@@ -161,7 +187,7 @@ class Jets(Algebra[Jet]):
         for name, coefficient, value in elsewhere:
             s, c = self._at_rest_elsewhere(name, coefficient, value)
             sine, cosine = map(self.ring.reduce, self.ring.sum_of_angles(sine, cosine, s, c))
-        return self._turned(sine, cosine, Jet(self.ring.zero, first))
+        return self._turned(sine, cosine, small)
 
     def adds_constant(self, angle: LinearForm) -> bool:
         return self.ring.adds_constant(angle)
@@ -221,6 +247,9 @@ class Jets(Algebra[Jet]):
         return self._series(x, [self.ring.times(inverse, one) for one in self._powers(-inverse)])
 
     def square_root(self, x: Jet) -> Jet:
+        """The root; that of a small form of second order is of the size of the deviations, as |u| is."""
+        if not x.is_constant and not x._part(1) and self.ring.is_zero(x.value) is True:
+            return self._of_their_size()
         root = self.ring.square_root(x.value)
         if x.is_constant:
             return Jet(root)
@@ -266,20 +295,29 @@ class Jets(Algebra[Jet]):
     def _off_the_kink(self, name: str, x: Jet) -> Jet:
         """|a + u| = |a| + sign(a) u and sign(a + u) = sign(a) for small u, where a is not 0.
 
-        Raises NoClosedForm where a is 0, or is not known to be another number: there is no expansion.
+        |u| is of the size of u: a term of its own, with a negative index, that products may make small of higher order;
+        u |u| is differentiable.  Raises NoClosedForm where sign(u) is asked for, or a is not known to be 0 or not.
         """
         ring = self.ring
         if x.is_constant:
             return Jet(ring.function(name, x.value))
+        if name == "abs" and ring.is_zero(x.value) is True:
+            return self._of_their_size()
         if ring.is_zero(x.value) is not False:
-            what = "kink" if name == "abs" else "jump"
             raise NoClosedForm(
-                Message("[[name]] has a [[what]] at the motion that is expanded about", name=name, what=what)
+                _KINK
+                if name == "abs"
+                else Message("[[name]] has a [[what]] at the motion that is expanded about", name=name, what="jump")
             )
         sign = ring.function("sign", x.value)
         if name == "sign":
             return Jet(sign)
         return self._series(x, [ring.function("abs", x.value), sign])
+
+    def _of_their_size(self) -> Jet:
+        """What is no more than a multiple of the deviations, and has no expansion."""
+        self._kinks += 1
+        return Jet(self.ring.zero, {(-self._kinks,): self.ring.one})
 
     def _tabulated(self, name: Tabulated, x: Jet) -> Jet:
         """The Taylor polynomial off the knots.

@@ -57,7 +57,7 @@ def reduced(analysis: Analysis) -> Reduced:
     scene, names = analysis.parameters_scene, analysis.system.coordinates
     found = expansion(scene, analysis.signs, analysis.system)
     equations = projected(scene, found)
-    leaf = 0 if len(found.coordinates) == len(found.speeds) else _kept(analysis)
+    leaf = 0 if len(found.coordinates) == len(found.speeds) else kept_by_velocities(analysis)
     if leaf:
         there, own = on_leaf(scene, found, equations)
         unfelt = len(there.speeds) - len(felt(there, own))
@@ -76,7 +76,7 @@ def _displacements(analysis: Analysis, speeds: Sequence[str]) -> int:
     return len(balance.displacements(speeds).directions)
 
 
-def _kept(analysis: Analysis) -> int:
+def kept_by_velocities(analysis: Analysis) -> int:
     """How many relations the velocity constraints keep if all are proved to be integrable, without time; else 0."""
     tied = analysis.optional("constraints")
     known = None if tied is None else tied.integrability

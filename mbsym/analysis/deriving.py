@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant
-from mbsym.analysis import approximation, constrained, given
+from mbsym.analysis import approximation, constrained, given, higher
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -29,6 +29,7 @@ from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import undecided
+from mbsym.problems.stability.word import Word
 from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
@@ -133,6 +134,10 @@ def _demand_regular(analysis: Analysis) -> None:
 def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
     found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+    if found.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(found.verdict):
+        found = stability.with_verdict(found, higher.of_one_coordinate(analysis, found.verdict))
+        if found.verdict.word.open and not found.verdict.because(Because.ORDER_DECIDES) and found.numerical is None:
+            found = stability.because(found, Because.VALUES_DECIDE)
     values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
     divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)
     if divisor is not None:

@@ -4,22 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure
+from mbsym.algebra.parts import installed
+from mbsym.analysis.approximation import kept_by_velocities
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.variables import expressions
 from mbsym.problems import stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
+from mbsym.problems.dissipation import EnergyLaw
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact, HigherOrder
+from mbsym.problems.stability.verdict import Verdict, concluded
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
+    from mbsym.mechanics.constraints.expansion import OnManifold
     from mbsym.problems.normal_forms import InSymbols, Judged, NormalForms
 
 
@@ -71,12 +81,119 @@ def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:
     def at(values: Mapping[str, Any]) -> Judged | None:
         try:
             if not made:
-                made.append(problem.judge(scene, analysis.system, equilibrium, *ignorable(analysis)))
+                manifold = on_manifold(analysis) if analysis.system.constraints else None
+                made.append(problem.judge(scene, analysis.system, equilibrium, *ignorable(analysis), manifold))
             return made[0](values)
         except (Failure, *NOT_THERE):
             return None
 
     return at
+
+
+def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | None:
+    """What a minimum of the potential energy of higher order says under constraints; None where it says nothing."""
+    from mbsym.problems.normal_forms import problem
+
+    law = analysis.balance.at(values).law
+    try:
+        if not law.bounded:
+            return None
+        scene, conserved = analysis.parameters_scene, law is EnergyLaw.CONSERVED
+        manifold = on_manifold(analysis)
+        return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, conserved, values)
+    except (Failure, *NOT_THERE):
+        return None
+
+
+def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
+    """A verdict that is on a border for all parameters, decided by the first term of V(x) of the one coordinate.
+
+    Where its sign is not known, the condition is told.  With damping of first order, x' = -V'(x)/d on the centre
+    manifold, else by the energy.
+    """
+    if not installed("mbsym.problems.normal_forms"):
+        return verdict
+    from mbsym.problems.normal_forms import problem
+
+    scene, signs, law = analysis.parameters_scene, analysis.signs, analysis.balance.law
+    tied = bool(analysis.system.constraints)
+    try:
+        damping = analysis.linearisation.D.polynomials
+        damped = len(damping) == 1 and signs.sign(damping[0][0]) == "positive"
+        if not law.bounded or len(damping) != 1:
+            return verdict
+        manifold = on_manifold(analysis) if tied else None
+        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold)
+        if term is None:
+            return verdict
+        order, value = term
+        above, below = scene.ring.fraction(value)
+        bottom = scene.ring.one
+        for factor, exponent in below:
+            bottom = scene.ring.times(bottom, scene.ring.power(factor, exponent))
+        value = scene.ring.reduce(scene.ring.times(above, bottom))
+    except (Failure, *NOT_THERE):
+        return verdict
+    higher = Reason(Because.TERMS_OF_HIGHER_ORDER)
+    by_manifold = (HigherOrder.REDUCTION.value,)
+    leaving = concluded(
+        {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED},
+        Reason(Because.NO_MINIMUM, (order,)),
+    )
+    staying = concluded(
+        {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}, Reason(Because.HIGHER_MINIMUM, (order,))
+    )
+    if damped:
+        leaving, staying = (
+            Verdict(Word.UNSTABLE, by_manifold, (higher,)),
+            Verdict(Word.ASYMPTOTIC, by_manifold, (higher,)),
+        )
+    leaves = damped or law is EnergyLaw.CONSERVED
+    word = signs.sign(value)
+    if order % 2:
+        return leaving if leaves and word in ("positive", "negative", "nonzero") else verdict
+    if word == "positive":
+        return staying
+    if not leaves or word in ("nonnegative", "nonpositive", "zero"):
+        return verdict
+    if word == "negative":
+        return leaving
+    condition = signs.condition(value)
+    if condition.kind != "inequality" or condition.nonzero:
+        return verdict
+    positive = Formula(scene.ring, condition.polynomial)
+    reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
+    return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (order, positive, staying.word))))
+
+
+def on_a_leaf(analysis: Analysis) -> bool:
+    """Whether velocity constraints keep relations that a disturbance may change."""
+    if not analysis.system.constraints:
+        return False
+    about = analysis.reduced.about
+    return about.leaf > 0 or not about.holonomic
+
+
+def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
+    """What constraints leave near a rest, to any order.
+
+    Raises NotExpanded where the motion is none, where constraints know the time or are not known to be integrable, or
+    where their rank on the motion is not that near it.
+    """
+    from mbsym.mechanics.constraints.expansion import on_manifold
+    from mbsym.problems.normal_forms.expansion import NotExpanded
+
+    system, scene, tied = analysis.system, analysis.parameters_scene, analysis.constraints
+    found, about = analysis.reduced.expansion, analysis.reduced.about
+    at_rest = not found.base.turning and all(x.is_zero() for x in found.base.rates)
+    if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
+        raise NotExpanded("under constraints only rests of systems that do not know the time are expanded")
+    if (
+        not (about.holonomic or kept_by_velocities(analysis))
+        or len(system.coordinates) - len(found.speeds) != tied.velocity_rank
+    ):
+        raise NotExpanded("the constraints leave no manifold that is known")
+    return lambda order: on_manifold(scene, analysis.signs, found, order)
 
 
 def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
@@ -114,6 +231,8 @@ def ignorable(analysis: Analysis) -> tuple[bool, frozenset[str]]:
     running = (*(item.name for item in analysis.system.prescribed), "t")
     conservative = have_generalized_potential(ring, names, applied, running)
     free = [name for name in names if not conservative or ring.vanishes(applied[name])]
+    if analysis.system.constraints:  # what constraints tie has no constant momentum of its own
+        return conservative, frozenset()
     cyclic = [name for name in free if name in energies.cyclic]
     held = {name for x in applied.values() for name in ring.dependencies(x, cyclic)}
     return conservative, frozenset(cyclic) - held

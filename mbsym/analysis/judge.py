@@ -6,7 +6,9 @@ Asked in this order, each only where those before leave the nonlinear system ope
 2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
 3. terms of higher order: normal forms, centre manifolds (problem 11).
 
-Relations that give coordinates explicitly are put in before 2: the motion does not know which coordinates tell it.
+Relations that give coordinates explicitly are put in before 2, and displacements that change no equation are made
+coordinates: the motion does not know which coordinates tell it.
+Of other constraints 2 and 3 have the manifold that they leave (``higher.on_manifold``).
 
 Step 3 is asked, too, where an energy that does not grow shows stability and dissipation of higher order may make it
 asymptotic.
@@ -22,13 +24,15 @@ from typing import TYPE_CHECKING, Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
+from mbsym.algebra.rationals import fraction
 from mbsym.analysis import higher
 from mbsym.analysis.higher import ignorable
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
 from mbsym.model.constraints import Relation
-from mbsym.model.substitution import without_explicit_relations
+from mbsym.model.substitution import displaced, without_explicit_relations
+from mbsym.model.system import System
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import HigherOrder
@@ -45,7 +49,13 @@ if TYPE_CHECKING:
 _WORDS = {"stable": Word.STABLE, "asymptotically stable": Word.ASYMPTOTIC, "unstable": Word.UNSTABLE}
 
 #: Where there is no motion that could be judged.
-_NO_MOTION = (Because.NOT_THE_VALUE, Because.MOTION_NOT_THERE, Because.MOTION_OPEN, Because.POLE)
+_NO_MOTION = (
+    Because.NOT_THE_VALUE,
+    Because.MOTION_NOT_THERE,
+    Because.MOTION_OPEN,
+    Because.NO_EQUATIONS,
+    Because.POLE,
+)
 
 
 class Judge:
@@ -70,13 +80,15 @@ class Judge:
     def may_add(self, verdict: Verdict) -> bool:
         """Whether the nonlinear system may decide more: of an open verdict, or of stability by an energy that may fall.
 
-        What has speeds of its own is not judged further, nor what has constraints that give no coordinate explicitly.
+        What has speeds of its own is not judged further.
         """
         of = self.analysis
         if of.system.linear is not None or of.system.speeds:
             return False
-        if of.system.constraints:
-            return self._in_fewer is not None and self._in_fewer.may_add(verdict)
+        if not (verdict.word.open or verdict.word is Word.STABLE):
+            return False
+        if (of.system.constraints or verdict.word.open) and self._in_others is not None:
+            return self._in_others.may_add(verdict)
         if verdict.word is Word.STABLE:
             curved = verdict.because(Because.HIGHER_MINIMUM)  # friction of first order may decay there, too
             return self._loses_energy if curved else self._may_lose_energy
@@ -100,12 +112,13 @@ class Judge:
         """
         if not self.may_add(verdict):
             return verdict
-        if self._in_fewer is not None:
-            return self._told_in_fewer(verdict, values)
+        constraints = bool(self.analysis.system.constraints)
+        if (constraints or verdict.word.open) and self._in_others is not None:
+            told = self._told_in_others(verdict, values)
+            if constraints or not told.word.open:
+                return told
         if verdict.word.open and all(isinstance(x, Fraction) for x in values.values()):
-            from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
-
-            verdict = open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+            verdict = self._by_energy(verdict, values)
             if not self.may_add(verdict):
                 return verdict
         if not installed("mbsym.problems.normal_forms"):
@@ -116,13 +129,30 @@ class Judge:
             return verdict
         return further
 
+    def _by_energy(self, verdict: Verdict, values: Mapping[str, Fraction]) -> Verdict:
+        """Step 2 of an open verdict; under constraints on the manifold that they leave."""
+        if self.analysis.system.constraints:
+            known = installed("mbsym.problems.normal_forms")
+            return (higher.by_energy(self.analysis, values) if known else None) or verdict
+        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+
+        return open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+
     @cached_property
-    def _in_fewer(self) -> Judge | None:
-        """The judge of this motion in the coordinates that explicit relations leave; None with other constraints."""
+    def _in_others(self) -> Judge | None:
+        """The judge of this motion in the coordinates that explicit relations leave; None with other constraints.
+
+        Without constraints in those of which some are displacements that change no equation, where those given are not.
+        """
         of = self.analysis
-        if not any(isinstance(one, Relation) for one in of.system.constraints):
+        if not of.system.constraints:
+            system = self._displaced
+        elif not any(isinstance(one, Relation) for one in of.system.constraints):
             return None
-        system = without_explicit_relations(of.system)
+        else:
+            system = without_explicit_relations(of.system)
+        if system is None:
+            return None
         if system.constraints:
             from mbsym.mechanics.constraints.rows import said_rows
 
@@ -130,19 +160,42 @@ class Judge:
                 return None
         return Judge(type(of)(replace(system, constraints=()), (), of.terms, suggests=False))
 
-    def _told_in_fewer(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
-        """What the coordinates say that are left; not where others follow a drift unevenly: their rates do not stay."""
-        assert self._in_fewer is not None
+    @property
+    def _displaced(self) -> System | None:
+        """With displacements that change no equation as coordinates, where these are sums of those given."""
+        of = self.analysis
+        if of.system.linear is not None or of.system.speeds:
+            return None
+        names = of.system.coordinates
+        system, taken = of.system, set[str]()
+        for direction in of.balance.displacements(names).directions:
+            if not all(x.is_constant() for x in direction):
+                return None
+            shares = {one: fraction(x.leading_coefficient()) for one, x in zip(names, direction, strict=True) if x != 0}
+            name = next((one for one in reversed(names) if one in shares and one not in taken), None)
+            if name is None or any(one in taken for one in shares):
+                return None
+            if len(shares) > 1:
+                taken.add(name)
+                system = displaced(system, name, {one: c / shares[name] for one, c in shares.items()})
+        return system if taken else None
+
+    def _told_in_others(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
+        """What other coordinates say; not where others follow a drift unevenly: their rates do not stay."""
+        assert self._in_others is not None
+        of, others = self.analysis, self._in_others.analysis
         try:
-            further = self._in_fewer(values)
-            drift = self._in_fewer.analysis.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
-            every = self.analysis.system.coordinates if Flaw.HERE in further.flawed else drift
-            rows = self.analysis.constraints.jacobian.polynomials
+            further = self._in_others(values)
+            drift = others.balance.ignorable if Flaw.CYCLIC in further.flawed else ()
+            every = of.system.coordinates if Flaw.HERE in further.flawed else drift
+            rows = of.constraints.jacobian.polynomials if of.system.constraints else []
         except (Failure, *NOT_THERE):
             return verdict
-        ring = self.analysis.ring
-        uneven = any(ring.dependencies(x, every) for row in rows for x in row)
-        return verdict if further.word.open or uneven else further
+        uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)
+        if further.word.open or uneven:
+            return verdict
+        told = (one for one in verdict.reasons if one.code is Because.DISPLACEMENTS and one not in further.reasons)
+        return replace(further, reasons=tuple(sorted((*further.reasons, *told), key=lambda one: one.rank)))
 
     @cached_property
     def _of_higher_order(self) -> Any:
@@ -153,14 +206,21 @@ class Judge:
 
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
         momenta, too, if its conditions are inequalities (Dirichlet's theorem, Arnold and Moser's without resonance).
+        So it is with the relations that integrable velocity constraints keep; what is asymptotically stable at some
+        values of them is stable (it is so under constant perturbations, Malkin), and does not come back from others.
         """
         word = _WORDS.get(found.outcome.value)
         if word is None:
             return None
+        lasting = found.theorem in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER)
         if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
-            if found.theorem not in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER):
+            if not lasting:
                 return None
             word = Word.STABLE_BUT_CYCLIC
+        elif word is not Word.UNSTABLE and higher.on_a_leaf(self.analysis):
+            if word is Word.STABLE and not lasting:
+                return None
+            word = Word.STABLE
         return Verdict(word, (found.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
 
 

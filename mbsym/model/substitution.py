@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -33,7 +33,7 @@ from mbsym.expressions.tree import (
 from mbsym.model.constraints import Relation
 from mbsym.model.inputs import Input
 from mbsym.model.loads import CoordinateDamper, CoordinateSpring, ForceFunction, GeneralizedForce, Load, Rayleigh
-from mbsym.model.system import System
+from mbsym.model.system import MotionEntry, System
 
 _EXPRESSIONS = (Number, Name, Negative, Operation, Call)
 _FOLDING = {"+": add, "-": subtract, "*": multiply}
@@ -112,11 +112,35 @@ def without_explicit_relations(system: System) -> System:
     quantities or t stay, and all that are not so.  What only tells of coordinates (claims, initial values) is left out.
     """
     if any(isinstance(one, Relation) for one in system.constraints):
-        system = replace(held(system), claims=(), abbreviations=(), notation=(), outputs=(), reactions=())
-        system = replace(system, initial=(), start=(), limits=(), order=(), dependent=())
+        system = _motions_alone(system)
     while (explicit := _explicit(system)) is not None:
-        system = _without(system, *explicit)
+        relation, name, value = explicit
+        kept = tuple(one for one in system.constraints if one is not relation)
+        free = [one for one in system.coordinates if one != name]
+        system = _told_by(replace(system, constraints=kept), name, value, free)
     return system
+
+
+def displaced(system: System, name: str, direction: Mapping[str, Fraction]) -> System:
+    """The same motions with the coordinate ``name`` along a direction: q_i + c_i q_name in place of every other q_i."""
+    system = _motions_alone(system)
+    values = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
+    still = ZERO, ZERO
+    for one, c in direction.items():
+        if c and one != name:
+            along = multiply(number(c), Name(name))
+            pairs = zip(values.get(one, still), values.get(name, still), strict=True)
+            value, rate = (subtract(x, multiply(number(c), y)) for x, y in pairs)
+            others = tuple(entry for entry in system.motion if entry.coordinate != one)
+            system = _told_by(system, one, add(Name(one), along), system.coordinates)
+            system = replace(system, motion=(*others, MotionEntry(one, value, rate)))
+    return system
+
+
+def _motions_alone(system: System) -> System:
+    """Without what only tells of coordinates, inputs at their values."""
+    system = replace(held(system), claims=(), abbreviations=(), notation=(), outputs=(), reactions=())
+    return replace(system, initial=(), start=(), limits=(), order=(), dependent=())
 
 
 def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
@@ -134,9 +158,8 @@ def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
     return None
 
 
-def _without(system: System, relation: Relation, name: str, value: Expression) -> System:
-    """The system with the value of a coordinate put in, and its rate for its velocity."""
-    free = [one for one in system.coordinates if one != name]
+def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) -> System:
+    """The system in the coordinates ``free``, with the value of another one, or of one of them, put in everywhere."""
     rate = Derivation({one: Name(velocity_name(one)) for one in free})(value)
     images = {name: value, velocity_name(name): rate}
 
@@ -157,14 +180,13 @@ def _without(system: System, relation: Relation, name: str, value: Expression) -
         return load
 
     bodies = tuple(
-        replace(body, coordinates=tuple(one for one in body.coordinates if one != name), relative_velocity=None)
+        replace(body, coordinates=tuple(one for one in body.coordinates if one in free), relative_velocity=None)
         for body in system.bodies
     )
     there = replace(
         system,
         bodies=bodies,
         loads=tuple(kept for load in system.loads if (kept := acting(load).simplified()) is not None),
-        constraints=tuple(one for one in system.constraints if one is not relation),
-        motion=tuple(entry for entry in system.motion if entry.coordinate != name),
+        motion=tuple(entry for entry in system.motion if entry.coordinate in free),
     )
     return put(there, images, folded)

@@ -20,7 +20,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
 from mbsym.mechanics.motion import turning
-from mbsym.problems.displacements import Displacements
+from mbsym.problems.displacements import Displacements, among
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.reduction import Reduction
 
@@ -63,18 +63,30 @@ class ConstrainedBalance(Balance):
 
         Where the constraints are integrable they lead from a leaf into itself: constraint forces do no work along them.
         """
-        none, names = Displacements(tuple(coordinates)), self.scene.system.coordinates
         if self._rows is None:
-            return none
-        independent = () if self.about is None else self.about.about
-        taken = (*coordinates, *(name for name in names if name not in {*coordinates, *independent}))
+            return Displacements(tuple(coordinates))
+        names, taken = self.scene.system.coordinates, self._with_dependent(coordinates)
         places = [names.index(name) for name in taken]
         found = self._displacements(taken, [(row.velocity, [row.partials[i] for i in places]) for row in self._rows])
-        return replace(
-            found,
-            coordinates=tuple(coordinates),
-            directions=tuple(direction[: len(coordinates)] for direction in found.directions),
-        )
+        return _along(found, coordinates)
+
+    def symmetries(self, coordinates: Sequence[str]) -> Displacements:
+        """Those that vary with the position, too, of holonomic systems near a rest: they keep every f of f(q) = 0."""
+        found = among(self.ring, self._fields, self.scene.system.coordinates, self._with_dependent(coordinates))
+        return _along(found, coordinates)
+
+    def _with_dependent(self, coordinates: Sequence[str]) -> tuple[str, ...]:
+        independent = () if self.about is None else self.about.about
+        others = (name for name in self.scene.system.coordinates if name not in {*coordinates, *independent})
+        return (*coordinates, *others)
+
+    @property
+    def _kept(self) -> tuple[Polynomial, ...] | None:
+        if self._rows is None or self.about is None or not self.about.holonomic:
+            return None
+        if self._resting != {*self.scene.system.coordinates} or not self._homogeneous:
+            return None
+        return tuple(row.position for row in self._rows if row.position is not None)
 
     @cached_property
     def absent(self) -> tuple[str, ...]:
@@ -202,6 +214,12 @@ class ConstrainedBalance(Balance):
         rows = self._rows or ()
         found = {name for row in rows for name, x in zip(names, row.partials, strict=True) if not x.is_zero()}
         return found | {name for row in rows for x in _entries(row) for name in names if self.ring.depends_on(x, name)}
+
+
+def _along(found: Displacements, coordinates: Sequence[str]) -> Displacements:
+    """The same by the first coordinates alone: the others follow."""
+    directions = tuple(direction[: len(coordinates)] for direction in found.directions)
+    return replace(found, coordinates=tuple(coordinates), directions=directions)
 
 
 def _entries(row: Row) -> list[Polynomial]:

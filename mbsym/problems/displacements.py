@@ -177,9 +177,11 @@ def symmetries(
     fields: Sequence[Direction],
     here: Callable[[Polynomial], Polynomial],
     standing: Sequence[str],
+    kept: Sequence[Polynomial] = (),
 ) -> list[tuple[Direction, Direction, bool]]:
     """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
 
+    They keep the functions ``kept`` of the position, which constraints hold at 0: these do no work along c, either.
     ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with independent values
     that are not 0.  Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of
     one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
@@ -191,7 +193,7 @@ def symmetries(
     tried = [*units, *fields][:MOST_FIELDS]
     if len(kinetic) + sum(map(len, forces)) > MOST_FIELD_TERMS:
         return []
-    lists = [[_lie(ring, coordinates, c, kinetic) for c in tried]]
+    lists = [[_lie(ring, coordinates, c, x) for c in tried] for x in (kinetic, *kept)]
     for j, name in enumerate(coordinates):
         lists.append(
             [
@@ -209,7 +211,7 @@ def symmetries(
         for weights in kernel(ring, *[[ring.reduce(x) for x in row] for row in lists])
     ]
     for c in sorted(combined, key=lambda c: any(ring.dependencies(x, coordinates) for x in c)):
-        if any(not set(ring.dependencies(x, coordinates)) <= {*standing} for x in c):
+        if any(not set(ring.dependencies(x, coordinates)) <= {*standing} for x in c) or _shears(ring, coordinates, c):
             continue
         value = tuple(here(x) for x in c)
         if all(x.is_zero() for x in value) or not _completing(ring, [v for _, v, _ in told], [value]):
@@ -218,6 +220,30 @@ def symmetries(
     if all(_commute(ring, coordinates, a, b) for (a, _, _), (b, _, _) in combinations(told, 2)):
         return told
     return [(c, value, False) for c, value, _ in told]
+
+
+def _shears(ring: Ring, coordinates: Sequence[str], c: Direction) -> bool:
+    """Whether a linear field is not known to turn: q' = A q + a with A^3 = -s A, s > 0, or A = 0, keeps rates bounded.
+
+    In u = x + y^2 and y a free particle has the symmetry (2 y, 1), but u' = x' + 2 y y' grows with y.  Fields of angles
+    are periodic in these.
+    """
+    names = [name for name, x in zip(coordinates, c, strict=True) if not x.is_zero()]
+    names += [name for name in coordinates if name not in names and any(ring.dependencies(x, [name]) for x in c)]
+    parts = [c[coordinates.index(name)] for name in names]
+    slopes = ScalarMatrix(ring, [[ring.derivative(x, name) for name in names] for x in parts])
+    if any(ring.dependencies(x, coordinates) for row in slopes.rows for x in row):
+        return False
+    cubed = slopes @ (slopes @ slopes)
+    pairs = [
+        (x, y) for one, other in zip(slopes.rows, cubed.rows, strict=True) for x, y in zip(one, other, strict=True)
+    ]
+    lead = next(((x, y) for x, y in pairs if not x.is_zero()), None)
+    if lead is None:
+        return False
+    a, b = lead
+    alike = all(ring.is_zero(ring.times(a, y) - ring.times(b, x)) is True for x, y in pairs)
+    return not (alike and ring.is_positive(ring.reduce(-ring.times(a, b))))
 
 
 def _lie(ring: Ring, coordinates: Sequence[str], c: Direction, x: Polynomial) -> Polynomial:

@@ -39,6 +39,7 @@ from mbsym.algebra.signs import Signs, sign_of_product
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import (
+    Call,
     Expression,
     Name,
     Negative,
@@ -189,13 +190,19 @@ class Balance:
         return self._displacements(coordinates)
 
     def symmetries(self, coordinates: Sequence[str]) -> Displacements:
-        """The same with those that vary with the position; of systems without constraints."""
+        """The same with those that vary with the position."""
         return among(self.scene.ring, self._fields, self.scene.system.coordinates, coordinates)
+
+    @property
+    def _kept(self) -> tuple[Polynomial, ...] | None:
+        """Functions of the position that displacements have to keep; None where they are not known."""
+        return None if self.scene.system.constraints else ()
 
     @cached_property
     def _fields(self) -> list[tuple[Direction, Direction, bool]]:
         system, ring = self.scene.system, self.scene.ring
-        if self.energy is None or self.somewhere or self._forces is None or system.constraints:
+        kept = self._kept
+        if self.energy is None or self.somewhere or self._forces is None or kept is None:
             return []
         try:
             names, moving = system.coordinates, {*turning(self.scene)}
@@ -218,6 +225,7 @@ class Balance:
                     fields,
                     lambda x: ring.substitute(x, self._here),
                     standing,
+                    kept,
                 )
         except Failure:
             return []
@@ -524,7 +532,7 @@ class Balance:
         return word
 
     def _power_word(self, base: Expression, exponent: int) -> str:
-        if exponent % 2 == 0:
+        if exponent % 2 == 0 or (isinstance(base, Call) and base.function in ("abs", "sqrt", "exp", "cosh")):
             return "nonnegative"
         if not any(velocity in names(base) for velocity in self.scene.system.velocities):
             return self._word(self.scene.lower(base))

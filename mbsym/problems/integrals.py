@@ -11,7 +11,9 @@ Found are
 * a cyclic momentum  p_i = dT/dq'_i,  with  dp_i/dt = E_i,  for every coordinate that L and Q_i do not contain;
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
-  mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted.
+  mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted;
+* where the energy is conserved, such a momentum less W(q), if the forces that change it, which do no work together
+  (those of a magnetic field), are dW/dt: m x' - q B y.
 
 Where a formula outgrows its budget, the energy and cyclic momenta that follow from the structure of the equations alone
 are named without one.
@@ -65,6 +67,9 @@ ENERGY = "generalised energy"
 WITH_FORCES = "energy with the potential of the forces"
 ENERGIES = (ENERGY, WITH_FORCES)
 
+#: A momentum less W, where forces that do no work change it by dW/dt.
+GYROSCOPIC = "gyroscopic momentum"
+
 #: Working precision of balls, in bits.
 PRECISION = 256
 #: States at which a candidate must be conserved exactly before it is reported.
@@ -75,7 +80,7 @@ MOST_COORDINATES, MOST_TERMS = 3, 400
 
 @dataclass(frozen=True, repr=False)
 class Integral(Shown):
-    """``kind`` is generalised energy, cyclic, linear or angular momentum; ``of`` a coordinate or an axis."""
+    """``kind``: generalised energy, cyclic, linear, angular, gyroscopic momentum; ``of``: a coordinate or an axis."""
 
     name: str
     kind: str
@@ -106,12 +111,17 @@ def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[st
 
 def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Programs) -> tuple[Integral, ...]:
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
-    found = [*_generalised_energy(scene, energy, equations), *_cyclic_momenta(scene, energy, equations)]
+    energies = [*_generalised_energy(scene, energy, equations)]
+    idle = any(item.name == ENERGY for item in energies)
+    found = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
     found = [item for item in found if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
     found += _momenta(
         scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES]
     )
+    if idle and not all(load.conservative for load in scene.system.loads):
+        known = [item.formula.polynomial for item in found if item.kind not in ENERGIES]
+        found += _gyroscopic_momenta(scene, equations, conserved, known)
     return tuple(found)
 
 
@@ -197,20 +207,22 @@ def _work(scene: Scene, power: Polynomial) -> Polynomial | None:
         return None
 
 
-def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
+def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations, idle: bool) -> Iterator[Integral]:
+    """``idle``: the forces without a force function do no work together."""
     ring, names = scene.ring, scene.system.coordinates
     for i, name in enumerate(names):
         momentum = ring.velocity_derivative(energy.kinetic_energy.polynomial, name)
-        if name in energy.cyclic and ring.is_zero(
-            total_rate(scene, momentum) - equations.equality(i, names).polynomial
-        ):
-            yield Integral(
-                Message("momentum of [[name]]", name=name),
-                "cyclic momentum",
-                name,
-                Formula(ring, momentum),
-                Certainty.PROVED,
-            )
+        if name not in energy.cyclic:
+            continue
+        force = ring.reduce(total_rate(scene, momentum) - equations.equality(i, names).polynomial)
+        if ring.is_zero(force):
+            kind, title, share = "cyclic momentum", Message("momentum of [[name]]", name=name), ring.zero
+        elif not idle or (work := _work(scene, force)) is None:
+            continue
+        else:
+            title = Message("momentum of [[name]] with the share of gyroscopic forces", name=name)
+            kind, share = GYROSCOPIC, work
+        yield Integral(title, kind, name, Formula(ring, ring.reduce(momentum - share)), Certainty.PROVED)
 
 
 # --- momenta of the whole system ---
@@ -250,6 +262,34 @@ def _momenta(
                 found.append(
                     Integral(momentum_title(kind, axis), kind, str(axis), Formula(scene.ring, formula), status)
                 )
+    except Failure:
+        pass  # what was found so far is right; the rest is not known
+    return found
+
+
+def _gyroscopic_momenta(
+    scene: Scene, equations: Equations, conserved: set[tuple[str, int]], known: Sequence[Polynomial]
+) -> list[Integral]:
+    """Momenta of the whole system less W, where what is left of their rates by the equations is dW/dt, W(q)."""
+    ring, names = scene.ring, scene.system.coordinates
+    found: list[Integral] = []
+    try:
+        for kind, axis, formula in whole_momenta(scene):
+            multipliers = None if (kind, axis) in conserved else _simple_multipliers(scene, equations, formula)
+            if multipliers is None:
+                continue
+            rate = total_rate(scene, formula)
+            for i, multiplier in enumerate(multipliers):
+                if not multiplier.is_zero():
+                    rate = rate - ring.times(multiplier, equations.equality(i, names).polynomial)
+            rate = ring.reduce(rate)
+            work = None if ring.is_zero(rate) else _work(scene, rate)
+            others = [*known, *(item.formula.polynomial for item in found)]
+            if work is None or not _is_new(whole := ring.reduce(formula - work), others):
+                continue
+            title = Message("[[momentum]] with the share of gyroscopic forces", momentum=momentum_title(kind, axis))
+            of = f"{kind.removesuffix(' momentum')} {axis}"
+            found.append(Integral(title, GYROSCOPIC, of, Formula(ring, whole), Certainty.PROVED))
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return found

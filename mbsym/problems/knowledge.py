@@ -7,13 +7,15 @@ is singular or beyond all budgets tells nothing: less is known then, and nothing
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from weakref import WeakKeyDictionary
 
 from flint import arb
 
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.algebra.signs import Signs
+from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
@@ -51,7 +53,30 @@ def signs(scene: Scene) -> Signs:
             words[ring.index("parameter", item.name)] = word
     plain = Signs(ring.context, tuple(words), numbers=numbers)
     told = Signs(ring.context, tuple(words), _assumptions(scene, plain), numbers=numbers)
+    told = told.assuming(_radicands(ring, dependent.values(), told))
     return _with_reciprocals(scene, told.assuming(_bounds(scene, told)))
+
+
+def _radicands(ring: Ring, values: Iterable[Polynomial], told: Signs) -> list[tuple[Polynomial, str]]:
+    """x >= 0 of every sqrt(x) by which parameters are given: they are real numbers.
+
+    As a polynomial that is top * bottom, x = top/bottom; > 0 where top is known not to vanish.
+    """
+    facts = []
+    for k in occurring(values):
+        g = ring.generators[k]
+        if g.kind != "root" or g.argument is None or g.argument.is_constant():
+            continue
+        try:
+            product, below = ring.fraction(g.argument)
+            strict = told.never_zero(product)
+            for bottom, exponent in below:
+                product = ring.times(product, bottom) if exponent % 2 else product
+        except Failure:
+            continue
+        if len(product) <= MOST_TERMS and told.sign(product) not in ("negative", "nonpositive", "zero"):
+            facts.append((product, ">" if strict else ">="))
+    return facts
 
 
 def _numbers(ring: Ring) -> dict[int, arb]:

@@ -436,3 +436,24 @@ def test_what_dependent_rows_presume_stands_at_the_verdict(tmp_path: Path) -> No
     told = " ".join(CliRunner().invoke(main, asked).output.split())
     assert "Stability where e != 0: stable (Lagrange-Dirichlet)" in told
     assert "Verdict, where e != 0: stable (Lagrange-Dirichlet)" in told
+
+
+def test_on_a_border_it_is_told_what_decides(tmp_path: Path) -> None:
+    """m x'' + 4 b x^3 = 0 is stable where b > 0; of m x'' + 3 b x^2 = 0 values would tell."""
+    text = """
+mbsym: 1
+name: border
+parameters: {m: positive, b: real}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: m, coordinates: [x]}
+loads:
+  - potential: b*x**4
+motion: {x: 0}
+"""
+    lines = told(tmp_path, text)
+    first = lines.index("Stability  undecided")
+    assert lines[first + 1] == "Terms of order 4 decide: it is stable where b > 0, and unstable where that is < 0."
+    lines = told(tmp_path, text.replace("x**4", "x**3"))
+    first = lines.index("Stability  undecided")
+    assert lines[first + 1].startswith("Terms of higher order may decide: give all parameters values")
+    assert not [line for line in told(tmp_path, text.replace("b*", "m*")) if "Terms of" in line]

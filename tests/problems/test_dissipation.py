@@ -21,6 +21,7 @@ from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.analysis import Analysis
+from mbsym.analysis.stages import Unavailable
 from mbsym.problems.dissipation import EnergyLaw
 
 CASES = TESTS / "cases" / "statements"
@@ -261,3 +262,30 @@ def test_a_dashpot_to_a_moved_point_takes_power_from_the_drive() -> None:
         }
         law = mbsym.loads(json.dumps(description)).balance.law
         assert law is (UNKNOWN if 0 in ends else NOT_GROWING)
+
+
+DRAG = "-x_dot*sqrt(x_dot**2 + y_dot**2)"
+
+
+@pytest.mark.parametrize(
+    ("force", "law", "word"),
+    [
+        ({"x": "-n*x_dot*abs(x_dot)"}, NOT_GROWING, "stable"),
+        ({"x": DRAG, "y": DRAG.replace("-x_dot*", "-y_dot*")}, NOT_GROWING, "stable"),
+        ({"x": "b*x_dot*abs(x_dot)"}, GROWS, "stable in first approximation only"),
+        ({"x": "-c*x_dot*abs(x_dot)"}, UNKNOWN, "stable in first approximation only"),
+        ({"x": "-b*x_dot - b*x_dot*abs(x_dot)", "y": "-b*y_dot"}, NOT_GROWING, "asymptotically stable"),
+        ({"x": "b*x_dot - b*x_dot*abs(x_dot)"}, UNKNOWN, "unstable"),
+    ],
+)
+def test_drag_that_grows_with_the_square_of_the_speed(force: dict[str, str], law: EnergyLaw, word: str) -> None:
+    """u |u| is of second order, so that the first approximation does not feel it."""
+    found = point({"generalized force": force})
+    assert found.balance.law is law
+    assert found.stability.verdict.word.value == word
+
+
+@pytest.mark.parametrize("force", ["-b*abs(x_dot)", "-b*abs(x)", "b*abs(x_dot) - b*abs(x)", "sqrt(x**2 + x*y + y**2)"])
+def test_a_force_with_a_kink_has_no_first_approximation(force: str) -> None:
+    with pytest.raises(Unavailable, match="kink"):
+        point({"generalized force": {"x": force}}).stability  # noqa: B018

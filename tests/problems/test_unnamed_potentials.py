@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pytest
+import sympy
 from conftest import TESTS
 from terminal import told
 
 import mbsym
+from mbsym.algebra.certainty import Certainty
 from mbsym.problems.stability.word import Word
 
 STATEMENTS = TESTS / "cases" / "statements"
@@ -221,3 +223,46 @@ def test_a_force_with_the_cosine_of_a_square_has_an_energy() -> None:
     assert [item.status for item in found.integrals] == ["proved"]
     found = mbsym.loads(TRACK.replace("LOAD", 'generalized force: {x: "-k*x*cos(x**2 + x)"}').replace("+ V", ""))
     assert found.integrals == ()
+
+
+MAGNETIC = """
+mbsym: 1
+name: charge in a field along z
+parameters: {m: positive, B: real, k: real}
+bodies:
+  - {name: p, attached to: 0, connection point: [POINT], mass: m, coordinates: [COORDINATES]}
+loads:
+  - potential: V
+  - generalized force: FORCE
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "force", "wanted"),
+    [
+        ("0*x", "{x: B*y_dot, y: -B*x_dot}", {"m*x_dot - B*y", "m*y_dot + B*x", "L"}),
+        ("-k*x", "{x: B*y_dot, y: -B*x_dot}", {"m*y_dot + B*x"}),
+        ("k*(x**2 + y**2)**2", "{x: B*y_dot, y: -B*x_dot}", {"L"}),
+        ("k*x**2", "{x: B*x*y_dot, y: -B*x*x_dot}", {"m*y_dot + B*x**2/2"}),
+        ("k*(x**2 + 2*y**2)", "{x: B*y_dot, y: -B*x_dot}", set()),
+    ],
+)
+def test_momenta_in_magnetic_fields(potential: str, force: str, wanted: set[str]) -> None:
+    """p_x' = B y': p_x - B y is constant; and so on."""
+    text = MAGNETIC.replace("POINT", "x, y, 0").replace("COORDINATES", "x, y")
+    found = mbsym.loads(text.replace("V", potential).replace("FORCE", force), (1, 2, 3, 7))
+    momenta = [one for one in found.integrals if one.kind == "gyroscopic momentum"]
+    assert all(one.status is Certainty.PROVED for one in momenta)
+    angular = "m*(x*y_dot - y*x_dot) + B*(x**2 + y**2)/2"
+    wanted_formulas = [sympy.sympify(one.replace("L", angular)) for one in wanted]
+    formulas = [sympy.sympify(str(one.formula)) for one in momenta]
+    assert len(formulas) == len(wanted_formulas)
+    for formula in formulas:
+        assert any(sympy.simplify(formula / one).is_number for one in wanted_formulas)
+    assert found.check("first integrals").outcome == "exact"
+
+
+def test_a_damped_coordinate_has_no_such_momentum() -> None:
+    """Energy is lost: what is told of p_x + B x is left to problem 9."""
+    text = MAGNETIC.replace("POINT", "x, y, 0").replace("COORDINATES", "x, y").replace("V", "k*y**2")
+    assert mbsym.loads(text.replace("FORCE", "{x: -B*x_dot}"), (7,)).integrals == ()

@@ -74,15 +74,16 @@ loads:
   - damper: {coordinate: b, coefficient: c}
 motion: {}
 """
-PENNING = """
+TURNED = """
 mbsym: 1
-name: Penning trap
-parameters: {wc: positive, wz: positive}
+name: turned
+parameters: {m: positive, k: real, w: positive}
+prescribed: {chi: {rate: w}}
 bodies:
-  - {name: ion, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+  - {name: table, attached to: 0, rotation: {axes: [3], angles: [chi]}, mass: 0}
+  - {name: p, attached to: table, connection point: [x, y, 0], mass: m, coordinates: [x, y]}
 loads:
-  - potential: -wz**2*(x**2 + y**2)/4
-  - generalized force: {x: wc*y_dot, y: -wc*x_dot}
+  - potential: k*(x**2 + y**2)/2
 motion: {}
 """
 
@@ -100,7 +101,7 @@ def test_zero_roots_are_spoken_of_where_there_are_any() -> None:
 
 
 def test_a_heading_does_not_call_necessary_what_its_line_does_not() -> None:
-    analysis = mbsym.loads(PENNING)
+    analysis = mbsym.loads(TURNED)
     (heading,) = headings(analysis)
     assert any("(necessary: with equality" in line for line in told(analysis, 6))
     assert "necessary" not in heading

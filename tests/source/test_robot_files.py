@@ -663,6 +663,22 @@ def test_armature_is_a_term_of_the_mass_matrix_and_weighs_nothing() -> None:
     assert not any("armature" in one for one in made.left_out)
 
 
+def test_a_joint_with_armature_alone_moves_by_its_rotor() -> None:
+    """0.2 q'' + 3 q = 0 of a link without mass; one that has no rotor, either, is held still."""
+    joint = '<body name="NAME"><joint name="JOINT" axis="0 1 0" stiffness="3" ROTOR/></body>'
+    made = converted(
+        mujoco(
+            "",
+            '<body name="a"><joint name="j" axis="0 1 0"/><inertial mass="1" pos="0 0 -0.5"/>'
+            + joint.replace("NAME", "b").replace("JOINT", "k").replace("ROTOR", 'armature="0.2"')
+            + joint.replace("NAME", "c").replace("JOINT", "l").replace("ROTOR", "")
+            + "</body>",
+        )
+    )
+    assert made.still == ("l",)
+    assert outcomes(made.yaml, "{claim: kinetic energy, equals: 0.125*q1_dot**2 + 0.1*q2_dot**2}") == [Outcome.EXACT]
+
+
 #: Two fingers on rails; the second one mimics the first, and a third one the second.
 GRIPPER = """<robot name="gripper"><link name="world"/><link name="palm"/>
 <link name="f1"><inertial><mass value="1"/></inertial></link>

@@ -22,6 +22,8 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import cast
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.jet import Jet, Jets
@@ -138,6 +140,75 @@ def expansion(scene: Scene, signs: Signs, whole: System | None = None) -> Expans
         assumed=_factors(ring, signs, (*held.assumed, *moved.assumed)),
         lost=lost,
     )
+
+
+@dataclass(frozen=True)
+class OnManifold:
+    """A system near a rest, in deviations y of independent ``coordinates``: ``scene`` over jets in y and y' (m + k).
+
+    ``places`` are all n coordinates as jets in y.
+    """
+
+    scene: Scene
+    coordinates: tuple[str, ...]
+    places: tuple[Jet, ...]
+
+    def slope(self, i: int, k: int) -> Jet:
+        """dq_i/dy_k."""
+        jets = cast("Jets", self.scene.algebra)
+        return jets.derivative(self.places[i], k)
+
+
+def on_manifold(scene: Scene, signs: Signs, found: Expansion, order: int) -> OnManifold:
+    """The manifold q(y) of the motions near a rest that the constraints leave, to any order.
+
+    Along every ray s y from the rest J(q) dq/ds = 0, whether the rows are those of f(q) = 0 or integrable ones: with
+    Euler's E = sum_k y_k d/dy_k, which multiplies terms of degree k by k, J(q) E q = 0 gives the dependent terms degree
+    by degree.  Rows hold no time, and have the rank on the rest that they have near it.  Raises NoClosedForm where the
+    rows contradict one another.
+    """
+    ring, base = scene.ring, found.base
+    names, size = scene.system.coordinates, range(len(found.speeds))
+    places = [
+        Jet(base.values[i], {(k,): x for k, x in zip(size, line, strict=True) if not x.is_zero()})
+        for i, line in enumerate(found.null_space)
+    ]
+    for degree in range(2, order + 1):
+        here = _along_places(scene, base, places, len(size), degree)
+        rows = constraint_rows(here)
+        jets = cast("Jets", here.algebra)
+        lines: list[Row] = [{i: on_base(scene, base, x.value) for i, x in enumerate(row.partials)} for row in rows]
+        for line, row in zip(lines, rows, strict=True):
+            parts = (jets.times(x, jets.eulerian(place)) for x, place in zip(row.partials, places, strict=True))
+            residual = sum(parts, jets.zero).degree(degree)
+            line |= {key: on_base(scene, base, x) for key, x in residual.items()}
+        solved = echelon(ring, signs, lines, [i for i in range(len(names)) if i not in found.speeds])
+        if any(solved.rest):
+            raise NoClosedForm("the constraints contradict one another near the motion")
+        for i, line in solved.pivots.items():
+            share = ring.number(Fraction(-1, degree))
+            terms = {key: ring.times(x, share) for key, x in line.items() if isinstance(key, tuple)}
+            places[i] = places[i] + Jet(ring.zero, *({},) * (degree - 1), terms)
+    return OnManifold(
+        _along_places(scene, base, places, len(size), order), tuple(names[i] for i in found.speeds), tuple(places)
+    )
+
+
+def _along_places(scene: Scene, base: Base, places: Sequence[Jet], size: int, order: int) -> Scene:
+    """The system over jets of ``order`` in y and y': q = q(y), q' = sum_k dq/dy_k y'_k."""
+    ring, system = scene.ring, scene.system
+    names = system.coordinates
+    at_rest = {name: value for name, (value, _) in motion_values(system).items()}
+    lowered = dict(scene.environment) | dict(zip(names, base.values, strict=True))
+    jets = Jets(ring, at_rest, dict(zip(names, places, strict=True)), lowered, order)
+    environment = {name: Jet(value) for name, value in scene.environment.items()}
+    speeds = [jets.deviation(size + k, ring.zero) for k in range(size)]
+    for name, place in zip(names, places, strict=True):
+        slopes = (jets.derivative(place, k) for k in range(size))
+        environment[name] = place
+        environment[velocity_name(name)] = sum(map(jets.times, slopes, speeds), jets.zero)
+        environment[acceleration_name(name)] = jets.zero
+    return Scene(system, jets, environment, ring)
 
 
 def _factors(ring: Ring, signs: Signs, assumed: Iterable[Polynomial]) -> tuple[Polynomial, ...]:

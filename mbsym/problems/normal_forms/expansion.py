@@ -26,6 +26,7 @@ from mbsym.algebra.matrices import inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.truncated import Space, Truncated
 from mbsym.expressions.message import Message
+from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import force_function
@@ -66,15 +67,24 @@ class Expansion:
 
 
 def expansion(
-    scene: Scene, whole: Any, equilibrium: Equilibrium | None, order: int, ignored: Collection[str]
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium | None,
+    order: int,
+    ignored: Collection[str],
+    manifold: Callable[[int], OnManifold] | None = None,
 ) -> Expansion:
     """The system ``whole`` about its motion; ``scene`` is over the ring.  The coordinates ``ignored`` are cyclic.
 
-    Raises NotExpanded where a coefficient varies with time, NoClosedForm where coefficients outgrow the budget.
+    With ``manifold``, which gives what constraints leave to an order, it is one in the independent coordinates y, where
+    the forces are sum_i Q_i dq_i/dy_k.  Raises NotExpanded where a coefficient varies with time, NoClosedForm where
+    coefficients outgrow the budget.
     """
-    expanded: Scene[Jet] = quadratised(scene, whole, order)
+    tied = None if manifold is None else manifold(order + 1)  # dq/dy loses an order
+    expanded: Scene[Jet] = quadratised(scene, whole, order) if tied is None else tied.scene
     images = relations(scene) if equilibrium is None else equilibrium.determined(scene)
-    ring, n = scene.ring, len(scene.system.coordinates)
+    names = scene.system.coordinates if tied is None else tied.coordinates
+    ring, n = scene.ring, len(names)
 
     def kept(terms: Terms) -> Terms:
         found: Terms = {}
@@ -95,9 +105,25 @@ def expansion(
 
     lagrangian = parts(kinetic_energy(expanded) + force_function(expanded))
     applied = applied_forces(expanded)
-    forces = tuple(parts(applied[name]) for name in scene.system.coordinates)
-    cyclic = tuple(i for i, name in enumerate(scene.system.coordinates) if name in ignored)
-    return Expansion(scene, scene.system.coordinates, order, lagrangian, forces, cyclic)
+    if tied is not None:
+        times, nothing = expanded.algebra.times, expanded.algebra.zero
+        given = [applied[name] for name in scene.system.coordinates]
+        pulled = [sum((times(x, tied.slope(i, k)) for i, x in enumerate(given)), nothing) for k in range(n)]
+        applied = dict(zip(names, pulled, strict=True))
+    forces = tuple(parts(applied[name]) for name in names)
+    cyclic = tuple(i for i, name in enumerate(names) if name in ignored)
+    return Expansion(scene, names, order, lagrangian, forces, cyclic)
+
+
+def potential(found: Expansion) -> Terms | None:
+    """The terms of V in L = T - V, by places of coordinates; None where applied forces are static, too.
+
+    The energy that is conserved, or dissipated, is T_2 + V then, whatever L has besides.
+    """
+    n = len(found.coordinates)
+    if any(max(key) < n for parts in found.forces for part in parts for key in part):
+        return None
+    return {key: -value for part in found.lagrangian for key, value in part.items() if max(key) < n}
 
 
 class Numbers:

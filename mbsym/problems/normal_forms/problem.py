@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
+from fractions import Fraction
 from functools import cache, partial
+from math import factorial, prod
 from typing import Any
 
-from flint import acb, arb, ctx
+from flint import acb, arb, ctx, fmpq_poly
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NoClosedForm, NoValue
-from mbsym.algebra.point import Balls
+from mbsym.algebra.point import Balls, Rationals
+from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.tower import Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.formulas.formula import Formula
+from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.rest import rational_values
 from mbsym.problems.equilibrium import Equilibrium
@@ -32,10 +37,20 @@ from mbsym.problems.normal_forms.exact import (
     resonance,
     two_eigenvectors,
 )
-from mbsym.problems.normal_forms.expansion import Expansion, Numbers, SingularMass, expansion, has_forces, taken_in
+from mbsym.problems.normal_forms.expansion import (
+    Expansion,
+    Numbers,
+    SingularMass,
+    expansion,
+    has_forces,
+    potential,
+    taken_in,
+)
 from mbsym.problems.normal_forms.result import InSymbols, Judged, NormalForms, Outcome, Theorem, Why
 from mbsym.problems.normal_forms.twist import judged
 from mbsym.problems.normal_forms.zero_root import BALLS, Scalars, zero_root
+from mbsym.problems.stability.bundle import MOST_ORDER, NumberField, by_potential
+from mbsym.problems.stability.verdict import Verdict
 
 #: Working precision of enclosures, in bits.
 PRECISION = 320
@@ -53,9 +68,10 @@ class _Expanded:
         equilibrium: Equilibrium | None,
         conservative: bool,
         cyclic: Collection[str],
+        manifold: Callable[[int], OnManifold] | None = None,
     ) -> None:
         self.conservative = conservative
-        self.plain = cache(lambda order: expansion(scene, whole, equilibrium, order, cyclic))
+        self.plain = cache(lambda order: expansion(scene, whole, equilibrium, order, cyclic, manifold))
         self.to = cache(lambda order: taken_in(self.plain(order)) if conservative else self.plain(order))
 
     def at(self, values: Mapping[str, Any]) -> Judged:
@@ -65,10 +81,67 @@ class _Expanded:
 
 
 def judge(
-    scene: Scene, whole: Any, equilibrium: Equilibrium | None, conservative: bool, cyclic: Collection[str]
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium | None,
+    conservative: bool,
+    cyclic: Collection[str],
+    manifold: Callable[[int], OnManifold] | None = None,
 ) -> Callable[[Mapping[str, Any]], Judged]:
-    """What terms of higher order decide at any values, as ``normal_forms`` has it at one.  Raises as that does."""
-    return _Expanded(scene, whole, equilibrium, conservative, cyclic).at
+    """What terms of higher order decide at any values, as ``normal_forms`` has it at one.  Raises as that does.
+
+    With ``manifold`` in the coordinates that constraints leave.
+    """
+    return _Expanded(scene, whole, equilibrium, conservative, cyclic, manifold).at
+
+
+def by_energy(
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium | None,
+    manifold: Callable[[int], OnManifold],
+    conserved: bool,
+    values: Mapping[str, Fraction],
+) -> Verdict | None:
+    """What a minimum of V of higher order says at rational values, on the manifold that constraints leave.
+
+    None where it says nothing.  The energy does not grow; ``conserved``: it does not fall, either.
+    """
+    made = _Expanded(scene, whole, equilibrium, False, (), manifold)
+    size = len(made.plain(2).coordinates)
+    numbers = Rationals({}, {})
+    carry = Carrier(scene.ring, numbers, {name: numbers.number(value) for name, value in values.items()})
+    field = NumberField(fmpq_poly([0, 1]), lambda x: arb(x[0]))
+
+    def derivative(*places: int) -> Any:
+        order = len(places)
+        parts = potential(made.plain(order if order <= 4 else MOST_ORDER))
+        if parts is None:
+            return None
+        repeated = prod(factorial(k) for k in Counter(places).values())
+        return fmpq_poly([carry(parts.get(tuple(sorted(places)), scene.ring.zero)) * repeated])
+
+    with ctx.workprec(PRECISION):
+        flat = (key for part in made.plain(4).lagrangian for key in part)
+        gyroscopic = has_forces(made.plain(4)) or any(sum(k >= size for k in key) == 1 < len(key) for key in flat)
+        return by_potential(size, derivative, field, conserved, only=True, gyroscopic=gyroscopic)
+
+
+def first_term(
+    scene: Scene, whole: Any, equilibrium: Equilibrium | None, manifold: Callable[[int], OnManifold] | None
+) -> tuple[int, Polynomial] | None:
+    """The order and the coefficient of the first term of V(x) of the one coordinate; None of others, or of none."""
+    made = _Expanded(scene, whole, equilibrium, False, (), manifold)
+    for most in (4, MOST_ORDER):
+        found = made.plain(most)
+        parts = potential(found)
+        if parts is None or len(found.coordinates) != 1:
+            return None
+        for order in range(2, most + 1):
+            value = parts.get((0,) * order)
+            if value is not None and scene.ring.is_zero(value) is not True:
+                return order, value
+    return None
 
 
 def normal_forms(

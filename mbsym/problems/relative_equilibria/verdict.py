@@ -19,6 +19,7 @@ from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, sy
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
+from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.rest import Rest
 from mbsym.mechanics.symmetry import free_spin
 from mbsym.problems import dissipation, knowledge
@@ -28,19 +29,16 @@ from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
 from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.stability.bundle import Element, Extremum, NumberField, in_one_coordinate, of_fourth_order
+from mbsym.problems.stability.bundle import Element, NumberField, by_potential
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
 
 #: Matrices by their entries, which are numbers.
 Rows = list[list[list[Any]]]
-
-#: Derivatives of fourth order of a potential in more coordinates than this are not formed.
-MOST_DEGENERATE = 4
 
 
 @dataclass(frozen=True)
@@ -104,25 +102,14 @@ class LinearAtRest:
                 x = ring.derivative(x, of[k])
             return place.residue(x)
 
-        if len(kept) == 1:
-            extremum, order = in_one_coordinate(lambda n: derivative(0, 0, *(0 for _ in range(n - 2))), field)
-            if extremum is Extremum.NONE and len(names) == 1 and self.law is EnergyLaw.CONSERVED:
-                facts = {Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED}
-                return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
-            if extremum is not Extremum.MINIMUM:
-                return None
-        elif len(kept) > MOST_DEGENERATE:
-            return None
-        else:
-            second = [[derivative(i, j) for j in range(len(kept))] for i in range(len(kept))]
-            if any(x is None for row in second for x in row):
-                return None
-            if not of_fourth_order(second, derivative, derivative, field):
-                return None
-            order = 4
-        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
-        found = concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
-        return drifting(found) if self.ignorable else found
+        applied = generalized_forces(self.found.scene).values()
+        by_velocities = (ring.velocity_derivative(x, name) for x in applied for name in names)
+        gyroscopic = any(
+            ring.is_zero(x) is not True for x in (*by_velocities, *(x for row in self.matrices[2] for x in row))
+        )
+        conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
+        found = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
+        return drifting(found) if found is not None and self.ignorable else found
 
     @property
     def conservative(self) -> bool:

@@ -69,6 +69,7 @@ from mbsym.problems.stability.problem import (
     because,
     parameter_values,
     stability,
+    with_verdict,
 )
 
 __all__ = [
@@ -78,4 +79,5 @@ __all__ = [
     "because",
     "parameter_values",
     "stability",
+    "with_verdict",
 ]

@@ -24,14 +24,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from enum import Enum
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from flint import arb, arb_mat, fmpq, fmpq_poly
+from flint import acb_poly, arb, arb_mat, fmpq, fmpq_poly
 
+from mbsym.algebra import rationals
+from mbsym.algebra.failures import NotRational
 from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.rationals import rounded
+from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.verdict import Verdict, concluded
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
 Rows = Sequence[Sequence[Element]]
@@ -162,19 +168,29 @@ def _is_positive(forms: Sequence[Sequence[Sequence[Any]]], weights: Sequence[fmp
     return all(minor > 0 for minor in leading_determinants(arb_mat, total))
 
 
-# A potential energy whose second derivative has one null direction: terms of higher order decide.
+# A potential energy whose second derivative is singular: terms of higher order decide.
 #
-# Let K >= 0 with K v = 0 for one direction v only.  After minimising over what is across v (the splitting lemma), with
-# w = V'''(v, v, .) and K u = w,
+# Let K >= 0 with K v = 0 for the directions v = sum t_a v_a only, one or two.  After minimising over what is across
+# them (the splitting lemma), with w = V'''(v, v, .) and K u = w,
 #
-#     V = V_0 + t^3/6 V'''(v, v, v) + t^4/24 (V''''(v, v, v, v) - 3 w.u) + ...        along v
+#     V = V_0 + V'''(v, v, v)/6 + (V''''(v, v, v, v) - 3 w.u)/24 + ...        along v
 #
-# so V has a strict minimum if the first of these two vanishes and the second is positive.  In one coordinate the first
-# derivative that does not vanish decides, whatever its order.
+# and where nothing is across, K = 0, these are the terms of V.  The first form W(t) that does not vanish decides: V has
+# a strict minimum where W > 0, and where W < 0 for some t there are motions that leave the rest, as long as there are
+# no other forces (V. V. Kozlov, V. P. Palamodov, Doklady AN SSSR 263, 1982, 285-289).
 
 
-#: Derivatives of a potential in one coordinate are looked at up to this order.
+#: V_ij... at the rest, by places of coordinates; None where it has no exact value.
+Derivative = Callable[..., Element | None]
+
+#: Derivatives of fourth order of a potential in more coordinates than this are not formed.
+MOST_DEGENERATE = 4
+
+#: Terms of a potential are looked at up to this order, where nothing is across; else up to the fourth.
 MOST_ORDER = 10
+
+#: At these t_2/t_1 forms in two variables are tried for negative values.
+_TRIED = [Fraction(k, 4) for k in range(-16, 17)]
 
 
 class Extremum(Enum):
@@ -185,67 +201,120 @@ class Extremum(Enum):
     OPEN = "open"
 
 
-def in_one_coordinate(derivative: Callable[[int], Element | None], field: NumberField) -> tuple[Extremum, int]:
-    """By V'' = derivative(2), V''' = derivative(3), ...: what there is, and the order that decides."""
-    for order in range(2, MOST_ORDER + 1):
-        value = derivative(order)
-        if value is None:
-            break
-        if value % field.modulus == 0:
-            continue
-        ball = field.enclose(value)
-        if order % 2 == 0 and ball > 0:
-            return Extremum.MINIMUM, order
-        if order % 2 or ball < 0:
-            return Extremum.NONE, order
-        break
-    return Extremum.OPEN, 0
+def by_potential(
+    size: int, derivative: Derivative, field: NumberField, conserved: bool, only: bool, gyroscopic: bool
+) -> Verdict | None:
+    """The verdict on a rest from the derivatives of V alone, where an energy T_2 + V does not grow.
+
+    ``conserved``: it does not fall, either; ``only``: there are no other coordinates, not even ignored ones;
+    ``gyroscopic``: the equations may have gyroscopic terms.
+    """
+    if size > MOST_DEGENERATE:
+        return None
+    try:
+        order, form = lowest_form(size, derivative, field)
+    except NotRational:
+        return None
+    extremum = _extremum(order, form, field)
+    if extremum is Extremum.MINIMUM:
+        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
+        return concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
+    if extremum is Extremum.NONE and only and conserved and not (gyroscopic and size > 1):
+        facts = {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED}
+        return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
+    return None
 
 
-def of_fourth_order(
-    second: Sequence[Sequence[Element]],
-    third: Callable[[int, int, int], Element | None],
-    fourth: Callable[[int, int, int, int], Element | None],
-    field: NumberField,
-) -> bool:
-    """Whether V has a strict minimum of order 4 along the one null direction of ``second``, its second derivative."""
-    size, span = len(second), range(len(second))
+def _extremum(order: int, form: Sequence[Element], field: NumberField) -> Extremum:
+    """What a form of this order has at 0; ``form`` are its coefficients of t_1^order, t_1^(order - 1) t_2, ..."""
+    if not form:
+        return Extremum.OPEN
+    if order % 2:
+        return Extremum.NONE
+    values = [sum((x * rationals.exact(t**k) for k, x in enumerate(form)), field.zero) for t in _TRIED]
+    if any(field.enclose(x % field.modulus) < 0 for x in (form[0], form[-1], *values)):
+        return Extremum.NONE
+    if len(form) == 1:
+        return Extremum.MINIMUM if field.enclose(form[0]) > 0 else Extremum.OPEN
+    if not field.enclose(form[-1]) > 0:
+        return Extremum.OPEN
+    polynomial = acb_poly([field.enclose(x) for x in form])
+    if all(x.degree() <= 0 for x in form):  # repeated roots are not isolated
+        exact = fmpq_poly([x[0] for x in form])
+        polynomial = acb_poly(exact / exact.gcd(exact.derivative()))
+    try:
+        crossing = any(root.imag.contains(0) for root in polynomial.roots())
+    except ValueError:
+        crossing = True
+    return Extremum.OPEN if crossing else Extremum.MINIMUM
+
+
+def lowest_form(size: int, derivative: Derivative, field: NumberField) -> tuple[int, tuple[Element, ...]]:
+    """The order of W(t), and its coefficients in t_1^order, t_1^(order - 1) t_2, ...; none where it is not found.
+
+    Of one coordinate in all that is the first term, too, where it is of order 2.  Raises NotRational.
+    """
+    span = range(size)
+    known: dict[tuple[int, ...], Element | None] = {}
+
+    def entry(*places: int) -> Element:
+        key = tuple(sorted(places))
+        if key not in known:
+            known[key] = derivative(*key)
+        if (value := known[key]) is None:
+            raise NotRational("a derivative has no exact value")
+        return value % field.modulus
+
+    def contracted(*places: Any) -> Element:
+        """A derivative along vectors, and in the places that are given as numbers."""
+        at = next((k for k, one in enumerate(places) if not isinstance(one, int)), None)
+        if at is None:
+            return entry(*places)
+        terms = (
+            field.times(x, contracted(*places[:at], i, *places[at + 1 :])) for i, x in enumerate(places[at]) if x != 0
+        )
+        return sum(terms, field.zero) % field.modulus
+
+    second = [[entry(i, j) for j in span] for i in span]
     null = null_space(field, second, size)
-    if len(null) != 1:
-        return False
-    v = null[0]
-    left_out = next(i for i in span if v[i] != 0)
-    others = [i for i in span if i != left_out]
+    if size == 1 and not null:
+        return 2, (second[0][0],)
+    if len(null) not in (1, 2):
+        return 0, ()
+    free = [next((i for i in span if v[i] != 0 and all(w[i] == 0 for w in null if w is not v)), -1) for v in null]
+    others = [i for i in span if i not in free]
     block = [[field.enclose(second[i][j]) for j in others] for i in others]
-    if not all(x > 0 for x in leading_determinants(arb_mat, block)):
-        return False
-    cubic = {key: third(*key) for key in _sorted_indices(size, 3)}
-    quartic = {key: fourth(*key) for key in _sorted_indices(size, 4)}
-    if any(x is None for x in (*cubic.values(), *quartic.values())):
-        return False
-    zero = fmpq_poly([0])
+    if -1 in free or not all(x > 0 for x in leading_determinants(arb_mat, block)):
+        return 0, ()
 
-    def contracted(table: dict[tuple[int, ...], Any], first: tuple[int, ...], count: int) -> Element:
-        """The derivative in the directions ``first``, and ``count`` times along v."""
-        if not count:
-            return table[tuple(sorted(first))]
-        total = zero
-        for i in span:
-            if v[i] != 0:
-                total = total + field.times(v[i], contracted(table, (*first, i), count - 1))
-        return total % field.modulus
+    def form(order: int, value: Callable[..., Element]) -> tuple[Element, ...]:
+        """W of a symmetric function of so many directions."""
+        last, few = len(null) - 1, 1 if len(null) == 1 else order + 1
+        return tuple(value(*(0,) * (order - k), *(last,) * k) * math.comb(order, k) % field.modulus for k in range(few))
 
-    w = [contracted(cubic, (i,), 2) for i in span]
-    along = field.dot(v, w)
-    if along != 0:
-        return False
-    # K u = w with u = 0 at the place left out: a vector (u, -1) that the rows [K | w] annul.
-    table = [[*(second[i][j] for j in others), w[i]] for i in others]
-    solutions = null_space(field, table, size)
-    u = solutions[-1]  # the only free place is the last, as K across v is not singular
-    product = sum((field.times(-x, w[i]) for x, i in zip(u, others, strict=False)), zero)
-    value = contracted(quartic, (), 4) - product * 3
-    return bool(field.enclose(value % field.modulus) > 0)
+    def along(*directions: int) -> Element:
+        return contracted(*(null[k] for k in directions))
+
+    across = {}
+    for a, b in _sorted_indices(len(null), 2):
+        w = [contracted(null[a], null[b], i) for i in others]
+        # K u = w with u = 0 at the places left out: a vector (u, -1) that the rows [K | w] annul.
+        table = [[*(second[i][j] for j in others), x] for i, x in zip(others, w, strict=True)]
+        u = null_space(field, table, len(others) + 1)[-1]  # the only free place is the last: K is regular across
+        across[a, b] = across[b, a] = w, u
+
+    def joined(a: int, b: int, c: int, d: int) -> Element:
+        """w_ab . u_cd"""
+        return sum((field.times(-x, y) for x, y in zip(across[c, d][1], across[a, b][0], strict=False)), field.zero)
+
+    def split(a: int, b: int, c: int, d: int) -> Element:
+        return along(a, b, c, d) - joined(a, b, c, d) - joined(a, c, b, d) - joined(a, d, b, c)
+
+    for order in range(3, MOST_ORDER + 1 if not others else 5):
+        found = form(order, split if order == 4 else along)
+        if any(x != 0 for x in found):
+            return order, found
+    return 0, ()
 
 
 def _sorted_indices(size: int, count: int) -> list[tuple[int, ...]]:

@@ -183,6 +183,12 @@ def because(found: Stability, code: Because, *data: object) -> Stability:
     return replace(found, subsystems=parts, verdict=more(found.verdict), numerical=numerical)
 
 
+def with_verdict(found: Stability, verdict: Verdict) -> Stability:
+    """The same with another verdict for all parameters, of its one subsystem, too."""
+    parts = tuple(replace(part, theory=replace(part.theory, verdict=verdict)) for part in found.subsystems)
+    return replace(found, subsystems=parts if len(parts) == 1 else found.subsystems, verdict=verdict)
+
+
 def stability(
     scene: Scene,
     balance: Balance,

@@ -68,6 +68,8 @@ class Because(Enum):
     BORDERS_APART = auto()
     CONDITIONS_UNWRITTEN = auto()
     BORDER = auto()
+    ORDER_DECIDES = auto()  # (order, whatever is positive where it is stable, word there)
+    VALUES_DECIDE = auto()
     NEAR_BORDER = auto()
     JORDAN_BLOCK = auto()
     LINEAR_OPEN = auto()

@@ -188,8 +188,13 @@ def definiteness(matrix: Matrix, signs: Signs, name: str) -> Definiteness:
 
 def against(requirements: Sequence[Requirement], known: Signs) -> tuple[Requirement, ...]:
     """p < 0 for every p > 0.  By continuity none of them occurs while all roots have Re <= 0 (or mu <= 0)."""
+
+    def reversed_(r: Requirement) -> Condition:
+        never = r.condition.kind == "always"  # it may follow from what others require
+        return Condition("never", -r.polynomial) if never else known.condition(-r.polynomial)
+
     return tuple(
-        Requirement(Message(REVERSED, label=_whole(r.label)), -r.polynomial, known.condition(-r.polynomial))
+        Requirement(Message(REVERSED, label=_whole(r.label)), -r.polynomial, reversed_(r))
         for r in requirements
         if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
     )

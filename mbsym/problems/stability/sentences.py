@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from mbsym.expressions.message import Message, enumerated, joined
+from mbsym.formulas.formula import Formula
 from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.word import Word
 
 HIGHER_ORDER = "Terms of higher order decide."
 
@@ -26,6 +28,15 @@ def _integrals(*names: str) -> Message:
         "A combination of integrals ([[names]]) is stationary, and its second variation is definite where they keep "
         "their values: it makes a Lyapunov function of the nonlinear system.",
         names=enumerated(names),
+    )
+
+
+def _order_decides(order: int, condition: Formula, word: Word) -> Message:
+    return Message(
+        "Terms of order [[order]] decide: it is [[word]] where [[condition]] > 0, and unstable where that is < 0.",
+        order=order,
+        word=Message(word),
+        condition=condition,
     )
 
 
@@ -166,6 +177,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.BORDERS_APART: ("This is so wherever no condition is an equality; border cases are left open here."),
     Because.CONDITIONS_UNWRITTEN: "Conditions are too long to be written out; see the cases.",
     Because.BORDER: "On a border: no theorem of the first approximation decides.",
+    Because.ORDER_DECIDES: _order_decides,
+    Because.VALUES_DECIDE: ("Terms of higher order may decide: give all parameters values, and they are looked at."),
     Because.NEAR_BORDER: "On a border, or too close to one: no theorem of the first approximation decides.",
     Because.ZERO_ROOT: "No root has a positive real part, but some are zero.",
     Because.JORDAN_BLOCK: (

@@ -504,7 +504,30 @@ def _requirements(
                 "discriminant (equal frequencies) does no harm."
             )
         )
-    return tuple(requirements), remarks
+    return tuple(_without_following(requirements, signs)), remarks
+
+
+def _without_following(wanted: Sequence[Requirement], signs: Signs) -> Iterator[Requirement]:
+    """p > 0 goes without saying where another q > 0 is wanted and q >= 0 shows it: p < 0 is nowhere but where q < 0."""
+    standing = [r for r in wanted if _in_short(r)]
+    for r in wanted:
+        by = next((q for q in standing if q is not r and _in_short(r) and _shows(q, r, signs)), None)
+        if by is not None:
+            standing = [q for q in standing if q is not r]
+            r = replace(r, condition=Condition("always", r.condition.polynomial * 0 + 1))
+        yield r
+
+
+def _in_short(r: Requirement) -> bool:
+    kind, terms = r.condition.kind, len(r.condition.polynomial)
+    return kind == "inequality" and not r.condition.nonzero and r.place is not Place.HARMLESS and terms <= MOST_TERMS
+
+
+def _shows(q: Requirement, r: Requirement, known: Signs) -> bool:
+    try:
+        return known.assuming([(q.condition.polynomial, ">=")]).sign(r.condition.polynomial) == "positive"
+    except (ContradictionError, NoClosedForm):
+        return False
 
 
 def _is_symmetric(system: LinearSystem) -> bool:

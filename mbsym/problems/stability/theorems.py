@@ -65,7 +65,8 @@ class Fact(Enum):
     JORDAN_BLOCK = "a root on the imaginary axis is not semisimple"
     #: K has one null direction, and terms of higher order make a strict minimum of it, or none (``degenerate``).
     MINIMUM_OF_HIGHER_ORDER = "V has a strict minimum, by terms of higher order"
-    NO_MINIMUM_IN_ONE_COORDINATE = "V has no minimum, and is a function of one coordinate alone"
+    NO_MINIMUM_IN_LOWEST_FORM = "the lowest terms of V, where its second derivative vanishes, have no minimum"
+    NO_OTHER_FORCES = "gyroscopic forces are not there, or V is a function of one coordinate alone"
     POTENTIAL_CONSTANT = "V is the same at every position"
     ENERGY_CONSERVED = "the energy of the nonlinear system is constant"
     #: A combination of integrals of the nonlinear system is stationary, its second variation definite where they keep
@@ -164,7 +165,14 @@ THEOREMS = (
     ),
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
-    _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED),
+    _theorem(
+        CONVERSE,
+        None,
+        Because.NO_MINIMUM,
+        Fact.NO_MINIMUM_IN_LOWEST_FORM,
+        Fact.NO_OTHER_FORCES,
+        Fact.ENERGY_CONSERVED,
+    ),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),
     _theorem(CHAPLYGIN, Ground.ENERGY, Because.FOLLOWS_ONE, Fact.ONE_POSITION, Fact.BOUNDED),

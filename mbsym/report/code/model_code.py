@@ -32,7 +32,7 @@ from mbsym.mechanics.programs import (
 )
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
-from mbsym.problems.integrals import ENERGY, WITH_FORCES, Integral, identifiers, whole_momenta
+from mbsym.problems.integrals import ENERGY, GYROSCOPIC, WITH_FORCES, Integral, identifiers, whole_momenta
 from mbsym.report.code import programs as open_trees
 from mbsym.report.code.named_dynamics import NamedDynamics, named_dynamics
 
@@ -207,7 +207,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
     for item, key in zip(found, keys, strict=True):
-        if item.kind == WITH_FORCES:
+        if item.kind in (WITH_FORCES, GYROSCOPIC):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):

@@ -246,10 +246,12 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
         first, *further = _part(found.subsystems[0], 1, "verdict")
         yield Phrase((*presumed, first))
         yield from further
+        yield from _what_would_decide(found)
         return
     yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
     word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
     alike = all(part.theory.verdict.word is word for part in found.subsystems)
+    yield from _what_would_decide(found)
     if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in told):
         return
     for part, (first, *further) in zip(found.subsystems, told, strict=True):
@@ -259,6 +261,13 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     reasons = (one for part in found.subsystems for one in part.theory.verdict.reasons)
     for reason in dict.fromkeys(one for one in reasons if one.code is Because.OTHER_ANGLES):  # the names mean others
         yield worded(sentence(reason))
+
+
+def _what_would_decide(found: Stability) -> Iterator[Inline]:
+    """Where all parameters are on a border: the condition on terms of higher order, or that values would help."""
+    for reason in found.verdict.reasons:
+        if reason.code in (Because.ORDER_DECIDES, Because.VALUES_DECIDE):
+            yield worded(sentence(reason))
 
 
 def _coefficients(lines: Iterable[Inline]) -> Iterator[Inline]:

@@ -141,7 +141,11 @@ class _Writer:
         links, count = [], 0
         for link in self.robot.links:
             moves = link.name in carrying
-            kept = tuple(joint for joint in link.joints if moves or joint.led or joint.name in driving)
+            kept = tuple(
+                joint
+                for joint in link.joints
+                if moves or joint.led or joint.name in driving or joint.armature != "0"  # the rotor moves by itself
+            )
             self.still += [joint.name for joint in link.joints if joint not in kept]
             stems = []
             for joint in kept:

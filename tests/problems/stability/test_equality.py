@@ -42,9 +42,8 @@ def places(**numbers: str) -> dict[str, Place]:
 def test_places_say_what_equality_does() -> None:
     assert places(sign="real", a="0", b="0") == {"g": Place.STRICTLY}
     assert places(sign="positive", a="a", b="a") == {
-        "g**2 + 2*a": Place.STRICTLY,  # 2 a = -g^2 makes the discriminant -g^4
         "a": Place.EQUALITY,
-        "g**2 + 4*a": Place.STRICTLY,
+        "g**2 + 4*a": Place.STRICTLY,  # it says that g^2 + 2 a > 0
     }
     # g = 0: a > 0 is needed for the rest.  g^2 + 2 a = 0 has a = 0 = g, too, where x'' = y'' = 0 grows.
     found = places(sign="real", a="a", b="a")

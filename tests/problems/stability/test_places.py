@@ -72,3 +72,35 @@ def test_one_potential_well() -> None:
     (part,) = a.stability.subsystems
     assert places(part) == {"v0": ("!=", Place.DRIFTS)}
     assert {r.place for r in part.theory.stiffness.requirements} == {Place.SUFFICIENT}
+
+
+def test_a_condition_that_another_one_implies_is_not_told() -> None:
+    """C^2 Omega^2 - 4 A m l g > 0 says that C^2 Omega^2 - 2 A m l g > 0, and is < 0 where that is."""
+    top = mbsym.load(CASES.parents[2] / "systems" / "heavy-top.yaml").stability
+    assert [str(x) for _, x, _ in top.subsystems[0].conditions] == ["C**2*Omega**2 - 4*A*m*l*g"]
+    pair = mbsym.load(CASES.parents[2] / "systems" / "gyroscopic-pair.yaml").stability
+    assert len(pair.subsystems[0].conditions) == 2  # g^2 - k1 - k2 is negative where g = 0
+
+
+def test_what_stands_under_a_root_of_a_relation_is_not_negative() -> None:
+    """A ball at the angle a on a shaft that turns at w = sqrt(g/(l cos a)): there is no such motion with cos a < 0."""
+    text = """
+mbsym: 1
+name: governor
+parameters: {m: positive, J: positive, g: positive, l: positive, w: real, a: real}
+relations: {w: sqrt(g/(l*cos(a)))}
+bodies:
+  - {name: shaft, rotation: {axes: [3], angles: [f]}, inertia: [J, J, J], coordinates: [f],
+     mass: 0, inertia about: joint}
+  - {name: p, attached to: shaft, connection point: [l*sin(th), 0, -l*cos(th)], mass: m, coordinates: [th]}
+loads:
+  - uniform gravity: {vector: [0, 0, -g]}
+motion: {f: {rate: w}, th: a}
+"""
+    found = mbsym.loads(text)
+    (part,) = found.stability.subsystems
+    assert [str(x) for _, x, _ in part.conditions] == ["cos(a) - 1"]
+    assert [case.verdict.word.value for case in part.theory.cases if not case.never] == [
+        "stable but for a drift of cyclic coordinates"
+    ]
+    assert mbsym.loads(text.replace("sqrt(g/(l*cos(a)))", "g/(l*cos(a))")).stability.verdict.word.value != "unstable"

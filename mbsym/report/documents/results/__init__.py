@@ -151,6 +151,7 @@ class Integral(Part, frozen=True):
             "generalised energy",
             "energy with the potential of the forces",
             "cyclic momentum",
+            "gyroscopic momentum",
             "linear momentum",
             "angular momentum",
             "speed momentum",
