@@ -80,6 +80,7 @@ def test_what_tells_curves_apart_stands_inside_of_the_picture() -> None:
     told = [equalities({"Omega": 10 / 3 + k, "m1": Fraction(-1, 2)}) for k in range(4)]
     assert told[0] == "$\\Omega$ \u2248 3.333, $m_{1}$ = \u22120.5"
     run: Any = None  # of the motion nothing is drawn here
+    assert equalities({f"k{k}": k for k in range(9)}) == ""
     drawn = [Curve(run, None, words) for words in told]
     figure = Figure(figsize=(5.4, 5), layout="constrained")
     axis = figure.subplots()

@@ -56,6 +56,9 @@ STYLE: dict[Any, Any] = {
     "figure.dpi": RESOLUTION,
 }
 
+#: More numbers than these are not told beside a picture.
+MOST_VALUES = 8
+
 #: Colours of a PNG; lines need no more.
 COLOURS = 192
 
@@ -91,6 +94,11 @@ def title_of(system: System, number: int = 1, count: int = 1) -> str:
     return f"{name}, {spoken(system)(page)}" if count > 1 else name
 
 
+def symbol(name: str) -> str:
+    """One name as it stands on an axis."""
+    return named(LatexNames([name]), name)
+
+
 def named(names: LatexNames, name: str) -> str:
     """A name on an axis, as a formula where it is one."""
     symbol = names[name]
@@ -98,7 +106,12 @@ def named(names: LatexNames, name: str) -> str:
 
 
 def equalities(values: Mapping[str, Any]) -> str:
-    """``m = 1, omega = 3.333``: numbers beside symbols, as mathematical text; about equal where digits are left out."""
+    """``m = 1, omega = 3.333``: numbers beside symbols, as mathematical text; nothing of too many to be read.
+
+    They are about equal where digits are left out.
+    """
+    if len(values) > MOST_VALUES:
+        return ""
     names = LatexNames(list(values))
     written = []
     for name, value in values.items():

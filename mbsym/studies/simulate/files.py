@@ -27,9 +27,6 @@ FIGURES = ("svg", "png", "pdf")
 #: More samples than this are not drawn.
 MOST_DRAWN = 20_001
 
-#: Under the title of several curves stand so many parameters at most.
-MOST_VALUES = 8
-
 #: Paths are drawn with so many points from one sample to the next, to be smooth, and with so many numbers in all.
 SMOOTHER, MOST_PLACES = 8, 2_000_000
 
@@ -135,12 +132,12 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
 
 
 def _fixed(few: Mapping[Member, Simulation]) -> str:
-    """The parameters that are the same on all curves, where they are few enough to be read."""
+    """The parameters that are the same on all curves."""
     from mbsym.report.figures.drawing import equalities
 
     member, run = next(iter(few.items()))
     same = {name: value for name, value in run.scenario.parameters.items() if name not in dict(member)}
-    return equalities(same) if len(same) <= MOST_VALUES else ""
+    return equalities(same)
 
 
 def note(trajectory: Trajectory) -> str:
