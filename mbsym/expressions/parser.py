@@ -107,6 +107,7 @@ _LOOKALIKES = {
     "³": "write **3",
     "√": "write sqrt(...)",
     "π": "write pi",
+    "\\": "nothing is written as in LaTeX: theta, a/b, sqrt(a)",
     "[": "only round parentheses group",
     "]": "only round parentheses group",
     "{": "only round parentheses group",
@@ -144,7 +145,7 @@ _FOREIGN_FUNCTIONS = {
 #: Names of functions elsewhere, so short that they could be taken for factors.
 _NO_FACTORS = ("max", "min", "pow", "sec", "csc")
 
-_DEGREES = ("deg", "degs", "degree", "degrees")
+DEGREES = ("deg", "degs", "degree", "degrees")
 _RADIANS = ("rad", "rads", "radian", "radians")
 
 #: Units behind a number, which mean nothing here; some are names of quantities just as well.
@@ -612,7 +613,7 @@ class _Parser:
 
 def _unit_hint(value: str, unit: str, named: bool) -> str | None:
     """For a number with a unit behind it; where names may stand, the unit may be meant as a factor, too."""
-    if unit.lower() in _DEGREES:
+    if unit.lower() in DEGREES:
         short = " or pi/6" if value == "30" else ""
         return Message("angles are in radians: write [[value]]*pi/180[[short]]", value=value, short=short)
     if unit.lower() in _RADIANS:

@@ -57,7 +57,26 @@ def _filled_hint(items: tuple[Node, ...]) -> str | None:
     )
 
 
-#: So many keys that are all unknown are one mistake; of more each is.
+def _as_mapping(node: Node) -> Message | None:
+    """``{m: 1, l: 2}`` for ``m = 1 l = 2``, where every name has its number, and for ``[m: 1, l: 2]``."""
+    pairs: list[tuple[str, str]] = []
+    if isinstance(node, Scalar):
+        pairs = [(one[1], one[2]) for one in _ASSIGNED.finditer(node.text)]
+    elif isinstance(node, Sequence):
+        entries = [
+            item.entries[0] for item in node.items if isinstance(item, placed.Mapping) and len(item.entries) == 1
+        ]
+        values = [entry.value.text for entry in entries if isinstance(entry.value, Scalar)]
+        if len(values) == len(node.items):
+            pairs = [(entry.key.text, value) for entry, value in zip(entries, values, strict=True)]
+    written = ", ".join(f"{name}: {value}" for name, value in pairs)
+    return Message("write {[[example]]}", example=written) if pairs and len(written) <= 3 * MAX_SHOWN else None
+
+
+#: A name and its number.
+_ASSIGNED = re.compile(r"([A-Za-z]\w*)\s*=\s*([^\s=,;]+)")
+
+#: So many keys that are all unknown are one mistake, of more each is; so many are told where there are none.
 MOST_OTHER = 8
 
 #: What should have been two: a key, and its value behind an equals sign or a colon without a blank.
@@ -271,7 +290,7 @@ class Reading:
                     hint or "leave the key out",
                 )
             else:
-                self.shape_error(node, what, "a mapping (key: value)", hint)
+                self.shape_error(node, what, "a mapping (key: value)", _as_mapping(node) or hint)
             return
         self._bounded(node, what, "[[what]] has at most [[most]] entries, not [[entries]]", entries=len(node.entries))
         seen: set[str] = set()
@@ -353,6 +372,8 @@ class Reading:
         given = keys_of(node)
         left = [key for key in known if key not in given]
         other = self._other_keys(node, what, known)
+        if hint is None and len(known) <= MOST_OTHER:
+            hint = Message("the keys are: [[known]]", known=", ".join(known))
         for entry in () if other else self.entries(node, what, hint):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from mbsym.expressions.message import Message, joined, worded
-from mbsym.expressions.parser import ascii_safe, in_latin
+from mbsym.expressions.parser import DEGREES, ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING, is_rate, without_velocity
 from mbsym.expressions.table import Table
@@ -293,6 +293,8 @@ class Scope:
         reason = why_no_name(name)
         if reason is not None:
             return joined([Message("it cannot be a name: [[why]]", why=reason[0]), *filter(None, reason[1:])], "; ")
+        if name.lower() in DEGREES:
+            return "angles are in radians: write pi/180 for a degree"
         if not allowed.kinds:
             return "a number is wanted here"
         if allowed.kinds == ("coordinate",):
