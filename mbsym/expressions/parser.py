@@ -25,7 +25,7 @@ from math import ceil
 
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.constants import meaningless
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 from mbsym.expressions.place import Complaint, Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING
 from mbsym.expressions.safe import quoted
@@ -107,6 +107,7 @@ _LOOKALIKES = {
     "³": "write **3",
     "√": "write sqrt(...)",
     "π": "write pi",
+    "\\": "nothing is written as in LaTeX: theta, a/b, sqrt(a)",
     "[": "only round parentheses group",
     "]": "only round parentheses group",
     "{": "only round parentheses group",
@@ -144,7 +145,7 @@ _FOREIGN_FUNCTIONS = {
 #: Names of functions elsewhere, so short that they could be taken for factors.
 _NO_FACTORS = ("max", "min", "pow", "sec", "csc")
 
-_DEGREES = ("deg", "degs", "degree", "degrees")
+DEGREES = ("deg", "degs", "degree", "degrees")
 _RADIANS = ("rad", "rads", "radian", "radians")
 
 #: Units behind a number, which mean nothing here; some are names of quantities just as well.
@@ -307,7 +308,7 @@ def _complain_of_character(text: str, position: int, complaints: Complaints, spa
     if character == "'" and position and text[position - 1].isalnum():
         hint = "a velocity is written theta' or theta_dot, an acceleration theta'' or theta_ddot"
     if hint is None and character.isalpha():
-        hint = Message("names are Latin letters, digits and _: write [[latin]]", latin=in_latin(character))
+        hint = Message("names are Latin letters, digits and _: write [[latin]]", latin=in_latin(shown))
     complaints.error(
         "bad-character",
         Message("the character [[shown]] has no meaning here", shown=ascii_safe(shown)),
@@ -323,8 +324,19 @@ ascii_safe = quoted
 
 def in_latin(text: str) -> str:
     """``theta`` for the Greek letter, ``a`` for a lookalike of a, ``l0`` for a script l with a lowered 0."""
-    written = "".join(map(_latin_letter, unicodedata.normalize("NFKC", text)))
+    text = unicodedata.normalize("NFKC", text)
+    if re.fullmatch("[\u0400-\u04ff]{2,}", text):  # a word of another alphabet, letter by letter as it sounds
+        written = "".join(_SOUNDS.get(x.lower(), x) for x in text)
+    else:
+        written = "".join(_LOOKS_LIKE.get(x) or _latin_letter(x) for x in text)
     return written if written.isascii() else "the name in Latin letters"
+
+
+#: Cyrillic letters that are taken for Latin ones, and how they sound.
+_LOOKS_LIKE = dict(zip("АВЕКМНОРСТУХаекморстух", "ABEKMHOPCTYXaekmopctyx", strict=True))
+_SOUNDS = dict(zip("абвгдеёзийклмнопрстуфыэ", "abvgdeeziyklmnoprstufye", strict=True)) | {
+    "ж": "zh", "х": "kh", "ц": "ts", "ч": "ch", "ш": "sh", "щ": "shch", "ю": "yu", "я": "ya", "ь": "", "ъ": "",
+}  # fmt: skip
 
 
 def _latin_letter(character: str) -> str:
@@ -462,7 +474,11 @@ class _Parser:
                 "bad-expression",
                 Message("[[what]] needs an argument", what=token.text),
                 token,
-                Message("write [[what]](...)", what=token.text),
+                Message(
+                    "write [[what]]([[argument]])",
+                    what=token.text,
+                    argument=self.next.text if self.next.kind in ("name", "number") else "...",
+                ),
             )
         return self.grown(Name(token.text, self.span_of(token.start, token.end)))
 
@@ -597,15 +613,16 @@ class _Parser:
 
 def _unit_hint(value: str, unit: str, named: bool) -> str | None:
     """For a number with a unit behind it; where names may stand, the unit may be meant as a factor, too."""
-    if unit.lower() in _DEGREES:
+    if unit.lower() in DEGREES:
         short = " or pi/6" if value == "30" else ""
         return Message("angles are in radians: write [[value]]*pi/180[[short]]", value=value, short=short)
     if unit.lower() in _RADIANS:
         return Message("angles are in radians: write [[value]] alone", value=value)
     if named and unit not in _UNITS:
         return None
-    product = Message("; for a product write [[value]]*[[unit]]", value=value, unit=unit) if named else ""
-    return Message("no units beside numbers: write numbers only, and units under units:[[product]]", product=product)
+    units = Message("no units beside numbers: write numbers only, and units under 'units'")
+    product = Message("for a product write [[value]]*[[unit]]", value=value, unit=unit)
+    return joined([units, product], "; ") if named else units
 
 
 def _function_hint(name: str, tables: Iterable[str]) -> str:

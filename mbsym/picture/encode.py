@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 from typing import Any
 
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message
+from mbsym.expressions.safe import quoted
 from mbsym.expressions.table import Curve
 from mbsym.formulas.mathml import spelled_name
 from mbsym.model.system import INERTIAL
@@ -146,29 +147,42 @@ def _closure(found: Closure) -> dict[str, Any]:
 def sentences(found: Picture) -> Iterator[str]:
     """In which axes it is seen, what was made up, moved, left out, or is not to scale."""
     notes = found.notes
-    where = "inertial axes" if found.frame == INERTIAL else f"the axes of '{found.frame}'"
-    without = f"; {', '.join(notes.hidden)} not drawn" if notes.hidden else ""
-    yield f"Seen in {where}{without}."
+    axes = {} if found.frame == INERTIAL else {"body": quoted(found.frame)}
+    if notes.hidden:
+        text = (
+            "Seen in the axes of [[body]]; [[names]] not drawn."
+            if axes
+            else "Seen in inertial axes; [[names]] not drawn."
+        )
+        yield Message(text, names=", ".join(notes.hidden), **axes)
+    else:
+        yield Message("Seen in the axes of [[body]]." if axes else "Seen in inertial axes.", **axes)
     if notes.stand_ins:
-        given = ", ".join(f"{name} = {value:g}" for name, value in notes.stand_ins)
-        yield f"Stand-ins for values that are not given, only to draw: {given}."
+        values = ", ".join(f"{name} = {value:g}" for name, value in notes.stand_ins)
+        yield Message("Stand-ins for values that are not given, only to draw: [[values]].", values=values)
     if notes.at_zero:
-        yield f"No initial value is given for {', '.join(notes.at_zero)}: drawn at 0."
+        names = ", ".join(notes.at_zero)
+        yield Message("No initial value is given for [[names]]: drawn at 0.", names=names)
     if notes.moved:
-        moves = ", ".join(f"{name} from {given:.6g} to {there:.6g}" for name, given, there in notes.moved)
-        yield f"Led to the constraints: {moves}."
+        moves = ", ".join(f"{name}: {given:.6g} -> {there:.6g}" for name, given, there in notes.moved)
+        yield Message("Led to the constraints: [[moves]].", moves=moves)
     if notes.open_loop:
-        yield f"The constraints are open here: {notes.open_loop}."
+        yield Message("The constraints are open here: [[why]].", why=notes.open_loop)
     if notes.velocity_rows:
-        some = counted(notes.velocity_rows, "constraint")
-        yield f"{some} on velocities: every position can be shown, not every one is reached by a given motion."
+        text = "Constraints on velocities: [[count]]; every position can be shown, not every one is reached."
+        yield Message(text, count=notes.velocity_rows)
     solid = [body.ellipsoid for body in found.bodies if body.ellipsoid is not None]
     if any(one.true_size for one in solid):
-        yield "Ellipsoids: homogeneous bodies with the same mass and inertia, to scale (none thinner than 1/100)."
+        yield Message(
+            "Ellipsoids: homogeneous bodies with the same mass and inertia, to scale (none thinner than 1/100)."
+        )
     if any(not one.true_size for one in solid):
-        yield "Ellipsoids of bodies without a mass have the proportions of their inertia; their size means nothing."
+        yield Message(
+            "Ellipsoids of bodies without a mass have the proportions of their inertia; their size means nothing."
+        )
     if any(body.shapes for body in found.bodies):
-        yield "Shapes are those that the description gives; no force depends on them."
+        yield Message("Shapes are those that the description gives; no force depends on them.")
     if notes.without_arrow:
         loads = ", ".join(str(k + 1) for k in notes.without_arrow)
-        yield f"Without an arrow, because it acts on coordinates or is zero or has no force on a point: load {loads}."
+        text = "Without an arrow, because it acts on coordinates or is zero or has no force on a point: load [[loads]]."
+        yield Message(text, loads=loads)

@@ -12,11 +12,12 @@ from mbsym.expressions.message import worded
 from mbsym.formulas.latex import latex_names, latex_symbol
 from mbsym.model.system import INERTIAL
 from mbsym.report.canonical import Denominators, forms_of, with_names
-from mbsym.report.compact import Compact, compact
+from mbsym.report.compact import Compact, compact, told_formulas
 from mbsym.report.conditions import provided
 from mbsym.report.content import Block, Heading, Inline, Intermediates, Paragraph, Relation, Said, paragraph, say
 from mbsym.report.letters import in_letters, with_meanings
 from mbsym.report.sections import section_of
+from mbsym.report.words.passages import passages
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -32,14 +33,17 @@ _INTERMEDIATES = (
     "are not listed are zero, or so short that they are written where they occur. Accelerations, forces and moments "
     "are those at $\\ddot q = 0$."
 )
+_AGAIN = "Through the intermediate quantities above."
+_BESIDES = "Through the intermediate quantities above and those that follow here."
 
 
 @dataclass(frozen=True)
 class Results:
-    """The results of ``problems`` of one system."""
+    """The results of ``problems`` of one system; ``apart`` where each is to be read without those before it."""
 
     analysis: Analysis
     problems: tuple[int, ...]
+    apart: bool = False
 
     @property
     def system(self) -> System:
@@ -103,11 +107,18 @@ class Results:
         return (*((", ", worded(text)) if text else ()), *((", ", where) if assumed else ()))
 
     def intermediates(self, number: int) -> Iterator[Block]:
-        """The named quantities through which the formulas of a problem are told."""
+        """The named quantities through which the formulas of a problem are told; none is defined a second time."""
         told = self.told[number]
+        before = () if self.apart else [one for k, one in self.told.items() if k < number]
+        defined = {item.name for one in before for passage in one.passages for item in passage.definitions}
+        new = told.passages
+        if defined:
+            new = passages(told.system.told, self.system, told_formulas(told.system, number), defined)
         length = say("Written out there are [[count]] terms.", count=str(told.expanded))
-        yield paragraph(Said(_INTERMEDIATES), *((" ", length) if told.expanded else ()))
-        yield Intermediates(told.system.told, told.passages)
+        introduced = Said(_INTERMEDIATES if not defined else _BESIDES if new else _AGAIN)
+        yield paragraph(introduced, *((" ", length) if told.expanded else ()))
+        if new:
+            yield Intermediates(told.system.told, new)
 
     def missing(self, number: int) -> Iterator[Block]:
         """Why a problem has no result, if it has none."""
@@ -165,5 +176,5 @@ def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int 
     }
 
 
-def results(analysis: Analysis, problems: Sequence[int]) -> Results:
-    return Results(analysis, tuple(problems))
+def results(analysis: Analysis, problems: Sequence[int], apart: bool = False) -> Results:
+    return Results(analysis, tuple(problems), apart)

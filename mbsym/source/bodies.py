@@ -94,7 +94,10 @@ def _check_repeated(drafts: list[Draft], reading: Reading) -> None:
     for draft in drafts:
         if draft.name in seen:
             reading.error(
-                "repeated-name", Message("a second body called [[name]]", name=ascii_safe(draft.name)), draft.name_span
+                "repeated-name",
+                Message("a second body called [[name]]", name=ascii_safe(draft.name)),
+                draft.name_span,
+                Message("each body has a name of its own: write [[name]] 2", name=draft.name),
             )
         seen.add(draft.name)
 
@@ -263,6 +266,10 @@ def _complain_of_order(draft: Draft, name: str, drafts: list[Draft], span: Span,
         reading.error("body-order", "a body is attached to an earlier body; this one comes later", span, hint)
 
 
+#: What the inertial frame is called elsewhere.
+GROUNDS = {"ground", "world", "base", "earth", "floor", "fixed", "inertial", "inertial frame", "origin", "none"}
+
+
 def read_body_name(
     node: Node, what: str, known: list[str], reading: Reading, possible: list[str] | None = None
 ) -> str | None:
@@ -275,9 +282,11 @@ def read_body_name(
         return name
     named = known if possible is None else possible
     which = "the bodies are" if possible is None else "the bodies before this one are"
+    elsewhere = name.lower() in GROUNDS
     hint = did_you_mean(name, named) or listed(which, [INERTIAL, *named[:8]])
+    hint = Message("the inertial frame is called 0") if elsewhere else hint
     reading.error("unknown-body", Message("there is no body [[name]]", name=ascii_safe(name)), scalar.span, hint)
-    return None
+    return INERTIAL if elsewhere else None
 
 
 def _rotation(node: Node | None, draft: Draft, reading: Reading) -> Rotation:

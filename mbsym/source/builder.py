@@ -36,6 +36,7 @@ from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.reading import Fields, Reading
 from mbsym.source.scope import Allowed, Scope
 from mbsym.source.settings import (
+    DECLARED,
     of_coordinates,
     read_assumptions,
     read_initial,
@@ -68,7 +69,9 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
     parameters = read_parameters(fields.get("parameters"), reading)
     prescribed_entries = declare_prescribed(fields.get("prescribed"), reading)
     inputs = read_inputs(fields.get("inputs"), reading)
+    before = complaints.error_count
     drafts = draft_bodies(fields.get("bodies"), reading)
+    drafted = complaints.error_count == before
     linear = declare_linear(fields.get("linear system"), fields, reading)
     for draft in drafts:
         declare_speeds(draft, reading)
@@ -80,6 +83,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         before = complaints.error_count
         bodies.append(read_body(draft, drafts, reading))
         sound.append(draft.whole and complaints.error_count == before)
+    reading.scope.motionless = bool(drafts) and linear is None and not reading.scope.of_kind("coordinate", *DECLARED)
     speeds = [read_speeds(draft, drafts, reading) for draft in drafts]
     bodies = [
         replace(body, speeds=own, orientation=draft.orientation)
@@ -138,7 +142,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
             check_body(system, draft, values, reading)
     if all(sound):
         check_speeds(system, drafts, reading)
-    if drafts and all(sound) and not system.coordinates:
+    if drafts and drafted and all(sound) and not system.coordinates:
         hint = "a coordinate is an undeclared name used as an angle, or is listed in a body: 'coordinates: [x]'"
         reading.error("no-coordinates", "nothing moves: there are no coordinates", fields.key_span("bodies"), hint)
     check_system(system, reading)

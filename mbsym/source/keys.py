@@ -708,7 +708,8 @@ _LISTS = Message(
     "all constraints are one list, 'constraints': coincide, parallel, distance, relation, rolling, velocity"
 )
 _JOINTS = Message(
-    "a joint is described in its body: 'attached to', 'rotation', 'connection point', 'coordinates'; [[loops]]",
+    "a joint is described in its body: rotation: {axes: [3], angles: [theta]} for a hinge, 'connection point', "
+    "'coordinates'; [[loops]]",
     loops=_LOOPS,
 )
 _LOADS = Message(

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from mbsym.expressions.constants import out_of_range, unsupported_power, value
 from mbsym.expressions.message import Message, worded
-from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, names_apart, parse_expression
+from mbsym.expressions.parser import NO_TABLES, ascii_safe, decimal_comma, in_latin, names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, names, walk
 from mbsym.model.system import Vector
@@ -57,6 +57,31 @@ def _filled_hint(items: tuple[Node, ...]) -> str | None:
     )
 
 
+def _as_mapping(node: Node) -> Message | None:
+    """``{m: 1, l: 2}`` for ``m = 1 l = 2``, where every name has its number, and for ``[m: 1, l: 2]``."""
+    pairs: list[tuple[str, str]] = []
+    if isinstance(node, Scalar):
+        pairs = [(one[1], one[2]) for one in _ASSIGNED.finditer(node.text)]
+    elif isinstance(node, Sequence):
+        entries = [
+            item.entries[0] for item in node.items if isinstance(item, placed.Mapping) and len(item.entries) == 1
+        ]
+        values = [entry.value.text for entry in entries if isinstance(entry.value, Scalar)]
+        if len(values) == len(node.items):
+            pairs = [(entry.key.text, value) for entry, value in zip(entries, values, strict=True)]
+    written = ", ".join(f"{name}: {value}" for name, value in pairs)
+    return Message("write {[[example]]}", example=written) if pairs and len(written) <= 3 * MAX_SHOWN else None
+
+
+#: A name and its number.
+_ASSIGNED = re.compile(r"([A-Za-z]\w*)\s*=\s*([^\s=,;]+)")
+
+#: So many keys that are all unknown are one mistake, of more each is; so many are told where there are none.
+MOST_OTHER = 8
+
+#: What should have been two: a key, and its value behind an equals sign or a colon without a blank.
+_KEY_AND_VALUE = re.compile(r"\s*([A-Za-z][\w' -]*?)\s*[:=]\s*(\S.*?)\s*", re.DOTALL)
+
 #: A list in other brackets, or as a function of other programs: (a, b, c), diag(a, b, c), vector(a, b, c).
 _BRACKETED = re.compile(r"(?:diag|diagonal|vec|vector|array|list|tuple|Matrix)?\s*[(\[{]+(.*?)[)\]}]+\Z", re.DOTALL)
 
@@ -64,14 +89,31 @@ _BRACKETED = re.compile(r"(?:diag|diagonal|vec|vector|array|list|tuple|Matrix)?\
 def _bare_list(node: Node, wanted: int) -> str | None:
     """``a, b, c`` for a text that holds so many expressions between commas, whatever stands around them."""
     text = node.text.strip() if isinstance(node, Scalar) else ""
-    for inner in (text, _BRACKETED.sub(r"\1", text)):
-        parts = [part.strip() for part in inner.split(",")]
+    bare = _BRACKETED.sub(r"\1", text)
+    for parts in (text.split(","), bare.split(","), bare.split()):
+        parts = [part.strip() for part in parts]
         scratch = Complaints()
-        if len(parts) == wanted and len(inner) <= 3 * MAX_SHOWN:
+        if len(parts) == wanted and len(text) <= 3 * MAX_SHOWN:
             trees = [parse_expression(part, scratch, lambda _start, _end: Span(1, 1)) for part in parts]
             if all(tree is not None for tree in trees):
                 return ", ".join(parts)
     return None
+
+
+def _by_axis(node: Node) -> str | None:
+    """``0, -l, 0`` for ``{y: -l}``, and ``0, -1, 0`` for the axis ``-y``."""
+    if isinstance(node, placed.Mapping):
+        written = {entry.key.text.strip(): entry.value for entry in node.entries}
+        texts = {axis: value.text.strip() for axis, value in written.items() if isinstance(value, Scalar)}
+        if texts and len(texts) == len(written) and set(texts) <= {*_AXES}:
+            return ", ".join(texts.get(axis) or "0" for axis in _AXES)
+    elif isinstance(node, Scalar) and (named := _AXIS.fullmatch(node.text.strip())):
+        return ", ".join(f"{named[1].strip('+')}1" if axis == named[2] else "0" for axis in _AXES)
+    return None
+
+
+_AXES = "xyz"
+_AXIS = re.compile("([+-]?)([xyz])")
 
 
 def _is_decimal_comma(whole: Node, decimals: Scalar) -> bool:
@@ -181,6 +223,8 @@ class Reading:
         if tree is None:
             for one in names_apart(scalar.text, scalar.place, self.complaints.items[before:]):
                 self.scope.check(one, allowed)
+            if not scalar.text.isascii() and scalar.text.strip().isidentifier():
+                self.scope.assumed.add(in_latin(scalar.text.strip()))  # as it is written elsewhere, or will be
             return ZERO
         self.scope.check(tree, allowed)
         if len(self.complaints.items) == before:
@@ -226,7 +270,7 @@ class Reading:
         """The three items of a list of three; ``alike``: a lone value is most likely meant for all three."""
         if not isinstance(node, Sequence):
             bare, lone = _bare_list(node, 3), _bare_list(node, 1) if alike else None
-            bare = bare or (lone and ", ".join([lone] * 3))
+            bare = bare or _by_axis(node) or (lone and ", ".join([lone] * 3))
             self.shape_error(node, what, "a list of three", Message("write [[[bare]]]", bare=bare or "0, 0, 0"))
             return None
         if len(node.items) != 3:
@@ -246,11 +290,11 @@ class Reading:
                     hint or "leave the key out",
                 )
             else:
-                self.shape_error(node, what, "a mapping (key: value)", hint)
+                self.shape_error(node, what, "a mapping (key: value)", _as_mapping(node) or hint)
             return
         self._bounded(node, what, "[[what]] has at most [[most]] entries, not [[entries]]", entries=len(node.entries))
         seen: set[str] = set()
-        for entry in self.with_decimals(node.entries):
+        for entry in self.with_values(self.with_decimals(node.entries)):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in seen:
                 self.error(
@@ -283,6 +327,22 @@ class Reading:
         if last is not None:
             yield last
 
+    def with_values(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+        """Entries with ``{m:1}`` and ``{m = 1}``, which YAML takes for keys without values, complained about once."""
+        blamed = False
+        for entry in entries:
+            key = entry.key
+            parts = _KEY_AND_VALUE.fullmatch(key.text) if _is_empty(entry.value) else None
+            if parts is None:
+                yield entry
+                continue
+            if not blamed:
+                message = Message("here [[written]] is a key without a value", written=ascii_safe(key.text))
+                hint = "a key ends with a colon and a blank: write [[name]]: [[value]]"
+                self.error("no-colon", message, key.span, Message(hint, name=parts[1], value=parts[2]))
+                blamed = True
+            yield Entry(key.part(*parts.span(1)), key.part(*parts.span(2)))
+
     def lone_or_items(self, node: Node, what: str) -> tuple[Node, ...]:
         """The items of a list; a single value is complained about and taken for a list of one."""
         if isinstance(node, Scalar) and node.text.strip():
@@ -311,12 +371,15 @@ class Reading:
         misspelt: dict[str, Entry] = {}
         given = keys_of(node)
         left = [key for key in known if key not in given]
-        for entry in self.entries(node, what, hint):
+        other = self._other_keys(node, what, known)
+        if hint is None and len(known) <= MOST_OTHER:
+            hint = Message("the keys are: [[known]]", known=", ".join(known))
+        for entry in () if other else self.entries(node, what, hint):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:
                 found[key] = entry
             else:
-                unsupported = UNSUPPORTED.get(" ".join(entry.key.text.lower().replace("_", " ").split()))
+                unsupported = _unsupported(entry.key.text)
                 guess = None if unsupported else closest(entry.key.text, left)
                 keys = (
                     Message("did you mean '[[other]]'?", other=guess)
@@ -329,7 +392,28 @@ class Reading:
                 self.error("unknown-key", message, entry.key.span, keys)
                 if guess:
                     misspelt[guess] = entry
-        return Fields(self, what, {**misspelt, **found}, node.span, isinstance(node, placed.Mapping), known)
+        sound = isinstance(node, placed.Mapping) and not other
+        return Fields(self, what, {**misspelt, **found}, node.span, sound, known)
+
+    def _other_keys(self, node: Node, what: str, known: Mapping[str, Key]) -> bool:
+        """Whether all of several keys are those of something else, which is one mistake."""
+        written = [entry.key for entry in node.entries] if isinstance(node, placed.Mapping) else []
+        names = [ALIASES.get(key.text, key.text) for key in written]
+        if not 2 <= len(names) <= MOST_OTHER or any(
+            name in known or _unsupported(name) or closest(name, known) for name in names
+        ):
+            return False
+        message = Message(
+            "[[what]] has none of the keys [[keys]]", what=worded(what), keys=", ".join(map(ascii_safe, names))
+        )
+        hint = Message("the keys are: [[known]]", known=", ".join(known))
+        self.error("unknown-key", message, written[0].span, hint)
+        return True
+
+
+def _unsupported(key: str) -> Message | None:
+    """What is said of a key that other programs have."""
+    return UNSUPPORTED.get(" ".join(key.lower().replace("_", " ").split()))
 
 
 @dataclass(slots=True)

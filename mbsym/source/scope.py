@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from mbsym.expressions.message import Message, joined, worded
-from mbsym.expressions.parser import ascii_safe, in_latin
+from mbsym.expressions.parser import DEGREES, ascii_safe, in_latin
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ACCELERATION_ENDING, VELOCITY_ENDING, is_rate, without_velocity
 from mbsym.expressions.table import Table
@@ -124,8 +124,8 @@ class Scope:
     ``later`` holds the names of notation (or abbreviations, as ``ordered`` says) that are still to come, ``assumed``
     undeclared names that were complained about and are since taken for whatever their place allows, ``beside`` the keys
     that stand beside the one that is looked at.  While ``by_use`` is a dictionary, an unknown name in a place that
-    parameters may take is a parameter by its use; it is kept there with its first place.  ``tables`` are called like
-    functions.
+    parameters may take is a parameter by its use; it is kept there with its first place.  ``motionless``: there are
+    bodies and no coordinates, which is an error of its own.  ``tables`` are called like functions.
     """
 
     complaints: Complaints
@@ -135,6 +135,7 @@ class Scope:
     assumed: set[str] = field(default_factory=set)
     beside: set[str] = field(default_factory=set)
     by_use: dict[str, Span] | None = None
+    motionless: bool = False
     tables: dict[str, Table] = field(default_factory=dict)
 
     def declare(self, name: str, kind: str, span: Span) -> bool:
@@ -173,6 +174,8 @@ class Scope:
             return "time"
         if name in self.kinds:
             return self.kinds[name]
+        if dots := len(name) - len(name.rstrip("'")):  # theta', as formulas have it
+            name = name[:-dots] + ("", VELOCITY_ENDING, ACCELERATION_ENDING)[min(dots, 2)]
         for suffix, kind in ((VELOCITY_ENDING, "velocity"), (ACCELERATION_ENDING, "acceleration")):
             if name.endswith(suffix) and self.kinds.get(name.removesuffix(suffix)) == "coordinate":
                 return kind
@@ -239,6 +242,8 @@ class Scope:
             kind = None
         if kind is None and self._is_parameter_by_use(name, span, allowed):
             return True
+        if kind is None and self.motionless and allowed.kinds == ("coordinate",):
+            return False  # that nothing moves is said, or why the joints could not be read
         if kind is None:
             message = Message("unknown name [[name]]", name=ascii_safe(name))
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
@@ -252,7 +257,7 @@ class Scope:
                 what=worded(allowed.what),
                 held=held,
             )
-            self.complaints.error("misplaced-name", message, span, _misplaced_hint(kind, allowed))
+            self.complaints.error("misplaced-name", message, span, _misplaced_hint(name, kind, allowed))
         else:
             return True
         return False
@@ -288,6 +293,8 @@ class Scope:
         reason = why_no_name(name)
         if reason is not None:
             return joined([Message("it cannot be a name: [[why]]", why=reason[0]), *filter(None, reason[1:])], "; ")
+        if name.lower() in DEGREES:
+            return "angles are in radians: write pi/180 for a degree"
         if not allowed.kinds:
             return "a number is wanted here"
         if allowed.kinds == ("coordinate",):
@@ -317,13 +324,16 @@ def _enumerated(words: list[str]) -> str:
     return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
-def _misplaced_hint(kind: str, allowed: Allowed) -> str | None:
+def _misplaced_hint(name: str, kind: str, allowed: Allowed) -> str | None:
     if kind == "time" and allowed.what == "the rate of a prescribed motion":
         return "the rate alone, without t: psi: w where psi is w*t"
     if kind == "time" and allowed.what == "an unperturbed motion":
         return "what turns steadily has a rate: psi: {rate: w} where psi is w*t"
     if kind == "time" and "prescribed" in allowed.kinds:
         return "declare what changes with time under 'prescribed'"
+    if kind == "velocity" and allowed.what == "the key of an initial value":
+        name = without_velocity(name.replace("'", VELOCITY_ENDING))
+        return Message("position and velocity stand together: write [[name]]: {position: 0, velocity: 1}", name=name)
     if kind == "table":
         return "a table is called with its argument, as in torque(t)"
     if kind == "input":

@@ -164,7 +164,9 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[tuple[InitialValu
     entries: list[InitialValue] = []
     own: list[InitialValue] = []
     declared = [kind for kind in DECLARED if reading.scope.of_kind(kind)]
-    for entry in () if node is None else reading.entries(node, "'initial'"):
+    example = ", ".join(f"{name}: 0" for name in reading.scope.of_kind("coordinate")[:3])
+    hint = Message("write {[[example]]}", example=example) if example else None
+    for entry in () if node is None else reading.entries(node, "'initial'", hint):
         known = _is_coordinate(entry.key, "the key of an initial value", node, reading, *declared)
         span: Span = entry.key.span
         if isinstance(entry.value, Mapping):

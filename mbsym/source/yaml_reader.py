@@ -59,7 +59,8 @@ def read_yaml(text: str, complaints: Complaints, extents: dict[int, Extent] | No
         if tab is not None:
             complaints.error("syntax", "this is not YAML: a tab in the indentation", tab, "indent with blanks")
         else:
-            complaints.error("syntax", _problem(error), span, _hint(error))
+            key = _key_without_colon(text, error)
+            complaints.error("syntax", _problem(error), span if key is None else key.span, _hint(error, key))
     except yaml.YAMLError as error:
         complaints.error("syntax", Message("this is not YAML: [[why]]", why=str(error).splitlines()[0]))
     return None
@@ -100,8 +101,25 @@ def _problem(error: yaml.MarkedYAMLError) -> str:
     return Message("this is not YAML: [[problem]]", problem=problem)
 
 
-def _hint(error: yaml.MarkedYAMLError) -> str | None:
+def _key_without_colon(text: str, error: yaml.MarkedYAMLError) -> Scalar | None:
+    """What YAML took for a key and has no colon: it complains of the line below."""
+    if "could not find expected ':'" not in (error.problem or "") or error.context_mark is None:
+        return None
+    line, column = _inside(text.split("\n"), error.context_mark)
+    whole = text.split("\n")[line]
+    return Scalar(whole, Span(line + 1, 1)).part(column, len(whole))
+
+
+def _hint(error: yaml.MarkedYAMLError, key: Scalar | None) -> str | None:
     problem = error.problem or ""
+    if key is not None:
+        name, _, value = key.text.rpartition(" ")
+        text = "a key ends with a colon and a blank: write [[name]]: [[value]]"
+        return Message(text, name=name, value=value) if name else Message("a key ends with a colon and a blank")
+    if "expected '-' indicator" in problem:
+        return Message(
+            "items of a list begin with '- ', one below the other; their other lines begin below the first key"
+        )
     if "cannot start any token" in problem:
         return Message("put values with special characters in quotes")
     if "mapping values are not allowed" in problem:

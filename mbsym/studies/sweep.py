@@ -224,6 +224,14 @@ def _executor(system: System, request: Request, wanted: Wanted, measure: Measure
     return Workers(request.cluster, jobs, system, wanted)
 
 
+def _fixed(system: System, points: Points, request: Request) -> dict[str, Any]:
+    """The numbers of what does not vary: of parameters, or what was put in for symbols of the notation."""
+    from mbsym.model.admissibility import known_values
+
+    described = known_values(system) if {*points.names} <= {*system.parameter_names} else {}
+    return {name: value for name, value in {**described, **request.values}.items() if name not in points.names}
+
+
 def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     if found.cut:
         words = "interrupted; [[done]] of [[all]] chunks are kept: the same command goes on from there"
@@ -256,7 +264,7 @@ def answer(asked: Asked, request: Request, found: Swept) -> Answer:
         from mbsym.report.figures.sweep_figure import sweep_figure
 
         values = np.concatenate([part[columns[0].name] for _, part in found.parts()])
-        files |= sweep_figure(asked.system, points, columns[0], values, kinds)
+        files |= sweep_figure(asked.system, points, columns[0], values, kinds, _fixed(asked.system, points, request))
     table = next((name for name in files if name.startswith("sweep.")), "")
     settings = {name: str(value) for name, value in request.values.items()}
     files["sweep.json"] = sweep_json(

@@ -32,7 +32,7 @@ from mbsym.report.html.report import asked_motion
 from mbsym.report.language import Language
 from mbsym.report.targets import TARGETS
 from mbsym.report.viewer.motion import Motion, motion_of, moving_picture, run_sentences
-from mbsym.report.viewer.page import AFTER, KEYS, NEEDED, WORDS, animation_page
+from mbsym.report.viewer.page import AFTER, KEYS, NAMED, NEEDED, WORDS, animation_page, modes_part, picture_part
 from mbsym.simulation import Simulation
 from mbsym.studies.simulate.files import motion_files
 from mbsym_cli.main import main
@@ -239,11 +239,18 @@ def test_the_policy_lets_the_page_run_as_it_is(opened: Callable[..., Any]) -> No
 
 def test_the_viewer_has_its_words_from_the_page_in_its_language(opened: Callable[..., Any]) -> None:
     """Each that its sources ask for, and no other; in every language that reports have."""
-    sources = (TESTS.parent / "editor/src/picture").glob("*.ts")
-    asked = {word for one in sources for word in re.findall(r'\bsay\("([^"]*)"\)', one.read_text(encoding="utf-8"))}
+    asked = set()
+    for one in (TESTS.parent / "editor/src/picture").glob("*.ts"):
+        code = re.sub(r"(?m)^\s*(//|\*|/\*).*|//.*$|new Error\([^\n]*", "", one.read_text(encoding="utf-8"))
+        asked |= set(re.findall(r'\bsay\("([^"]*)"[,)]', code))
+        rest = re.sub(r'\bsay\("[^"]*"|\b(class|type|style): "[^"]*"|case "[^"]*"', "", code)
+        words = [re.sub(r"\$\{[^}]*\}", "", text) for text in re.findall(r'"[^"\n]*"|`[^`\n]*`', rest)]
+        assert [text for text in words if re.search(r"[a-z]{3,},? [a-z]{2,}", text)] == [], one.name
     assert asked == set(WORDS)
+    system = mbsym.load(SHIPPED / "double-pendulum.yaml").system
+    sentences = [*picture_part(system, {})["sentences"], *modes_part(system, {})["sentences"]]
     for name in ("ru", "es"):
-        told = {word: Language(name).say(word) for word in (*WORDS, KEYS, NEEDED, AFTER)}
+        told = {word: Language(name).say(word) for word in (*WORDS, *NAMED, *sentences, KEYS, NEEDED, AFTER)}
         assert [word for word, said in told.items() if said == word] == []
     whole = run("double-pendulum", 6)
     system = replace(whole.system, language="es")

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from mbsym.numerics.methods.table import METHODS
 from mbsym.report.figures import drawing
+from mbsym.report.figures.drawing import equalities, saved
+from mbsym.report.figures.figures import Curve, _page_of
 from mbsym_cli.main import main
 
 DESCRIPTION = """
@@ -68,3 +73,20 @@ def test_no_english_word_is_drawn(command: str, tmp_path: Path, monkeypatch: pyt
     assert any(re.search("[а-я]{4}", text) for text in drawn)
     plain = (NAMES.sub("", re.sub(r"\$[^$]*\$", "", text)) for text in drawn)
     assert [text for text in plain if re.search("[A-Za-z]{3}", text)] == []
+
+
+def test_what_tells_curves_apart_stands_inside_of_the_picture() -> None:
+    """Four values of Omega ran out of a phase plane on both sides, with twelve digits each."""
+    told = [equalities({"Omega": 10 / 3 + k, "m1": Fraction(-1, 2)}) for k in range(4)]
+    assert told[0] == "$\\Omega$ \u2248 3.333, $m_{1}$ = \u22120.5"
+    run: Any = None  # of the motion nothing is drawn here
+    assert equalities({f"k{k}": k for k in range(9)}) == ""
+    drawn = [Curve(run, None, words) for words in told]
+    figure = Figure(figsize=(5.4, 5), layout="constrained")
+    axis = figure.subplots()
+    for one in drawn:
+        axis.plot([0, 1], [0, 1], label=one.told)
+    (legend,) = _page_of(drawn, axis, figure).legends
+    saved("x", figure, ["png"])
+    box = legend.get_window_extent()
+    assert 0 <= box.x0 < box.x1 <= figure.bbox.width

@@ -17,7 +17,7 @@ from click.testing import CliRunner
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.report import conditions
-from mbsym.report.latex.appendix import joined
+from mbsym.report.latex.appendix import fragment, joined, render
 from mbsym.report.latex.displays import written_out
 from mbsym.report.latex.labels import labels, prefix_of, slug
 from mbsym.report.targets import TARGETS
@@ -283,6 +283,39 @@ def test_formulas_of_an_appendix_are_those_that_a_person_writes() -> None:
     # Inside of a fraction no line may end.
     whole = r"\longformula[p:f]{x = \frac{" + "\\penalty0  + ".join(terms) + r"}{y}}"
     assert "hangindent" in written_out(whole)
+
+
+def test_words_that_do_not_fit_beside_a_formula_stand_around_it() -> None:
+    """A noted condition was a paragraph of hangindents and penalties, which nobody can edit."""
+    noted = (
+        r"\longformula[p:c]{\text{minor 2 of K, reduced by those before} \colon\quad a\penalty0  + b > 0"
+        r" \quad\penalty0 \text{(holds: the kinetic energy is positive definite, $M > 0$)}"
+        r" \quad\penalty0 \text{(not needed)}}"
+    )
+    assert written_out(f"Conditions:\n\n{noted}\n{noted.replace('p:c', 'p:d')}").count("\\begin{equation}") == 2
+    assert written_out(noted) == (
+        "minor 2 of K, reduced by those before:\n\\begin{equation}\\label{p:c}\na + b > 0\n\\end{equation}\n"
+        "(holds: the kinetic energy is positive definite, $M > 0$) (not needed)"
+    )
+    listed = (
+        r"\longformula[p:e]{"
+        + r",\quad \penalty0 ".join(rf"a_{k} = b_{k} c_{k}\penalty0  + d_{k}" for k in range(4))
+        + "}"
+    )
+    rows = written_out(listed).split("\n")
+    assert rows[1:3] == [r"\begin{aligned}", r"a_0 &= b_0 c_0 + d_0, \\"]
+    assert written_out("is\n\n\\longformula[p:a]{a < b}").startswith("is\n\\begin{equation}")
+
+
+def test_an_intermediate_quantity_is_defined_once_in_a_document_and_in_every_fragment() -> None:
+    """The angular velocities of the satellite stood in problems 1, 2 and 3 of one appendix."""
+    analysis = mbsym.load(SHIPPED / "satellite.yaml")
+    defined = re.compile(r"displaystyle (\\(?:Omega|omega)_\{2 ,\d\}) =")
+    for text in (render(analysis, (1, 2, 3)), str(TARGETS["latex"].render(analysis, (1, 2, 3)))):
+        assert sorted(defined.findall(text)) == sorted(set(defined.findall(text))) != []
+    alone = [set(defined.findall(fragment(analysis, (1, 2, 3), "x", "x", number))) for number in (1, 2, 3)]
+    assert alone[0]
+    assert alone[0] == alone[1] == alone[2]
 
 
 @pytest.mark.parametrize(("label", "written"), [("Sat_2.b", "Sat_2.b"), ("my satellite:", "my-satellite"), ("", "top")])

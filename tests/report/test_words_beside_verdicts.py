@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from conftest import SHIPPED
 from terminal import told
 
 import mbsym
@@ -389,3 +390,10 @@ motion: {c: {value: 0, rate: n}}
 """
     for text in (top, top.replace("[A, B, C]", "[A, A, C]")):
         assert not any("in first approximation" in heading for heading in headings_of(text))
+
+
+def test_a_root_that_is_counted_is_not_said_again() -> None:
+    """Of one root it was said that it is there, and how many there are, at the satellite's values."""
+    verdict = mbsym.load(SHIPPED / "satellite.yaml").stability.numerical
+    assert verdict is not None
+    assert verdict.explanation.count("positive real part") == 1

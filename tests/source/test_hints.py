@@ -203,8 +203,8 @@ def followed(text: str, complaint: Complaint) -> str:
         return text.replace("inertia about: joint", "inertia about: mass centre")
     if power := re.match(r"write (\S+) for a (?:power|product)", hint):
         return replaced(power.group(1))
-    if call := re.match(r"write (\w+)\(\.\.\.\)", hint):
-        lines[span.line - 1] = re.sub(r"(sqrt|cos) (\w+)", rf"{call.group(1)}(\2)", line)
+    if call := re.match(r"write (\w+)\((\w+)\)$", hint):
+        lines[span.line - 1] = line.replace(f"{call.group(1)} {call.group(2)}", f"{call.group(1)}({call.group(2)})")
         return "\n".join(lines)
     if number := re.match(r"write (\d): the axes", hint):
         return replaced(number.group(1))

@@ -18,7 +18,7 @@ export class Sliders {
       const label = `${one.name}${unit ? `, ${one.unit}` : ""}`;
       const slider = make("input", {
         type: "range", min: one.minimum, max: one.maximum, step: "any", value: one.value, "aria-label": label,
-        title: one.limited ? `limits of the description: ${told(one.minimum)} to ${told(one.maximum)}${unit}` : null,
+        title: one.limited ? say("limits of the description: [[low]] to [[high]]", { low: told(one.minimum), high: told(one.maximum) + unit }) : null,
       });
       const reading = make("output", {}, told(one.value) + unit);
       slider.addEventListener("input", () => this.moved(one.name, Number(slider.value)));
@@ -58,13 +58,13 @@ function shown(one: Coordinate, value: number): number {
 
 export function modesList(found: Modes, words: (k: number) => string, choose: (k: number) => void): HTMLElement {
   const buttons = found.modes.map((_, k) => {
-    const button = make("button", { type: "button", "aria-pressed": "false", click: () => choose(k) }, `Mode ${k + 1}: ${words(k)}`);
+    const button = make("button", { type: "button", "aria-pressed": "false", click: () => choose(k) }, `${say("Mode [[number]]", { number: k + 1 })}: ${words(k)}`);
     return make("li", {}, button);
   });
   return make(
     "div",
     { class: "viewer-list" },
-    make("p", { class: "viewer-verdict" }, `Verdict: ${found.verdict.verdict}`),
+    make("p", { class: "viewer-verdict" }, say("Verdict: [[word]]", { word: say(found.verdict.verdict) })),
     ...found.sentences.map((text) => make("p", { class: "viewer-soft" }, text)),
     make("ol", {}, ...buttons),
   );
@@ -73,15 +73,15 @@ export function modesList(found: Modes, words: (k: number) => string, choose: (k
 export function equilibriaList(found: Equilibria, choose: (k: number) => void): HTMLElement {
   const items = found.equilibria.map((one, k) => {
     const values = Object.entries(one.texts).map(([name, text]) => `${name} = ${text}`);
-    const free = one.free.map((name) => `${name} any`);
-    const angles = one.otherAngles ? `; in other angles of ${one.otherAngles}, which no slider shows` : "";
+    const free = one.free.map((name) => say("[[name]] any", { name }));
+    const angles = one.otherAngles ? say("; in other angles of [[bodies]], which no slider shows", { bodies: one.otherAngles }) : "";
     const text = `${one.family ? say("of a family: ") : ""}${[...values, ...free].join(", ") || say("any position")}${angles}`;
-    const theorem = one.verdict.theorems.length > 0 ? ` (${one.verdict.theorems.join(", ")})` : "";
+    const theorem = one.verdict.theorems.length > 0 ? ` (${one.verdict.theorems.map((name) => say(name)).join(", ")})` : "";
     const button = make("button", { type: "button", "aria-pressed": "false", disabled: one.otherAngles !== "", click: () => choose(k) }, text);
-    return make("li", {}, button, make("span", { class: "viewer-verdict" }, `${one.verdict.verdict}${theorem}`));
+    return make("li", {}, button, make("span", { class: "viewer-verdict" }, `${say(one.verdict.verdict)}${theorem}`));
   });
   const whole = found.complete ? say("The list is complete.") : say("The list may be incomplete.");
-  const turning = Object.entries(found.turning).map(([name, rate]) => `${name} turns at ${told(rate)}.`);
+  const turning = Object.entries(found.turning).map(([name, rate]) => say("[[name]] turns at [[rate]].", { name, rate: told(rate) }));
   return make(
     "div",
     { class: "viewer-list" },
@@ -99,7 +99,7 @@ export function valuesTable(picture: Picture): HTMLElement {
   const time = picture.units.time;
   const row = (label: string, value: number | null, unit: string, meaning: string) =>
     make("tr", {}, make("th", { scope: "row" }, label), make("td", {}, `${told(value)}${unit ? ` ${unit}` : ""}`), make("td", {}, meaning));
-  const given = picture.parameters.map((one) => row(one.label, one.value, one.unit, one.given ? one.meaning : `stands in: no value is given. ${one.meaning}`));
+  const given = picture.parameters.map((one) => row(one.label, one.value, one.unit, one.given ? one.meaning : `${say("stands in: no value is given.")} ${one.meaning}`));
   const start = picture.coordinates.flatMap((one) => [
     row(one.label, one.value, one.unit, picture.atZero.includes(one.name) ? say("no initial value is given") : say("initial value")),
     row(`d${one.label}/dt`, one.velocity, time ? `${one.unit || "1"}/${time}` : "", say("initial velocity")),
@@ -114,13 +114,13 @@ export function inWords(picture: Picture, values: Float64Array): HTMLElement {
   const rows = picture.bodies.map((body) => {
     const joint = body.joint.hinges
       .filter((hinge) => hinge.coordinates.length > 0)
-      .map((hinge) => `${hinge.slides ? "slides by" : "turns by"} ${hinge.coordinates.join(", ")}`)
+      .map((hinge) => `${hinge.slides ? say("slides by") : say("turns by")} ${hinge.coordinates.join(", ")}`)
       .join("; ");
-    const looks = body.shapes.length > 0 ? body.shapes.map((x) => x.kind).join(", ") : body.ellipsoid ? "ellipsoid of inertia" : "point and lines";
-    const cells = [body.parent ?? "the frame", joint || "fixed", place(body.origin), body.massive ? place(body.centre) : "–", looks];
+    const looks = body.shapes.length > 0 ? body.shapes.map((x) => say(x.kind)).join(", ") : body.ellipsoid ? say("ellipsoid of inertia") : say("point and lines");
+    const cells = [body.parent ?? say("the frame"), joint || say("fixed"), place(body.origin), body.massive ? place(body.centre) : "–", looks];
     return make("tr", {}, make("th", { scope: "row" }, body.name), ...cells.map((text) => make("td", {}, text)));
   });
-  const heads = ["body", "on", "joint", `origin${unit}`, `mass centre${unit}`, "drawn as"];
+  const heads = [say("body"), say("on"), say("joint"), say("origin") + unit, say("mass centre") + unit, say("drawn as")];
   return make(
     "div",
     { class: "viewer-words" },

@@ -2,6 +2,7 @@
 
 import type { State } from "./program.js";
 import type { Mode, Modes, Motion, Picture } from "./types.js";
+import { say } from "./words.js";
 
 /** A motion of so many units of time runs at one a second; a shorter or longer one takes LASTS seconds. */
 const AS_IT_IS: [number, number] = [4, 30];
@@ -108,12 +109,15 @@ export class Swing {
     const { mode } = this;
     const time = unit ? ` ${unit}` : "";
     if (mode.imaginary > 0) {
-      const grows = `damping ratio ${mode.real === 0 ? "0" : told(mode.damping)}${mode.real > 0 ? ", growing" : ""}`;
-      const per = unit ?? "unit of time";
-      return `frequency ${told(mode.frequency)} per ${per} (${told(mode.imaginary)} rad per ${per}), ${grows}`;
+      const ratio = mode.real === 0 ? "0" : told(mode.damping);
+      const swings = say("frequency [[frequency]] per [[unit]] ([[rate]] rad per [[unit]]), damping ratio [[ratio]]", {
+        frequency: told(mode.frequency), rate: told(mode.imaginary), ratio, unit: unit ?? say("unit of time"),
+      });
+      return mode.real > 0 ? say("[[swings]], growing", { swings }) : swings;
     }
-    if (mode.real === 0) return "root 0: in the first approximation nothing drives it back";
-    return `does not swing: ${mode.real < 0 ? "decays" : "grows"} by e in ${told(1 / Math.abs(mode.real))}${time}`;
+    if (mode.real === 0) return say("root 0: in the first approximation nothing drives it back");
+    const within = { time: told(1 / Math.abs(mode.real)) + time };
+    return mode.real < 0 ? say("does not swing: decays by e in [[time]]", within) : say("does not swing: grows by e in [[time]]", within);
   }
 }
 

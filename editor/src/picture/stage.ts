@@ -8,6 +8,7 @@ import { Drawing } from "./drawing.js";
 import { Flat } from "./flat.js";
 import { inks } from "./inks.js";
 import type { Picture } from "./types.js";
+import { say } from "./words.js";
 
 /** Where frames take longer than this, in milliseconds and on the average, they are drawn coarser; shorter than that,
  * finer again. */
@@ -19,7 +20,7 @@ const JUDGED = 12;
 
 export class Stage {
   readonly element: HTMLElement;
-  readonly canvas = make("canvas", { tabindex: 0, role: "img", class: "viewer-canvas", "aria-label": "Picture: nothing drawn yet" });
+  readonly canvas = make("canvas", { tabindex: 0, role: "img", class: "viewer-canvas", "aria-label": say("Picture: nothing drawn yet") });
   readonly drawing = new Drawing();
   readonly eye = new Eye(() => this.wanted());
   /** Why nothing can be drawn; "" where it can. */
@@ -41,7 +42,7 @@ export class Stage {
   constructor(private readonly before: (seconds: number) => boolean) {
     let broken = "";
     this.renderer = drawnBy(this.canvas);
-    if (!this.renderer) broken = "This browser draws nothing (neither WebGL nor a flat canvas): positions are told below in words.";
+    if (!this.renderer) broken = say("This browser draws nothing (neither WebGL nor a flat canvas): positions are told below in words.");
     this.broken = broken;
     this.element = make("div", { class: "viewer-stage" }, broken ? make("p", {}, broken) : this.canvas);
     if (broken) return;

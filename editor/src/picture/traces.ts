@@ -10,7 +10,7 @@ export class Traces {
   private readonly canvas = make("canvas", { class: "viewer-trace-canvas", "aria-hidden": "true" });
   private readonly reading = make("p", { class: "viewer-reading" });
   private track: Track | null = null;
-  private rows: { name: string; values: number[]; colour: "accent" | "warn"; dashed: boolean }[] = [];
+  private rows: { values: number[]; colour: "accent" | "warn"; dashed: boolean }[] = [];
 
   constructor(go: (t: number) => void) {
     this.element = make("div", { class: "viewer-trace" }, this.canvas, this.reading);
@@ -27,8 +27,8 @@ export class Traces {
     const first = motion.energy[0] ?? 0;
     const numbers = (values: (number | null)[]) => values.map((x) => x ?? NaN);
     this.rows = [
-      { name: "kinetic energy", values: numbers(motion.kinetic), colour: "accent", dashed: false },
-      { name: "change of energy", values: numbers(motion.energy).map((x) => x - first), colour: "warn", dashed: true },
+      { values: numbers(motion.kinetic), colour: "accent", dashed: false },
+      { values: numbers(motion.energy).map((x) => x - first), colour: "warn", dashed: true },
     ];
   }
 

@@ -108,7 +108,7 @@ export class Viewer {
     this.track = new Track(motion);
     this.traces.show(this.track);
     const { atZero = [] } = this.picture ?? {};
-    const first = atZero.length ? [`Begun where the sliders stood; no initial value is given for ${atZero.join(", ")}.`] : [];
+    const first = atZero.length ? [say("Begun where the sliders stood; no initial value is given for [[names]].", { names: atZero.join(", ") })] : [];
     const stays = (column: (number | null)[]) => column.every((x) => Math.abs((x ?? NaN) - (column[0] ?? NaN)) < 1e-12);
     if (this.track.times.length > 1 && Object.values(motion.coordinates).every(stays)) {
       first.unshift(say("No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another."));
@@ -143,7 +143,7 @@ export class Viewer {
       this.stage.wanted();
     });
     const words = (k: number) => this.swings[k]!.words(picture.units.time);
-    this.fill("modes", modesList(modes, words, (k) => this.showMode(k)), make("label", { class: "viewer-slider" }, make("span", {}, "amplitude"), size));
+    this.fill("modes", modesList(modes, words, (k) => this.showMode(k)), make("label", { class: "viewer-slider" }, make("span", {}, say("Amplitude")), size));
   }
 
   showEquilibria(found: Equilibria): void {
@@ -195,8 +195,8 @@ export class Viewer {
     press(this.sections.modes, k);
     press(this.sections.equilibria, null);
     const swing = this.swings[k]!;
-    const slower = swing.speed === 1 ? "" : swing.speed < 1 ? `, shown ${told(1 / swing.speed)} times slower` : `, shown ${told(swing.speed)} times faster`;
-    this.say(`Mode ${k + 1}: ${swing.words(this.picture?.units.time)}${slower}.`);
+    const slower = swing.speed === 1 ? "" : swing.speed < 1 ? say(", shown [[times]] times slower", { times: told(1 / swing.speed) }) : say(", shown [[times]] times faster", { times: told(swing.speed) });
+    this.say(`${say("Mode [[number]]", { number: k + 1 })}: ${swing.words(this.picture?.units.time)}${slower}.`);
     this.run(true);
   }
 
@@ -207,7 +207,7 @@ export class Viewer {
     Object.assign(this.state, begun(this.picture!), one.values);
     this.touched = true;
     this.place();
-    this.say(`Equilibrium ${k + 1}: ${one.verdict.verdict}.`);
+    this.say(`${say("Equilibrium [[number]]", { number: k + 1 })}: ${say(one.verdict.verdict)}.`);
   }
 
   // ---- moving ------------------------------------------------------------------------------------------------------
@@ -271,7 +271,9 @@ export class Viewer {
     this.touched = true;
     this.state[name] = value;
     const open = picture.closure ? close(poses, picture.closure, this.state, [name]) : [];
-    this.say(open.length > 0 ? `No position near this one keeps the constraints with ${name} = ${told(value)}: ${open.join(", ")} open.` : "");
+    const gaps = { name, value: told(value), constraints: open.join(", ") };
+    const unclosed = say("No position near this one keeps the constraints with [[name]] = [[value]]; open: [[constraints]].", gaps);
+    this.say(open.length > 0 ? unclosed : "");
     this.place();
   }
 
@@ -319,7 +321,7 @@ export class Viewer {
       this.scrub.value = String(playing.t);
       this.clock.textContent = `t = ${told(playing.t)}${time}`;
       this.scrub.setAttribute("aria-valuetext", this.clock.textContent);
-    } else this.clock.textContent = playing ? `mode ${playing.k + 1}` : "";
+    } else this.clock.textContent = playing ? say("Mode [[number]]", { number: playing.k + 1 }) : "";
     if (this.track && this.sections.motion.open) this.traces.draw(playing?.what === "motion" ? playing.t : 0);
     const { picture } = this;
     // Also while it moves: what stands there is where bodies are now.

@@ -7,6 +7,7 @@ export function speak(words: Readonly<Record<string, string>>): void {
   known = words;
 }
 
-export function say(english: string): string {
-  return known[english] ?? english;
+/** A word or sentence, with what stands in its gaps: "Mode [[number]]". */
+export function say(english: string, gaps: Readonly<Record<string, string | number>> = {}): string {
+  return (known[english] ?? english).replace(/\[\[(\w+)\]\]/g, (_, name: string) => String(gaps[name] ?? ""));
 }

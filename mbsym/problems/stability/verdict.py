@@ -235,7 +235,7 @@ def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
     if not all(one.because(Because.LINEAR_DRIFTS) for one in verdicts):
         reasons.discard(_DRIFTS)
-    reasons = _farthest(reasons)
+    reasons = _telling(reasons)
     return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
 
 
@@ -319,7 +319,7 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     without = _BESIDE_ZERO_ROOTS | _BUT_CYCLIC
     told = (Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in verdict.reasons)
     reasons = dict.fromkeys([*(without.get(reason, reason) for reason in told), Reason(drift)])
-    said = _farthest(set(reasons))
+    said = _telling(set(reasons))
     return Verdict(row.word, names, tuple(one for one in reasons if one in said), tuple(grounds.items()), flaws)
 
 
@@ -476,17 +476,20 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
         found = found - {Reason(Because.COMPLETE)} | {Reason(Because.LEFT)}
     if any(Flaw.CYCLIC in part.flawed for part in parts):
         found = {_BUT_CYCLIC.get(reason, reason) for reason in found}
-    return tuple(sorted(_farthest(found), key=lambda reason: reason.rank))
+    return tuple(sorted(_telling(found), key=lambda reason: reason.rank))
 
 
 #: What is said of K and D of a part, and need not be true of those of the whole (with cyclic coordinates det K = 0).
 _OF_ONE_PART = (Because.ODD_DEGREE, Because.ODD_DEGREE_REMAINS, Because.DESTROYED)
 
 
-def _farthest(reasons: set[Reason]) -> set[Reason]:
-    """Where some cyclic coordinates drift away, it is not said of all that they stop."""
-    drift = {Reason(Because.DRIFT), Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}
-    return reasons - {Reason(Because.ELSEWHERE)} if drift & reasons else reasons
+def _telling(reasons: set[Reason]) -> set[Reason]:
+    """Without what others say better: that all stop, where some drift away; a root to the right, where counted."""
+    if reasons & {Reason(Because.DRIFT), Reason(Because.DRIFT_AT_GIVEN_MOMENTA)}:
+        reasons = reasons - {Reason(Because.ELSEWHERE)}
+    if any(reason.code is Because.RIGHT_ROOTS for reason in reasons):
+        reasons = reasons - {Reason(Because.RIGHT_ROOT)}
+    return reasons
 
 
 def _uncounted(reason: Reason) -> Reason:

@@ -24,6 +24,7 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from mbsym.expressions.message import Message
+from mbsym.formulas.latex import LatexNames
 from mbsym.model.system import System
 from mbsym.report.language import Language
 
@@ -54,6 +55,9 @@ STYLE: dict[Any, Any] = {
     "svg.fonttype": "path",
     "figure.dpi": RESOLUTION,
 }
+
+#: More numbers than these are not told beside a picture.
+MOST_VALUES = 8
 
 #: Colours of a PNG; lines need no more.
 COLOURS = 192
@@ -88,6 +92,32 @@ def title_of(system: System, number: int = 1, count: int = 1) -> str:
     name = system.name if len(system.name) <= 70 else system.name[:67] + "..."
     page = Message("page [[number]] of [[count]]", number=number, count=count)
     return f"{name}, {spoken(system)(page)}" if count > 1 else name
+
+
+def symbol(name: str) -> str:
+    """One name as it stands on an axis."""
+    return named(LatexNames([name]), name)
+
+
+def named(names: LatexNames, name: str) -> str:
+    """A name on an axis, as a formula where it is one."""
+    symbol = names[name]
+    return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
+
+
+def equalities(values: Mapping[str, Any]) -> str:
+    """``m = 1, omega = 3.333``: numbers beside symbols, as mathematical text; nothing of too many to be read.
+
+    They are about equal where digits are left out.
+    """
+    if len(values) > MOST_VALUES:
+        return ""
+    names = LatexNames(list(values))
+    written = []
+    for name, value in values.items():
+        digits = f"{float(value):.4g}"
+        written.append(f"{named(names, name)} {'=' if float(digits) == float(value) else chr(0x2248)} {digits}")
+    return ", ".join(written).replace("-", "\u2212")
 
 
 @contextmanager

@@ -35,6 +35,9 @@ HISTORY_ROWS, PLANE_ROWS, PLANE_COLUMNS = 5, 3, 3
 #: Of several curves in one picture: no more are told apart.
 COLOURS = (BLUE, RED, "#2e8540", "#8b5fbf", "#c77700", "#00838f")
 
+#: Inches in a legend: a line and what is around it, and a letter.
+SAMPLE, LETTER = 0.6, 0.085
+
 #: Planes with more points become pixels.
 MOST_POINTS = 20_000
 
@@ -92,7 +95,9 @@ def _page_of(drawn: Sequence[Curve], axis: Any, figure: Figure) -> Figure:
     """The page with what tells several curves apart."""
     if len(drawn) > 1:
         handles, told = axis.get_legend_handles_labels()
-        figure.legend(handles, told, loc="outside lower center", ncols=len(told), frameon=False, fontsize=9)
+        widest = SAMPLE + LETTER * max(len(one.replace("$", "")) for one in told)
+        columns = max(1, min(len(told), int(figure.get_figwidth() / widest)))
+        figure.legend(handles, told, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
     return figure
 
 
@@ -107,7 +112,7 @@ def _longest(drawn: Sequence[Curve]) -> Any:
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
-    figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
+    figure.suptitle(title.replace("$", r"\$") + (f"\n{note}" if note else ""), fontsize=12)
     return figure
 
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from mbsym.model.system import System
-from mbsym.report.figures.drawing import BLUE, GREY, pictures, spoken
+from mbsym.report.figures.drawing import BLUE, GREY, equalities, pictures, spoken, symbol
 from mbsym.report.maps.frame import colour_of
 from mbsym.sweeps.judged import WORDS
 from mbsym.sweeps.points import Column, Points
@@ -25,10 +25,21 @@ from mbsym.sweeps.points import Column, Points
 MOST_CELLS = 1_600
 
 
+_NONE: Mapping[str, Any] = {}
+
+
 def sweep_figure(
-    system: System, points: Points, column: Column, values: Any, formats: Sequence[str]
+    system: System,
+    points: Points,
+    column: Column,
+    values: Any,
+    formats: Sequence[str],
+    fixed: Mapping[str, Any] = _NONE,
 ) -> Mapping[str, bytes]:
-    """``sweep.svg`` and the like, of the measure's first column; ``values`` of all points, in their order."""
+    """``sweep.svg`` and the like, of the measure's first column; ``values`` of all points, in their order.
+
+    ``fixed``: the numbers of what does not vary, told below the title.
+    """
 
     def drawn() -> Figure:
         wide = len(points.grids) == 2
@@ -41,7 +52,8 @@ def sweep_figure(
             _line(axes, system, points, column, values)
         else:
             _spread(axes, system, column, values)
-        figure.suptitle(f"{system.name}: {_title(system, column)}", fontsize=11, parse_math=False)
+        title = f"{system.name}: {_title(system, column)}".replace("$", r"\$")
+        figure.suptitle("\n".join(filter(None, (title, equalities(fixed)))), fontsize=11)
         return figure
 
     if len(points.grids) > 2:
@@ -70,13 +82,13 @@ def _plane(figure: Figure, axes: Axes, system: System, points: Points, column: C
     else:
         shown = axes.pcolormesh(x, y, np.ma.masked_invalid(table), cmap="cividis", shading="nearest", rasterized=True)
         figure.colorbar(shown, ax=axes, label=_title(system, column))
-    axes.set_xlabel(first.name)
-    axes.set_ylabel(second.name)
+    axes.set_xlabel(symbol(first.name))
+    axes.set_ylabel(symbol(second.name))
 
 
 def _line(axes: Axes, system: System, points: Points, column: Column, values: Any) -> None:
     (grid,) = points.grids
-    axes.set_xlabel(grid.name)
+    axes.set_xlabel(symbol(grid.name))
     axes.set_xlim(*sorted((grid.low, grid.high)))
     if not column.words:
         axes.plot(grid.values, values, color=BLUE)

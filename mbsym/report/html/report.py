@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import text
 from mbsym.formulas.mathml import mathml_names, spelled_name
 from mbsym.model.system import System
@@ -74,7 +74,7 @@ def context(
         language=writer.language.name,
         claims=analysis.claims if whole else (),
         checks=analysis.checks if whole else (),
-        diagram=diagram(system) if system.bodies else "",
+        diagram=diagram(system, writer.language) if system.bodies else "",
         version=__version__,
         digest=meaning(system),
     )
@@ -120,15 +120,17 @@ LETTERS, ANGLES = 20, 26
 COLUMNS = 5
 
 
-def diagram(system: System) -> Markup:
+def diagram(system: System, language: Language) -> Markup:
     """An ``<svg>`` with a title and a description for those who cannot see it."""
     found = interconnection(system, most_columns=COLUMNS)
     beside = max((7 * len(_beside(joint)) - WIDE / 2 for joint in found.joints), default=0)
     width = (found.columns - 1) * ACROSS + WIDE + MARGIN + max(MARGIN, beside)
     height = (found.rows - 1) * DOWN + TALL + 2 * MARGIN
-    body = "".join([*_lines(found), *_loads(found), *(_node(node) for node in found.nodes)])
-    said = f"Interconnection of {counted(len(system.bodies), 'body', 'bodies')}"
-    told = "; ".join(_told(found))
+    say = language.say
+    ground = say("inertial frame")
+    body = "".join([*_lines(found), *_loads(found), *(_node(node, ground) for node in found.nodes)])
+    said = say(Message("Interconnection of bodies: [[count]]", count=len(system.bodies)))
+    told = "; ".join(map(say, _told(found, ground)))
     return Markup(
         f'<svg class="diagram" role="img" aria-labelledby="diagram-title diagram-text" width="{width:g}" '
         f'height="{height:g}" viewBox="0 0 {width:g} {height:g}"><title id="diagram-title">{escape(said)}</title>'
@@ -136,24 +138,26 @@ def diagram(system: System) -> Markup:
     )
 
 
-def _told(found: Interconnection) -> Iterator[str]:
+def _told(found: Interconnection, ground: str) -> Iterator[Message]:
     for joint in found.joints:
-        before, after = found.nodes[joint.before], found.nodes[joint.after]
-        yield f"{after.name} on {_named(before)} by {_joint_words(joint)}"
+        ends = {"after": found.nodes[joint.after].name, "before": _named(found.nodes[joint.before], ground)}
+        yield Message("[[after]] on [[before]]: [[joint]]", joint=_joint_words(joint), **ends)
     for load in found.interactions:
-        yield f"{load.kind} between {_named(found.nodes[load.first])} and {_named(found.nodes[load.second])}"
+        first, second = (_named(found.nodes[k], ground) for k in (load.first, load.second))
+        yield Message("[[load]] between [[first]] and [[second]]", load=worded(load.kind), first=first, second=second)
 
 
-def _named(node: Node) -> str:
-    return "the inertial frame" if node.kind is Kind.INERTIAL else node.name
+def _named(node: Node, ground: str) -> str:
+    return ground if node.kind is Kind.INERTIAL else node.name
 
 
-def _joint_words(joint: Joint) -> str:
+def _joint_words(joint: Joint) -> Message:
     turns = ", ".join(f"{axis}: {_readable(text(angle))}" for axis, angle in joint.turns)
-    parts_of = [f"turns {turns}"] if turns else []
+    if not turns:
+        return Message("a moving connection point" if joint.slides else "a fixed joint")
     if joint.slides:
-        parts_of.append("a moving connection point")
-    return " and ".join(parts_of) or "a fixed joint"
+        return Message("turns [[turns]], and a moving connection point", turns=turns)
+    return Message("turns [[turns]]", turns=turns)
 
 
 def _place(node: Node) -> tuple[float, float]:
@@ -161,11 +165,11 @@ def _place(node: Node) -> tuple[float, float]:
     return MARGIN + WIDE / 2 + node.column * ACROSS, MARGIN + TALL / 2 + node.row * DOWN
 
 
-def _node(node: Node) -> str:
+def _node(node: Node, ground: str) -> str:
     x, y = _place(node)
     kind = {Kind.INERTIAL: "ground", Kind.FRAME: "frame", Kind.BODY: "body"}[node.kind]
     again = " again" if node.repeated else ""
-    label = "inertial frame" if node.kind is Kind.INERTIAL else f"{node.number}. {node.name}"
+    label = ground if node.kind is Kind.INERTIAL else f"{node.number}. {node.name}"
     box = (
         f'<rect class="{kind}{again}" x="{x - WIDE / 2:g}" y="{y - TALL / 2:g}" width="{WIDE}" height="{TALL}" rx="7"/>'
     )
@@ -175,7 +179,7 @@ def _node(node: Node) -> str:
     words = "".join(
         f'<text x="{x:g}" y="{first + k * step:g}" class="middle">{escape(line)}</text>' for k, line in enumerate(lines)
     )
-    return f"<g><title>{escape(_named(node))}</title>{box}{words}</g>"
+    return f"<g><title>{escape(_named(node, ground))}</title>{box}{words}</g>"
 
 
 def _two(label: str) -> list[str]:

@@ -2,8 +2,9 @@ r"""From what the templates write to what stands in anyone's document: no macro,
 
 The templates write ``\longformula[label]{...}``.  ``report.tex`` defines it; in an appendix and in fragments, which
 define nothing, it is written out here: as an ``equation``, several short ones after each other as one ``align``, a
-longer one as a ``multline`` whose lines end between terms.  What does not fit so, a long bracket, is a paragraph of
-inline mathematics with a number, which TeX breaks at the places that the formula allows.
+longer one as a ``multline`` whose lines end between terms, several equations as rows of one; words that do not fit
+stand in front of it and behind it.  What does not fit so, a long bracket, is a paragraph of inline mathematics with a
+number, which TeX breaks at the places that the formula allows.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ def written_out(text: str) -> str:
         if between.strip() or "\n\n" in between:
             pieces += [*_together(short), _loosened(between)]
             short = []
+        elif pieces and not short:
+            pieces.append("\n")
         lines = _lines(formula)
         if lines is not None and len(lines) == 1:
             if not _fits([*short, (lines[0], label)]):
@@ -50,7 +53,12 @@ def written_out(text: str) -> str:
             pieces += [*_together(short), "\n" if short else "", display(formula, label)]
             short = []
         last = end
-    return "".join([*pieces, *_together(short), _loosened(text[last:])])
+    written = "".join([*pieces, *_together(short), _loosened(text[last:])])
+    return _AFTER_WORDS.sub("\n", written)
+
+
+#: An empty line in front of a display would begin a paragraph, and leave a line of it empty.
+_AFTER_WORDS = re.compile(r"\n{2,}(?=\\begin\{(?:equation|align|multline)\})")
 
 
 def _together(short: Sequence[tuple[str, str]]) -> Iterator[str]:
@@ -93,6 +101,19 @@ def _environment(kind: str, body: str, label: str) -> str:
 
 def _lines(formula: str) -> list[str] | None:
     """The lines that it takes in a narrow column, broken where TeX may break it; None where some would be too wide."""
+    parts, penalties = _parts(formula)
+    rows: list[str] = []
+    for line in _broken(parts, penalties):
+        if rows and _width(f"{rows[-1]} {line}") <= LINE:
+            rows[-1] += f" {line}"
+        else:
+            rows.append(line)
+    whole = all(_width(row) <= LINE and row.count("\\left") == row.count("\\right") for row in rows)
+    return rows if rows and whole else None
+
+
+def _parts(formula: str) -> tuple[list[str], list[int]]:
+    """What stands between the places where TeX may break it, and the penalties of these."""
     parts, penalties, place, depth = [], [], 0, 0
     for match in re.finditer(r"\\[{}]|[{}]|\\penalty(\d+) ", formula):
         if match[0] in "{}":
@@ -101,15 +122,22 @@ def _lines(formula: str) -> list[str] | None:
             parts.append(_plain(formula[place : match.start()]))
             penalties.append(int(match[1]))
             place = match.end()
-    parts.append(_plain(formula[place:]))
-    found: list[str] = []
-    for line in _broken(parts, penalties):
-        if found and _width(f"{found[-1]} {line}") <= LINE:
-            found[-1] += f" {line}"
-        else:
-            found.append(line)
-    whole = all(_width(line) <= LINE and line.count("\\left") == line.count("\\right") for line in found)
-    return found if found and whole else None
+    return [*parts, _plain(formula[place:])], penalties
+
+
+def _equalities(formula: str) -> list[str] | None:
+    """Several equations as rows, a line each; None where it is one, or a line would be too wide."""
+    rows = [""]
+    for part in _parts(formula)[0]:
+        rows[-1] = f"{rows[-1]} {part}".strip()
+        if part.endswith(_NEXT):
+            rows[-1] = rows[-1].removesuffix(_NEXT) + ","
+            rows.append("")
+    return rows if len(rows) > 1 and all(_width(row) <= LINE for row in rows) else None
+
+
+#: What stands between equations that are listed.
+_NEXT = ",\\quad"
 
 
 def _broken(parts: Sequence[str], penalties: Sequence[int]) -> list[str]:
@@ -143,15 +171,43 @@ def _width(formula: str) -> float:
 
 
 def display(formula: str, label: str = "") -> str:
-    """One numbered formula in lines that end between its terms, else as a paragraph."""
-    lines = _lines(formula)
-    if lines is not None:
-        return _environment("equation" if len(lines) == 1 else "multline", " \\\\\n".join(lines), label)
-    named = f"\\label{{{label}}}" if label else ""
-    return (
-        f"{_OPENING}\n\\hangindent=2em \\hangafter=1 \\noindent\\refstepcounter{{equation}}{named}%\n"
-        f"$\\displaystyle {_words_outside(loosened(formula))}$%\n{_NUMBER}"
-    )
+    """One numbered formula in lines that end between its terms, else as a paragraph; long words stand around it."""
+    if (lines := _lines(formula)) is not None and len(lines) == 1:
+        return _environment("equation", lines[0], label)
+    before, formula, after = _between_words(formula)
+    if (rows := _equalities(formula)) is not None:
+        body = " \\\\\n".join(" &".join(_sides(row)) for row in rows)
+        shown = _environment("equation", f"\\begin{{aligned}}\n{body}\n\\end{{aligned}}", label)
+    elif (lines := _lines(formula) or _lines(loosened(formula))) is not None:
+        shown = _environment("equation" if len(lines) == 1 else "multline", " \\\\\n".join(lines), label)
+    else:
+        named = f"\\label{{{label}}}" if label else ""
+        shown = (
+            f"{_OPENING}\n\\hangindent=2em \\hangafter=1 \\noindent\\refstepcounter{{equation}}{named}%\n"
+            f"$\\displaystyle {_words_outside(loosened(formula))}$%\n{_NUMBER}"
+        )
+    return "\n".join(filter(None, (before, shown, after)))
+
+
+def _between_words(formula: str) -> tuple[str, str, str]:
+    r"""What stands in front of a formula, ``\text{...} \colon``, the formula, and the ``\text{(...)}`` behind it."""
+    before, after = "", ""
+    if formula.startswith(_WORDS):
+        end = closing_brace(formula, len(_WORDS) - 1)
+        if colon := _COLON.match(formula, end + 1):
+            before, formula = f"{formula[len(_WORDS) : end]}:", formula[colon.end() :]
+    while formula.endswith(")}") and (note := formula.rfind(_NOTE)) >= 0:
+        end = closing_brace(formula, note + len(_NOTE) - 2)
+        if end != len(formula) - 1:
+            break
+        after = f"{formula[note + len(_NOTE) - 1 : end]} {after}".strip()
+        formula = formula[:note].rstrip()
+    return before, formula, after
+
+
+_WORDS = "\\text{"
+_COLON = re.compile(r"\s*\\colon\\quad(?:\s|\\penalty\d+ )*")
+_NOTE = "\\quad\\penalty0 \\text{("
 
 
 def long_formulas(text: str) -> Iterator[tuple[int, str, str, int]]:

@@ -169,7 +169,7 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     names = latex_names(analysis.ring)
     tongue = Language(analysis.language or system.language)
     labels = Labels(prefix_of(system))
-    known = results(analysis, problems)
+    known = results(analysis, problems, apart=form is Form.FRAGMENT)
     long = withheld([known.found[number] for number in COUNTED if number in known.found], PAPER)
     long |= withheld(known.forms.forms.results, PAPER_FORMS)
     cited = references(known.found.get(6), escaped(system.source)) if form is not Form.FRAGMENT else ()

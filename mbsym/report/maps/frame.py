@@ -17,6 +17,7 @@ from mbsym.maps.mapping import float_of
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
 from mbsym.problems.stability.word import Word
+from mbsym.report.figures.drawing import named
 from mbsym.report.maps.words import rational_text
 from mbsym.report.unit_text import labelled
 
@@ -90,12 +91,6 @@ def axis_label(system: System, name: str) -> str:
 def in_mathtext(name: str) -> str:
     """A name by itself."""
     return named(LatexNames([name]), name)
-
-
-def named(names: LatexNames, name: str) -> str:
-    """A name on an axis, as a formula where it is one."""
-    symbol = names[name]
-    return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
 
 
 def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:

@@ -19,6 +19,7 @@ import numpy as np
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.roots import Root
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.mechanics.motion import motion_values
 from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
@@ -194,14 +195,18 @@ def modes_json(found: Modes) -> dict[str, Any]:
 
 
 def _sentences(found: Modes) -> Iterator[str]:
-    word = found.verdict.word.value
-    theorem = f" ({found.verdict.theorem})" if found.verdict.theorem else ""
-    yield f"The motion at these values: {word}{theorem}."
-    yield "Roots are enclosed, shapes are floating-point; a part of a root that may be 0 is told as 0."
-    yield "A mode that swings is shown large and with constant amplitude, whatever its damping."
+    word, theorems = found.verdict.word, found.verdict.theorems
+    if theorems:
+        theorem = joined(map(worded, theorems), ", ")
+        yield Message("The motion at these values: [[word]] ([[theorem]]).", word=word, theorem=theorem)
+    else:
+        yield Message("The motion at these values: [[word]].", word=word)
+    yield Message("Roots are enclosed, shapes are floating-point; a part of a root that may be 0 is told as 0.")
+    yield Message("A mode that swings is shown large and with constant amplitude, whatever its damping.")
     if found.turning:
-        yield f"Deviations from a steady motion, which is held still: {', '.join(found.turning)} turn in it."
+        text = "Deviations from a steady motion, which is held still: [[names]] turn in it."
+        yield Message(text, names=", ".join(found.turning))
     if found.still:
-        yield f"Not moved, since velocities decide about them: {', '.join(found.still)}."
+        yield Message("Not moved, since velocities decide about them: [[names]].", names=", ".join(found.still))
     if any(x.fewer for x in found.modes):
-        yield "Where a root has fewer shapes than its multiplicity, deviations grow like powers of t besides."
+        yield Message("Where a root has fewer shapes than its multiplicity, deviations grow like powers of t besides.")

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup, escape
 
 from mbsym import __version__
-from mbsym.algebra.failures import Failure, NoValue
+from mbsym.algebra.failures import Failure, NoValue, message_of
 from mbsym.analysis import Analysis
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.stages import Unavailable
@@ -25,7 +25,9 @@ from mbsym.model.system import System, rational, with_values
 from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json, number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
+from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.problems.stability.word import Word
 from mbsym.report.documents.base import plain
 from mbsym.report.html.environment import embedded, hash_of
 from mbsym.report.language import Language
@@ -44,7 +46,22 @@ WORDS = (
     "kinetic energy (line)", "energy (its change dashed)", "of a family: ", "any position", "The list is complete.",
     "The list may be incomplete.", "no initial value is given", "initial value", "initial velocity",
     "No coordinate changes in this motion. From elsewhere, or with a velocity, it may be another.",
+    "No position near this one keeps the constraints with [[name]] = [[value]]; open: [[constraints]].",
+    "Begun where the sliders stood; no initial value is given for [[names]].",
+    "limits of the description: [[low]] to [[high]]", "stands in: no value is given.",
+    "Mode [[number]]", "Equilibrium [[number]]", "Verdict: [[word]]", "[[name]] any", "[[name]] turns at [[rate]].",
+    "; in other angles of [[bodies]], which no slider shows",
+    "frequency [[frequency]] per [[unit]] ([[rate]] rad per [[unit]]), damping ratio [[ratio]]", "unit of time",
+    "[[swings]], growing", "root 0: in the first approximation nothing drives it back",
+    "does not swing: decays by e in [[time]]", "does not swing: grows by e in [[time]]",
+    ", shown [[times]] times slower", ", shown [[times]] times faster",
+    "body", "on", "joint", "origin", "mass centre", "drawn as", "the frame", "fixed", "slides by", "turns by",
+    "ellipsoid of inertia", "point and lines", "Picture: nothing drawn yet",
+    "This browser draws nothing (neither WebGL nor a flat canvas): positions are told below in words.",
 )  # fmt: skip
+
+#: What its data say by name: verdicts, and what shapes are.
+NAMED = (*map(str, Word), *(one.name for one in THEOREMS), "sphere", "cylinder", "capsule", "ellipsoid")
 
 #: Where the bundles are that `make page` builds.
 BUNDLES = Path(__file__).parents[2] / "serving" / "page"
@@ -149,8 +166,20 @@ def _data(
     modes: dict[str, Any] | None = None,
     equilibria: dict[str, Any] | None = None,
 ) -> Markup:
-    words = {} if language.name == "en" else {word: language.say(word) for word in WORDS}
-    return embedded({"words": words, "picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria})
+    words = {word: language.say(word) for word in (*WORDS, *NAMED)} | {"box": language.say("box", "shape")}
+    parts = {"picture": picture, "motion": motion, "modes": modes, "equilibria": equilibria}
+    return embedded(
+        {
+            "words": {} if language.name == "en" else words,
+            **{name: part and _said(part, language) for name, part in parts.items()},
+        }
+    )
+
+
+def _said(part: dict[str, Any], language: Language) -> dict[str, Any]:
+    """A part of the data with its sentences in the language."""
+    spoken = {key: [*map(language.say, part[key])] for key in ("sentences", "remarks") if key in part}
+    return part | spoken | ({"why": language.say(part["why"])} if "why" in part else {})
 
 
 def bundle() -> tuple[str, str]:
@@ -183,7 +212,7 @@ def modes_part(system: System, overrides: Values) -> dict[str, Any]:
     try:
         return modes_json(modes(Analysis(with_values(system, overrides))))
     except Failure as reason:
-        return {"why": f"{reason}"}
+        return {"why": message_of(reason)}
 
 
 def equilibria_part(system: System, overrides: Values) -> dict[str, Any]:
@@ -191,7 +220,7 @@ def equilibria_part(system: System, overrides: Values) -> dict[str, Any]:
     try:
         return at_rest_json(at_rest(with_values(system, overrides), exact_values(system, overrides)))
     except Failure as reason:
-        return {"why": f"{reason}"}
+        return {"why": message_of(reason)}
 
 
 def exact_values(system: System, overrides: Values) -> dict[str, Fraction]:

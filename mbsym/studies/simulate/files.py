@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mbsym.simulation import Simulation
     from mbsym.simulation.motions import Sensitivities
     from mbsym.studies.simulate import Command
-    from mbsym.studies.simulate.fitting import Many
+    from mbsym.studies.simulate.fitting import Many, Member
 
 #: Formats that are figures.
 FIGURES = ("svg", "png", "pdf")
@@ -113,6 +113,7 @@ def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Se
 
 def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
     """Of many motions: curves of few, else fan charts."""
+    from mbsym.report.figures.drawing import equalities
     from mbsym.report.figures.figures import Curve, curves, fan_charts
     from mbsym.report.runs.ensemble_tables import ensemble_csv, ensemble_json, members_csv
     from mbsym.studies.simulate.fitting import variations_of
@@ -122,12 +123,21 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
     if "csv" in request.formats:
         files |= {"ensemble.csv": ensemble_csv(ensemble), "members.csv": members_csv(ensemble)}
     if kinds and result.few and all(len(run.times) > 1 for run in result.few.values()):
-        drawn = [Curve(run.trajectory, rates_along(run), name) for name, run in result.few.items()]
-        files |= curves(drawn, kinds)
+        drawn = [Curve(run.trajectory, rates_along(run), equalities(dict(x))) for x, run in result.few.items()]
+        files |= curves(drawn, kinds, _fixed(result.few))
     elif kinds and len(ensemble.times) > 1:
         files |= fan_charts(ensemble, kinds)
     how = (variations_of(request), request.seed, request.sampling)
     return files | {"ensemble.json": ensemble_json(ensemble, *how, list(files))}
+
+
+def _fixed(few: Mapping[Member, Simulation]) -> str:
+    """The parameters that are the same on all curves."""
+    from mbsym.report.figures.drawing import equalities
+
+    member, run = next(iter(few.items()))
+    same = {name: value for name, value in run.scenario.parameters.items() if name not in dict(member)}
+    return equalities(same)
 
 
 def note(trajectory: Trajectory) -> str:

@@ -513,12 +513,16 @@ class Planned:
     request: Run
 
 
+#: What varies, with its values.
+Member: TypeAlias = tuple[tuple[str, float], ...]
+
+
 @dataclass(frozen=True)
 class Many:
     """An ensemble; the runs of its members where these are few, by what varies."""
 
     ensemble: Ensemble
-    few: Mapping[str, simulation.Simulation] = field(default_factory=dict)
+    few: Mapping[Member, simulation.Simulation] = field(default_factory=dict)
 
 
 Result: TypeAlias = Motion | Planned | Many
@@ -618,16 +622,16 @@ def _many(asked: Asked, request: Command, wanted: Run, watch: Watch) -> Many:
     spread = Spread(wanted, variations, request.members, request.seed, request.sampling)
     values = simulation.read_values(given.system, request.values)
     ensemble = simulate_many(given, spread, values, watch=lambda t: watch("", t, wanted.time))
-    few: dict[str, simulation.Simulation] = {}
+    few: dict[Member, simulation.Simulation] = {}
     drawn = set(request.formats) - {"csv"} and not ensemble.interrupted
     for member in _few(variations) if drawn else ():
-        name = ", ".join(f"{name} = {value:.12g}" for name, value in member)
+        name = ", ".join(f"{name} = {value:.6g}" for name, value in member)
         own = {name: number(Fraction(str(value))) for name, value in member}
         try:
             begun = scenario(given.system, {**values, **own}, declared=request.variables == simulation.request.DECLARED)
         except Incomplete:
             return Many(ensemble)
-        few[name] = simulation.simulate(
+        few[member] = simulation.simulate(
             begun,
             replace(wanted, estimate=False),
             lambda t, name=name: watch(name, t, wanted.time),  # type: ignore[misc]
@@ -636,7 +640,7 @@ def _many(asked: Asked, request: Command, wanted: Run, watch: Watch) -> Many:
     return Many(ensemble, few)
 
 
-def _few(variations: Sequence[Variation]) -> tuple[tuple[tuple[str, float], ...], ...]:
+def _few(variations: Sequence[Variation]) -> tuple[Member, ...]:
     """The members by what varies, where they are grids of no more than can be drawn beside each other."""
     from mbsym.numerics.ensembles.variation import Grid
 
