@@ -251,9 +251,8 @@ class TaylorRun(Stepping):
         now, before = taylor.time, self.end
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
-        room = (
-            self._dtype(FAR * (self._unit + abs(now))) if until is None else self._dtype(until) - now
-        )  # at rest: no bound
+        at_rest = FAR * (self._unit + abs(now))  # no bound
+        room = self._dtype(at_rest) if until is None else self._dtype(until) - now
         outcome, step = taylor.step(room, write_tc=True)
         work.steps += 1
         work.evaluations += self.order
