@@ -230,7 +230,7 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
 def _from_rest(rates: Rates, begin: Any, states: Any, placed: Any, moving: Any, ways: Any, rate: Any, base: Any) -> Any:
     """tau (m,) where a push F begins a motion at 0:  1/tau^2 = max A_ij |dv_j'/dq_i|, or 1/tau = max |dv_j'/dv_k|.
 
-    It is 1 where these are 0.  By differences over what F would move in a time of 1, small enough to be those at the state itself.
+    It is 1 where these are 0.  By differences over a small part of what F would move in a time of 1.
     """
     apart = NEAR * np.max(ways * rate, axis=1, initial=0.0), NEAR * rate
     bends = []
