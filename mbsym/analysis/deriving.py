@@ -182,10 +182,36 @@ def balance_of(analysis: Analysis) -> Balance:
         redundant = () if tied is None or tied.in_speeds else tied.redundant
         proved = frozenset(row.name for row in redundant if row.certainty is Certainty.PROVED)
         about = analysis.reduced.about
-        return ConstrainedBalance(analysis.scene, energies, analysis.signs, {}, about=about, following=proved)
+        return ConstrainedBalance(
+            analysis.scene,
+            energies,
+            analysis.signs,
+            {},
+            about=about,
+            following=proved,
+            **_of_the_steady_motions(analysis),
+        )
     return dissipation.balance(
         analysis.parameters_scene if energies is None else analysis.held_scene, energies, analysis.signs
     )
+
+
+def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
+    """Of a nonholonomic system: the position that velocities follow, and the dimension of the steady motions."""
+    about = analysis.reduced.about
+    if about.holonomic or about.leaf or about.following:
+        return {}
+    from mbsym.problems.constraints.motion import oscillating_position, steady_motions
+
+    derived = analysis.optional("equations")
+    if derived is None or derived.embedded is None:
+        return {}
+    ring, names = analysis.ring, analysis.system.coordinates
+    at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    return {
+        "oscillating": oscillating_position(ring, derived.embedded, names),
+        "steady": steady_motions(ring, derived.embedded, names, about.idle, at, analysis.signs),
+    }
 
 
 def state_space_of(analysis: Analysis) -> StateSpace:

@@ -32,11 +32,15 @@ MOST_ENTRIES = 4_000_000
 class ConstrainedBalance(Balance):
     """The balance of the open tree, as far as it holds under constraints; ``about`` says what they leave free.
 
-    ``following`` are rows on velocities that are proved to follow from others: they say nothing further.
+    ``following`` are rows on velocities that are proved to follow from others: they say nothing further.  Of
+    ``constraints.motion``: ``oscillating`` is the position that the velocities follow, "" without one; ``steady``: the
+    dimension of the steady motions near by, None where these are not shown to be a manifold.
     """
 
     about: Reduction | None = None
     following: frozenset[RowName] = frozenset()
+    oscillating: str = ""
+    steady: int | None = None
 
     @cached_property
     def law(self) -> EnergyLaw:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.theorems import (
+    CHAPLYGIN,
     CHETAEV,
     CONVERSE,
     KELVIN_CHETAEV,
@@ -55,6 +56,10 @@ _LITERATURE = {
         r"I. G. Malkin, \textit{Theory of Stability of Motion}, Gostekhizdat, Moscow, 1952; "
         r"English translation: US Atomic Energy Commission, AEC-tr-3352."
     ),
+    "chaplygin": (
+        r"S. A. Chaplygin, On a motion of a heavy body of revolution on a horizontal plane (1897); English "
+        r"translation: \textit{Regul. Chaotic Dyn.} \textbf{7} (2002), 119--130."
+    ),
 }
 
 #: The key of the system's source.
@@ -66,6 +71,7 @@ _OF_THEOREM = {
     KELVIN_CHETAEV: ("thomson-tait", "chetaev"),
     LYAPUNOV: ("lyapunov",),
     MALKIN: ("lyapunov", "malkin"),
+    CHAPLYGIN: ("routh", "chaplygin"),
     CHETAEV: ("chetaev",),
     CONVERSE: ("lyapunov", "chetaev"),
     LINEAR: ("gantmacher",),

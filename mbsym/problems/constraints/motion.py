@@ -12,15 +12,22 @@ Sources: G. A. Maggi, Principii di stereodinamica (1901); Neimark & Fufaev, chap
 
 from __future__ import annotations
 
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.signs import Signs
+from mbsym.expressions.rates import velocity_name
 from mbsym.formulas.formula import Column, Matrix, Shown, column
 from mbsym.mechanics.constraints.embedding import projected
+from mbsym.mechanics.constraints.expansion import echelon
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Equations
+
+#: Kinds of generators that are analytic functions of positions, velocities and parameters, and not of the time.
+_SMOOTH = frozenset({"parameter", "coordinate", "velocity", "sine", "cosine", "reciprocal", "root"})
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,6 +53,109 @@ def embedded_equations(form: SpeedForm, equations: Equations, found: Constraints
     images = dependent_velocities(form, found.solved)
     right = [ring.reduce(ring.substitute(x, images)) for x in right]
     return Embedded(found.free, Matrix.of(ring, matrix), column(ring, right))
+
+
+def oscillating_position(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> str:
+    """The one position q with  M(q) (q', w)' = f(q, q', w)  where a reversal of q' alone reverses the time; "" if none.
+
+    M has no entry between q and w, the equation of q is even in q', and those of w are q' times functions of q and w:
+
+        w' = q' A(q, w),    q'' = F(q, q'^2, w).
+
+    So w is a function of q along every motion, w = w(q; c), with as many constants c as there are velocities w: bodies
+    of revolution that roll on a plane (Chaplygin 1897, Appell and Korteweg 1899), where no integral has a closed form.
+    """
+    moving = _felt(ring, embedded, coordinates)
+    if moving is None or len(moving) != 1 or len(embedded.free) == 1:
+        return ""
+    matrix, forcing = embedded.mass_matrix.polynomials, [x.polynomial for x in embedded.forcing]
+    place = embedded.free.index(moving[0])
+    reversed_rate = {ring.index("velocity", moving[0]): -ring.generator("velocity", moving[0])}
+    for i, force in enumerate(forcing):
+        parity = ring.one if i == place else -ring.one
+        if not ring.reduce(ring.substitute(force, reversed_rate) - parity * force).is_zero():
+            return ""
+        if i != place and not (matrix[i][place].is_zero() and _is_linear(ring, force, velocity_name(moving[0]))):
+            return ""
+    return moving[0]
+
+
+def steady_motions(
+    ring: Ring,
+    embedded: Embedded,
+    coordinates: Sequence[str],
+    idle: Sequence[str],
+    at: Mapping[int, Polynomial],
+    signs: Signs,
+) -> int | None:
+    """The dimension of the manifold of steady motions near one, ``idle`` coordinates not counted; None if not shown.
+
+    Steady are positions q that rest and velocities w with f(q, 0, w) = 0.  Rows that vanish, or vanish where others do
+    that are linear in a velocity, say nothing; there is a manifold where the rows that are left are as many as their
+    rank ``at`` the motion (implicit functions), by pivots that are shown not to vanish.
+    """
+    felt = _felt(ring, embedded, coordinates)
+    if felt is None:
+        return None
+    resting = {ring.index("velocity", name): ring.zero for name in felt}
+    if any(not ring.reduce(at[index]).is_zero() for index in resting):
+        return None
+    rows = [ring.reduce(ring.substitute(x.polynomial, resting)) for x in embedded.forcing]
+    velocities = [velocity_name(name) for name in embedded.free if name not in felt]
+    dimension = len(velocities) + len({*felt} - {*idle})
+    while rows := [row for row in rows if not row.is_zero()]:
+        slopes: list[Mapping[Hashable, Polynomial]] = [
+            {k: ring.substitute(ring.derivative(row, name), at) for k, name in enumerate((*felt, *velocities))}
+            for row in rows
+        ]
+        rank = echelon(ring, signs, slopes, range(len(felt) + len(velocities)))
+        if len(rank.pivots) == len(rows) and not rank.assumed:
+            return dimension - len(rows)
+        left = _eliminated(ring, rows, velocities, at, signs)
+        if left is None:
+            return None
+        rows, dimension = left, dimension - 1
+    return dimension
+
+
+def _eliminated(
+    ring: Ring, rows: Sequence[Polynomial], velocities: Sequence[str], at: Mapping[int, Polynomial], signs: Signs
+) -> list[Polynomial] | None:
+    """The other rows with a velocity put in that a row is linear in: a w + b = 0, a != 0; None without such a row."""
+    for i, row in enumerate(rows):
+        for name in velocities:
+            factor = ring.derivative(row, name)
+            if not _is_linear(ring, row, name) or not signs.never_zero(ring.substitute(factor, at)):
+                continue
+            nothing = {ring.index("velocity", name.removesuffix("_dot")): ring.zero}
+            rest = ring.substitute(row, nothing)
+            others = []
+            for other in (*rows[:i], *rows[i + 1 :]):
+                powers, slope, count = [], other, 1  # of w in the other row: its coefficients
+                while not slope.is_zero():
+                    powers.append(ring.substitute(slope, nothing))
+                    slope = ring.reduce(ring.derivative(slope, name)) / count
+                    count += 1
+                total = ring.zero
+                for k, coefficient in enumerate(powers):
+                    total = total + coefficient * (-rest) ** k * factor ** (len(powers) - 1 - k)
+                others.append(ring.reduce(total))
+            return others
+    return None
+
+
+def _felt(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> tuple[str, ...] | None:
+    """The coordinates that the equations depend on; None where these are not analytic, or know other velocities."""
+    entries = [*(x for row in embedded.mass_matrix.polynomials for x in row), *(x.polynomial for x in embedded.forcing)]
+    held = [ring.generators[k] for k in ring.held(entries)]
+    if any(g.kind not in _SMOOTH or (g.kind == "velocity" and g.name not in embedded.free) for g in held):
+        return None
+    felt = tuple(name for name in coordinates if any(ring.depends_on(x, name) for x in entries))
+    return felt if {*felt} <= {*embedded.free} else None
+
+
+def _is_linear(ring: Ring, p: Polynomial, name: str) -> bool:
+    return bool(ring.reduce(ring.derivative(ring.derivative(p, name), name)).is_zero())
 
 
 def dependent_velocities(form: SpeedForm, solved: Solved) -> dict[int, Polynomial]:

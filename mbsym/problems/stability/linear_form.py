@@ -20,7 +20,9 @@ class NonholonomicForm:
     ``family``: in so many dimensions the steady motions of the subsystem lie near the given one.  ``drifts``: the whole
     system has coordinates that drop out; ``open_names`` are those not shown to drop out in all orders, ``outside``:
     some of them are in no subsystem, as their velocities are dependent.  ``following`` are indices of coordinates whose
-    rows are of first order, those of M zero.
+    rows are of first order, those of M zero.  ``pairs``: where the velocities follow one position along every motion,
+    w' = q' A(q, w) and q'' = F(q, q'^2, w), how many pairs of roots that leaves to the subsystem besides zero roots: 1
+    in that of q, 0 in others; None where the equations are not so.
     """
 
     idle: tuple[int, ...] = ()
@@ -29,6 +31,7 @@ class NonholonomicForm:
     open_names: tuple[str, ...] = ()
     outside: bool = False
     following: tuple[int, ...] = ()
+    pairs: int | None = None
 
     def zeros(self, power: int) -> int:
         """How many roots are zero, of ``power`` of the determinant, besides those of idle coordinates."""

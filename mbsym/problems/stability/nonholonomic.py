@@ -4,7 +4,8 @@ The first approximation has no Hamiltonian structure: where no force does work i
 the imaginary axis (a bicycle, a sleigh), K > 0 proves nothing, and gyroscopic stabilisation has no meaning.  What holds
 is Lyapunov's first method; and, as steady motions come in families, along which roots are zero, the theorem of Lyapunov
 and Malkin: with as many zero roots as the family has dimensions and all others to the left, the motion is stable, and
-what is disturbed tends to a steady motion near by.
+what is disturbed tends to a steady motion near by.  Where the velocities follow one position along every motion, a
+pair of imaginary roots beside the zero ones is a centre.
 
 Sources: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems (1972), chapter V; A. V. Karapetyan, J. Appl.
 Math. Mech. 44 (1980) 295; I. G. Malkin, Theory of Stability of Motion, section 34.
@@ -27,6 +28,12 @@ from mbsym.problems.stability.word import Word
 
 #: What is concluded where roots are imaginary and simple.
 OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
+
+
+def one_oscillates(form: NonholonomicForm) -> Verdict:
+    """The verdict where velocities follow one position and the pair of roots that is its, if any, is imaginary."""
+    verdict = concluded({Fact.ONE_POSITION, Fact.BOUNDED})
+    return drifting(verdict, constant_momenta=False) if form.drifts else verdict
 
 
 def all_left(form: NonholonomicForm, zeros: int) -> Verdict:
@@ -59,6 +66,8 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
     roots = counted(reduced.charpoly())
     if roots.right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))
+    if form.pairs is not None and roots.imaginary == 2 * form.pairs == roots.degree - roots.zero:
+        return one_oscillates(form)
     if roots.left + roots.zero == roots.degree and (roots.zero == form.family or form.drifts):
         return all_left(form, roots.zero)
     blocks = counted(reduced.minpoly())
@@ -93,6 +102,8 @@ def enclosed(
             return undecided(Because.MASS_SINGULAR)
         coefficients = [arb(x) for x in first.charpoly().coeffs()[zero_power:]]
         right = to_the_right(coefficients)
+        if form.pairs is not None and len(coefficients) == 2 * form.pairs + 1 and _negative(coefficients[::2]):
+            return one_oscillates(form)
         if even and form.zeros(zero_power) in (0, form.family) and _negative(coefficients[::2]):
             return bounded({Fact.EXACTLY_LINEAR} if exact else set(), *OPEN)
     if right is None and any(x < 0 for x in coefficients):  # the leading one is 1: not all roots are on this side

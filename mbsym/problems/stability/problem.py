@@ -396,9 +396,16 @@ def prepared_parts(
     if linear.constrained is None or linear.constrained.holonomic:
         leaf = 0 if linear.constrained is None else linear.constrained.leaf
         return tuple(replace(part, system=replace(part.system, leaf=leaf)) for part in prepared) if leaf else prepared
+    from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
+
     about, free = linear.constrained, equilibrium.satisfied
     outside = not {*about.idle} <= {name for part in prepared for name in part.coordinates}
-    forms = (_form(part, balance, about, signs, free, outside) for part in prepared)
+    steady = [_steady_directions(part, about.idle) for part in prepared]
+    known = free and isinstance(balance, ConstrainedBalance) and sum(steady) == balance.steady
+    forms = (
+        _form(part, balance, about, signs, free, outside, at_least=directions if known else 0)
+        for part, directions in zip(prepared, steady, strict=True)
+    )
     return tuple(
         replace(part, system=replace(part.system, cyclic=(), nonholonomic=form))
         for part, form in zip(prepared, forms, strict=True)
@@ -406,24 +413,40 @@ def prepared_parts(
 
 
 def _form(
-    part: Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool, outside: bool
+    part: Prepared, balance: Balance, about: Reduction, signs: Signs, free: bool, outside: bool, at_least: int
 ) -> NonholonomicForm:
     """What is known of a subsystem of a nonholonomic system besides its matrices.
 
-    ``free``: the motion exists for all parameters, so that those which stand in it alone make a family of motions.
+    ``free``: the motion exists for all parameters, so that those which stand in it alone make a family of motions; its
+    dimension is ``at_least`` that.
     """
-    from mbsym.problems.constrained_balance import ConstrainedBalance  # most systems have no constraints
+    from mbsym.problems.constrained_balance import ConstrainedBalance
 
-    closed = isinstance(balance, ConstrainedBalance) and balance.closed
+    assert isinstance(balance, ConstrainedBalance)
     at = [about.about.index(name) for name in part.coordinates]
+    idle = tuple(i for i, name in enumerate(part.coordinates) if name in about.idle)
+    family = max(at_least, about.dimension(at, signs) if free else 0)
+    oscillating = balance.oscillating
     return NonholonomicForm(
-        idle=tuple(i for i, name in enumerate(part.coordinates) if name in about.idle),
-        family=about.dimension(at, signs) if free else 0,
+        idle=idle,
+        family=family,
         drifts=bool(about.idle),
-        open_names=() if closed else about.idle,
+        open_names=() if balance.closed else about.idle,
         outside=outside,
         following=tuple(i for i, name in enumerate(part.coordinates) if name in about.following),
+        pairs=int(oscillating in part.coordinates) if oscillating else None,
     )
+
+
+def _steady_directions(part: Prepared, idle: Sequence[str]) -> int:
+    """The dimension of the null space of the steady part, (K + N) x + (D + G) v = 0, in places x and idle rates v."""
+    turned = {i for i, name in enumerate(part.coordinates) if name in idle}
+    places, rates = added(part.system.K, part.system.N), added(part.system.D, part.system.G)
+    rows = [
+        tuple(moving if j in turned else resting for j, (resting, moving) in enumerate(zip(*pair, strict=True)))
+        for pair in zip(places, rates, strict=True)
+    ]
+    return len(null_rows(tuple(rows), part.known.normalised))
 
 
 def _prepared(

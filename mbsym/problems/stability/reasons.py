@@ -24,6 +24,7 @@ class Because(Enum):
     TURNED_DECAYS = auto()
     STEADY_DECAYS = auto()
     OTHER_LEAF = auto()
+    FOLLOWS_ONE = auto()
     MINIMUM = auto()
     MINIMUM_AND_DISSIPATION = auto()
     MINIMUM_BUT_CYCLIC = auto()

@@ -54,9 +54,9 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "motion tends to one near by, with other values of them."
     ),
     Because.STEADY_DECAYS: (
-        "All roots have negative real parts but the zero ones, which are as many as the family of steady motions that "
-        "the description gives has dimensions: a disturbed motion tends to a steady motion near by, and coordinates on "
-        "which no equation depends may end elsewhere."
+        "All roots have negative real parts but the zero ones, which are as many as the steady motions near by have "
+        "dimensions: a disturbed motion tends to one of these, and coordinates on which no equation depends may end "
+        "elsewhere."
     ),
     Because.MINIMUM: "$K > 0$: the (changed) potential energy has a strict minimum.",
     Because.MINIMUM_AND_DISSIPATION: (
@@ -78,6 +78,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.LINEAR_SHIFTED: (
         "The equations of motion are exactly linear: but for shifts on which they do not depend every disturbed motion "
         "stays near."
+    ),
+    Because.FOLLOWS_ONE: (
+        "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
+        "form), and this position oscillates as in a system of one degree of freedom."
     ),
     Because.LINEAR_GROWS: (
         "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
@@ -181,8 +185,8 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "equations: terms of higher order decide."
     ),
     Because.MORE_ZERO_ROOTS: (
-        "Zero roots beside those of coordinates that drop out: [[1]]; of these the steady motions under 'motion:' "
-        "explain [[2]]. Terms of higher order decide."
+        "Zero roots beside those of coordinates that drop out: [[1]]; of these a family of steady motions explains "
+        "[[2]]. Terms of higher order decide."
     ),
     Because.NOT_ENCLOSED: "The roots could not be enclosed.",
     Because.NO_CLOSED_FORM: "No closed form within the budget: [[1]].",

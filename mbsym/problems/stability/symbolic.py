@@ -688,6 +688,9 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
 def _cases_of_roots(system: LinearSystem, form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
     """Of a nonholonomic system: by the roots alone."""
     unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
+    even = found.variable == "lambda^2" or not found.factors
+    if even and form.pairs == sum(len(f.coefficients) - 1 for f in found.factors):
+        return Case(_wanted(found), (), nonholonomic.one_oscillates(form)), *unstable
     if found.variable == "lambda^2" and found.factors:
         best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
         if zeros in (0, form.family):  # the family's are in the kernel: no blocks

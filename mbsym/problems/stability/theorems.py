@@ -12,6 +12,9 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
 * Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.  Of nonholonomic systems
   it is, with Lyapunov's first method, all there is: their first approximation has no Hamiltonian structure, and the
   theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V; Karapetyan).
+* Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w) and
+  q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed with the
+  time: a centre where its roots are imaginary (bodies of revolution that roll on a plane).
 * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
   in a system of one coordinate, where the converse holds.
 * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
@@ -53,6 +56,8 @@ class Fact(Enum):
     LEFT_BUT_TURNED = "Re lambda < 0 for every root but those of turned steady spins"
     #: The zero roots are as many as the steady motions near by have dimensions, all others are to the left.
     LEFT_BUT_STEADY = "Re lambda < 0 for every root but the zero ones of a family of steady motions"
+    #: w' = q' A(q, w) and q'' = F(q, q'^2, w) in all orders: along every motion w is a function of the one position q.
+    ONE_POSITION = "the velocities follow one position along every motion"
     #: No root to the right, and those on the imaginary axis, zero ones too, are semisimple.
     BOUNDED = "the first approximation is stable"
     #: The equations of motion are their own first approximation (``exact_linearity``).
@@ -121,6 +126,7 @@ ROUTH = "Routh"
 KELVIN_CHETAEV = "Kelvin-Chetaev"
 LYAPUNOV = "Lyapunov's first method"
 MALKIN = "Lyapunov-Malkin"
+CHAPLYGIN = "Routh, by Chaplygin's integrals"
 CHETAEV = "Chetaev's combination of integrals"
 CONVERSE = "converse of Lagrange-Dirichlet"
 GEODESICS = "motion along geodesics"
@@ -161,6 +167,7 @@ THEOREMS = (
     _theorem(CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_ONE_COORDINATE, Fact.ENERGY_CONSERVED),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),
+    _theorem(CHAPLYGIN, Ground.ENERGY, Because.FOLLOWS_ONE, Fact.ONE_POSITION, Fact.BOUNDED),
     _theorem(CHETAEV, Ground.ENERGY, Because.INTEGRALS, Fact.INTEGRALS_DEFINITE),
     _theorem(LINEAR, Ground.LINEAR, Because.LINEAR_BOUNDED, Fact.EXACTLY_LINEAR, Fact.BOUNDED),
     _theorem(LINEAR, None, Because.LINEAR_GROWS, Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK),
