@@ -206,8 +206,8 @@ class _Run:
     def _text(self, one: Unfit) -> str:
         """What was typed for that name."""
         field = next(field for field in fields_of(self.study.request) if field.option == one.option)
-        typed = [" ".join(text.splitlines()) for text in self.texts[field.name]]
-        return next(text for text in typed if text.partition("=")[0].strip() == one.name)
+        name, *typed = (" ".join(text.splitlines()) for text in (one.name, *self.texts[field.name]))
+        return next(text for text in typed if name in (text, text.partition("=")[0].strip()))
 
     def _answered(self, asked: Asked, request: Any) -> int:
         """Derives, writes the files of a folder, then tells."""

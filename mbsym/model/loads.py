@@ -97,7 +97,8 @@ class Acting:
 
     def simplified(self) -> Self | None:
         """Without components that are zero at sight, which only cast doubt on the energy; None for nothing."""
-        return None if self.given and all(rational(x) == 0 for x in self.given) else self
+        parts = (*self.given, *(x for x in (self.damping, self.dissipation_function) if x is not None))
+        return None if parts and all(rational(x) == 0 for x in parts) else self
 
     def measured(self) -> Iterator[Measured]:
         """Its formulas and what they measure, those of its points apart."""

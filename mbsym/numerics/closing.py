@@ -37,7 +37,7 @@ CLOSED = 1e-11
 #: A value that was led here is nought.
 NOUGHT = 1e-30
 
-#: Below this part of itself (or of 1) a value has not moved but for roundings.
+#: Below this part of its size a value has not moved but for roundings.
 MOVED = 1e-12
 
 #: Singular values of J M^-1/2 below this part of the largest count as zero.
@@ -192,10 +192,11 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     there = np.concatenate([position, start[p:]])
     state = _first(searches, lambda search: search.velocity(there))
     found = _first(searches, lambda search: exact.refined(scenario.state, state, search))
+    sizes = constraints.sizes([float(x) for x in found]).tolist()
     moves = [
         Move(name, float(old), float(new))
-        for name, old, new in zip(names, scenario.state, found, strict=True)
-        if abs(old - new) > MOVED * (1 + abs(old))
+        for name, old, new, size in zip(names, scenario.state, found, sizes, strict=True)
+        if abs(old - new) > MOVED * size
     ]
     moved = {name for name, old, new in zip(names, scenario.state, found, strict=True) if old != new}
     typed = {name: value for name, value in scenario.typed.items() if name not in moved}
@@ -302,7 +303,7 @@ class _Search:
 
     def _small(self, f: Any, rows: Any, state: Any) -> bool:
         partials = np.abs(self.constraints.at(0.0, state).gradients)
-        slopes = self.constraints.slopes(partials, 1 + np.abs(state[: self.p]))
+        slopes = self.constraints.slopes(partials, self.constraints.sizes(state)[: self.p])
         return bool(np.all(np.abs(f) <= CLOSED * slopes))
 
     def velocity(self, state: Any) -> Any:
@@ -313,7 +314,7 @@ class _Search:
             found[self.p :] += weights @ _shortest(rows, -g)
         g, _, _ = self.rows(found, True)
         partials = np.abs(self.constraints.at(0.0, found).partials)
-        slopes = self.constraints.slopes(partials, 1 + np.abs(found[self.p :]))
+        slopes = self.constraints.slopes(partials, self.constraints.sizes(found)[self.p :])
         if not np.all(np.abs(g) <= CLOSED * slopes):
             gaps = [Gap(name, abs(float(x)), True) for name, x in zip(self.constraints.names, g, strict=True)]
             raise NotClosed(found, gaps, self.fixed)

@@ -57,6 +57,9 @@ CONTRADICTION = 1e-3
 #: A rate on constraints, in parts of its terms: beyond the first it is one, up to the second it is none.
 SEEN, UNSEEN = 1e-6, 1e-10
 
+#: States of a run at which it is looked how errors sway an energy.
+LOOKED_AT = 200
+
 #: Steps of polynomial arithmetic that a proof may cost.
 PROOF_STEPS = 1_000_000
 
@@ -130,6 +133,23 @@ def confronted(
     if standing is Standing.VERIFIED and not change <= CONTRADICTION:
         return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
     return found
+
+
+def swayed(code: Code, place: int, points: Any, errors: Sequence[float]) -> float:
+    """What errors e (d,) of a state make at most of an output I of code along a run:  max sum_i |I(x + e_i) - I(x)|.
+
+    ``points`` are (t, x) in columns (1 + d, m), of which ``LOOKED_AT`` are looked at.
+    """
+    chosen = np.unique(np.linspace(0, points.shape[1] - 1, LOOKED_AT).astype(int))
+    here = np.asarray(points, dtype=float)[:, chosen]
+    value = arrays.kernel(Code(code.program, code.inputs, (code.outputs[place],)))
+    with np.errstate(all="ignore"):
+        known, total = value(here)[0], np.zeros(len(chosen))
+        for k, error in enumerate(errors, start=1):
+            beside = here.copy()
+            beside[k] += error
+            total += np.abs(value(beside)[0] - known)
+    return float(np.max(total[np.isfinite(total)], initial=0.0))
 
 
 # --- rates ---

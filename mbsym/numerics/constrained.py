@@ -42,6 +42,7 @@ from mbsym.mechanics.constraints.dynamics import (
 from mbsym.mechanics.constraints.rows import Row, RowName
 from mbsym.mechanics.speed_programs import restoring
 from mbsym.mechanics.speeds import SpeedForm
+from mbsym.mechanics.variables import angle_denominators
 from mbsym.model.constraints import listed
 from mbsym.model.system import velocity_name
 from mbsym.numerics.kernels import arrays
@@ -72,8 +73,9 @@ NEAREST = 1e6
 #: Newton's steps to lengths of 1 after a position was moved by as much as ``AWAY``.
 RESTORED = 3
 
-#: A correction of this size, beside the coordinates', ends Newton's iteration; so many steps of it at most.
-SETTLED, STEPS = 1e-13, 40
+#: A correction of this part of the ``extents`` ends Newton's iteration, or one that falls no more and is at most
+#: rounding; so many steps of it at most.
+SETTLED, ROUNDED, STEPS = 1e-13, 1e-10, 40
 
 
 @dataclass(frozen=True)
@@ -190,12 +192,42 @@ class Constraints:
         return way if self.flow is None else np.linalg.lstsq(self.flow.turned(t, state), way, rcond=None)[0]
 
     def extents(self, state: Any) -> Any:
-        """What ways are measured by (n,): 1 + |q|, and 1 for speeds that are no velocities of positions."""
-        found = np.ones(self.size)
-        for k, place in enumerate(self.own_places):
+        """What ways are measured by (n,), whatever the units: of angles and of speeds that no position has for its own
+
+            s_i = max(1, |q_i|),      of others      s_i = max(|q_i|, max_j sqrt(M_jj/M_ii)),  j of the former
+
+        so that what is at 0 has the size that gives it as much inertia as a turn by 1; without such j it is the largest
+        |q_j| that counts for 1.  Where nothing tells a size it is that of the largest other one, or 1.
+        """
+        state = np.asarray(state, dtype=float)
+        own = np.array([0.0 if place is None else abs(state[place]) for place in self.own_places])
+        turns = np.array([place is None or place in self._bounded for place in self.own_places], dtype=bool)
+        inertia = self._inertia(state)
+        usual = np.max(np.where(turns, inertia, 0.0), initial=0.0) or np.max(own * inertia, initial=0.0)
+        sizes = np.where(turns, np.maximum(own, 1.0), np.maximum(own, _shares(usual, inertia)))
+        return np.where(sizes > 0, sizes, np.max(sizes[~turns], initial=0.0) or 1.0)
+
+    def sizes(self, state: Any) -> Any:
+        """What a state is measured by (p + n,): positions by ``extents``, components of length 1 by 1, velocities by
+        max(|v_i|, max_j |v_j| sqrt(M_jj/M_ii))."""
+        found, velocities = np.ones(self.places), np.abs(np.asarray(state, dtype=float)[self.places :])
+        for place, extent in zip(self.own_places, self.extents(state), strict=True):
             if place is not None:
-                found[k] += abs(state[place])
-        return found
+                found[place] = extent
+        inertia = self._inertia(state)
+        usual = np.max(velocities * inertia, initial=0.0)
+        return np.concatenate([found, np.maximum(velocities, _shares(usual, inertia))])
+
+    def _inertia(self, state: Any) -> Any:
+        """sqrt(M_ii) (n,), 0 where it is no number."""
+        found = self._masses(np.concatenate(([0.0], np.asarray(state, dtype=float))))[:: self.size + 1]
+        return np.sqrt(np.where(np.isfinite(found), np.maximum(found, 0.0), 0.0))
+
+    @cached_property
+    def _bounded(self) -> frozenset[int]:
+        """Places of angles."""
+        angles = angle_denominators(self._scenario.system)
+        return frozenset(place for place, name in enumerate(self._scenario.system.coordinates) if name in angles)
 
     @cached_property
     def own_places(self) -> tuple[int | None, ...]:
@@ -363,7 +395,7 @@ class Constraints:
 
     def led(self, t: float, state: Any) -> Any | None:
         """A state whose position is led to the constraints by Newton's method, each step the shortest; None if not."""
-        n, found = self.size, np.array(state, dtype=float)
+        n, found, before = self.size, np.array(state, dtype=float), np.inf
         for _ in range(STEPS):
             values, weights = self.at(t, found), self.weights(t, found)
             if not np.all(np.isfinite(values.partials)) or not np.all(np.isfinite(weights)):
@@ -371,8 +403,10 @@ class Constraints:
             rows = values.partials[: self.holonomic] @ weights
             step = weights @ np.linalg.lstsq(rows, -values.positions, rcond=1e-10)[0] if self.holonomic else np.zeros(n)
             found = self.displaced(t, found, step)
-            if np.max(np.abs(step), initial=0.0) <= SETTLED * (1 + np.max(np.abs(found[: self.places]))):
+            size = float(np.max(np.abs(step) / self.extents(found), initial=0.0))
+            if size <= SETTLED or before / 2 <= size <= ROUNDED:
                 return found
+            before = size
         return None
 
     @cached_property
@@ -489,6 +523,11 @@ def drift(constraints: Constraints, times: Any, states: Any, sizes: Any) -> Drif
     worst = [names[int(np.argmax(np.max(part, axis=1)))] if len(part) else None for part in parts]
     found = [np.max(part, axis=0) if len(part) else np.zeros(len(times)) for part in parts]
     return Drift(found[0], found[1], (worst[0], worst[1]))
+
+
+def _shares(usual: float, inertia: Any) -> Any:
+    """usual/sqrt(M_ii), 0 of what has no mass."""
+    return np.where(inertia > 0, usual / _positive(inertia), 0.0)
 
 
 def _positive(scales: Any) -> Any:

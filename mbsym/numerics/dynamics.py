@@ -66,6 +66,11 @@ class Dynamics:
         """How many numbers a state has: q and q', or whatever else stands between the time and the free parameters."""
         return len(self.inputs) - 1 - len(self.free)
 
+    @property
+    def fixed_values(self) -> dict[str, Fraction]:
+        """The parameters that are numbers here: those that are inputs of the code have no value of their own."""
+        return {name: value for name, value in self.scenario.parameters.items() if name not in self.inputs}
+
     def exactly(self, point: Sequence[Any]) -> Sequence[Any]:
         """(t, q, q') of the model itself beside a point of a run, which has been rounded: it itself."""
         return point

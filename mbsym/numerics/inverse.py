@@ -33,6 +33,7 @@ from mbsym.mechanics.newton_euler import residuals
 from mbsym.mechanics.programs import programs
 from mbsym.mechanics.variables import ring_of
 from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.arrays import kernel
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.scenario import Scenario, bound, scenario, substituted
@@ -316,6 +317,9 @@ class _Rows:
         numbers = bound(given)
         inputs = ("t", *system.coordinates, *system.velocities)
         self._kernel = kernel(Code(numbers, inputs, tuple(substituted(found.program, nodes, numbers))))
+        #: What coordinates are measured by is asked of these, and the largest of what is given (3, n).
+        self._measuring = Dynamics(given).constraints
+        self._largest = np.zeros((3, self.n))
 
     def at(self, times: Any, states: Any) -> tuple[Any, Any, Any, Any]:
         """(f (h, m), g (r, m), c (r, m), J (r, n, m)) at q, q' in the first 2n rows of ``states``."""
@@ -331,6 +335,7 @@ class _Rows:
         for place, name in enumerate(names):
             if name in known:
                 states[place::n] = known[name]
+                self._largest[:, place] = np.max(np.abs(known[name]), axis=1)
         open_ = [place for place, name in enumerate(names) if name not in known]
         q = np.array([float(x) for x in self.given.positions])
         rolled = self._rolled(given, times, states[:, 0:1], q, open_) if open_ else None
@@ -380,8 +385,15 @@ class _Rows:
             f, _, _, partials = self.at(t, one)
             step = self._solved(partials[:h, :, 0], f[:, 0], open_, t, partly=True)
             one[open_, 0] += step
-            if not np.max(np.abs(step)) > 1e-14 * (1 + np.max(np.abs(one[: self.n]))):
+            if not np.any(np.abs(step) > 1e-14 * self._sizes(one)[0][open_]):
                 break
+
+    def _sizes(self, one: Any) -> list[Any]:
+        """What q, q', q'' are measured by at a time, each (n,): by what they are in the whole motion."""
+        assert self._measuring is not None
+        largest = np.maximum(self._largest, np.abs(one[:, 0]).reshape(3, self.n))
+        found = [self._measuring.sizes(np.concatenate([one[: self.n, 0], x])) for x in largest]
+        return [np.maximum(found[0][: self.n], largest[0]), found[1][self.n :], found[2][self.n :]]
 
     def _solved(self, partials: Any, right: Any, open_: list[int], t: float, partly: bool = False) -> Any:
         """x with J x = -right for the coordinates that are open."""
@@ -400,7 +412,7 @@ class _Rows:
         n, h = self.n, self.holonomic
         f, g, c, partials = (x[..., 0] for x in self.at(t, one))
         slopes = np.abs(partials)
-        sizes = [1 + np.abs(one[k * n : (k + 1) * n, 0]) for k in range(3)]
+        sizes = self._sizes(one)
         off = [np.abs(f) / (slopes[:h] @ sizes[0] + 1e-300), np.abs(g) / (slopes @ sizes[1] + 1e-300)]
         off.append(np.abs(c + partials @ one[2 * n :, 0]) / (slopes @ sizes[2] + np.abs(c) + 1e-300))
         for values, what in zip(off, ("", " (velocities)", " (accelerations)"), strict=True):
@@ -428,5 +440,5 @@ def _equations(system: System, given: Scenario, states: Any, times: Array) -> tu
     if not np.isfinite(values).all():
         first = times[~np.isfinite(values).all(axis=0)][0]
         raise ValueError(f"at t = {first:.9g} what the motion needs is infinite or no number")
-    columns = -values[2 * n : 2 * n + n * k].reshape(n, k, -1)
-    return values[:n], values[n : 2 * n], columns, values[2 * n + n * k :].reshape(n, n, -1)
+    columns = -values[2 * n : 2 * n + n * k].reshape(n, k, len(times))
+    return values[:n], values[n : 2 * n], columns, values[2 * n + n * k :].reshape(n, n, len(times))

@@ -38,6 +38,8 @@ TOLERANCE = 1e-12
 LEAST = 1e-10
 #: So many times the shortest time in which the flow at the beginning changes.
 SPAN = 10.0
+#: Differences are taken over this part of a variable's size.
+STEP = 1e-6
 
 
 class NotMeasured(Exception):
@@ -188,14 +190,15 @@ class _Numbers:
 
 
 def _span(flow: Flow, s: Floats) -> float:
-    """How long: some multiple of 1/|df/ds| at the beginning, in two digits."""
-    step = 1e-6 * (1 + np.abs(s))
+    """How long: some multiple of 1/|df/ds| at the beginning, of variables in parts of their sizes; in two digits."""
+    sizes = np.where(s != 0, np.abs(s), np.max(np.abs(s), initial=0.0) or 1.0)
     with np.errstate(all="ignore"):
-        slopes = np.array([(flow(s + d) - flow(s - d)) / (2 * h) for d, h in zip(np.diag(step), step, strict=True)])
+        columns = [(flow(s + d) - flow(s - d)) / (2 * STEP) for d in np.diag(STEP * sizes)]
+        slopes, rates = np.array(columns) / sizes, np.abs(flow(s)) / sizes
     if not np.isfinite(slopes).all():
         raise NotMeasured("the flow on the manifold has no derivatives at the initial state")
     rate = float(np.linalg.norm(slopes, 2))
-    if rate < 1e-9:
+    if rate <= 1e-9 * float(np.max(rates)):
         raise NotMeasured("the flow on the manifold does not change there; ask for a --time")
     return float(f"{SPAN / rate:.2g}")
 

@@ -30,18 +30,20 @@ from mbsym.simulation.sampling import SAMPLES, sample_times
 #: Rows of a period that are shown, the first one twice, and intervals between orthogonalisations.
 ROWS, INTERVALS = 421, 400
 
-#: A motion runs through itself so many times in its period if it differs by less, as part of its extent.
-REPEATED, AT_MOST = 1e-7, 12
+#: A motion runs through itself so many times in its period if it differs by less, as part of its extent, and of its
+#: size, that of what rests but for roundings being what the scene would move it by.
+REPEATED, ROUNDED, AT_MOST = 1e-7, 1e-10, 12
 
 
 @dataclass(frozen=True)
 class PeriodicMotion:
-    """A periodic motion, and one period of it: ``states`` (2n, m) at ``times``."""
+    """A periodic motion, and one period of it: ``states`` (2n, m) at ``times``, measured by ``sizes`` (2n,)."""
 
     scenario: Scenario
     orbit: Orbit
     times: Any
     states: Any
+    sizes: Any
 
     @property
     def repeats(self) -> int:
@@ -50,14 +52,14 @@ class PeriodicMotion:
         The rows are compared with those a part of the period later, so parts that do not divide them are not looked at.
         """
         extent = np.ptp(self.states, axis=1)[:, None]
-        bound = REPEATED * extent + 1e-10 * (1 + np.abs(self.states))
+        bound = REPEATED * extent + ROUNDED * self.sizes[:, None]
         revolutions = np.round(self.orbit.turns / (2 * np.pi))
         for n in range(AT_MOST, 1, -1):
             later, rest = divmod(ROWS - 1, n)
             if rest or np.any(revolutions % n):
                 continue
             moved = self.states[:, later:] - self.states[:, :-later] - (self.orbit.turns / n)[:, None]
-            if np.all(np.abs(moved) <= bound[:, later:]):
+            if np.all(np.abs(moved) <= bound):
                 return n
         return 1
 
@@ -84,7 +86,9 @@ def find_orbit(
     found: Orbit = periodic_orbit(dynamics, guess, watch=watch)
     times = np.linspace(0.0, found.period, ROWS)
     run = METHODS["dop853"].start(dynamics, Setting(1e-13), initial=found.state)
-    return PeriodicMotion(scenario, found, times, np.array(run.fill(times)))
+    states = np.array(run.fill(times))
+    sizes = scaled(np.max(np.abs(states), axis=1), sizes_of_scene(dynamics, times, states))
+    return PeriodicMotion(scenario, found, times, states, sizes)
 
 
 def lyapunov_exponents(

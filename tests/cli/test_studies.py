@@ -106,3 +106,10 @@ def test_what_prevents_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str
     with pytest.raises(SystemExit) as left:
         study.leave(Path("f"), lambda: (_ for _ in ()).throw(KeyboardInterrupt))
     assert left.value.code == 130
+
+
+@pytest.mark.parametrize("name", ["=", "R=1", "a\nb", " "])
+def test_names_that_look_like_settings_are_unknown_ones(name: str) -> None:
+    result = called("trim", SHIPPED / "cart-pole.yaml", "--solve", name)
+    assert result.exit_code == 2, result.output
+    assert "error[unknown-name]" in result.output

@@ -93,6 +93,7 @@ def test_symbols_have_the_printed_values() -> None:
         ('value="2"', 'value="nan"', "bad-number", 5),
         ('value="2"', 'value="-2"', "impossible-mass", 5),
         ('value="2"', "", "missing-key", 5),
+        ('<mass value="2"/>', "", "missing-key", 5),
         ('xyz="0 1 0"', 'xyz="0 0 0"', "bad-axis", 10),
         ('xyz="0 1 0"', 'xyz="0 1"', "wrong-shape", 11),
         ('type="revolute"', 'type="planar"', "unsupported", 10),
@@ -362,6 +363,7 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
     [
         (f"<body><joint name='j'/>{POINT}</body><body><joint name='j'/>{POINT}</body>", "", ["repeated-name"]),
         (f"<body><joint/>{POINT}{POINT}</body>", "", ["repeated-key"]),
+        ("<body><joint/>" + POINT.replace('pos="0 0 -1"', "") + "</body>", "", ["missing-key"]),
         ("<body><joint/>" + POINT.replace("/>", ' fullinertia="1 1 1 0 0 0"/>') + "</body>", "", ["conflicting-keys"]),
         (
             f"<body><joint name='j'/>{POINT}</body>",
@@ -371,7 +373,7 @@ def test_what_is_misspelt_in_mjcf_is_complained_about_with_a_guess(
     ],
 )
 def test_what_mujoco_refuses_is_refused(body: str, after: str, codes: list[str]) -> None:
-    """A joint's name twice, two inertias, a tensor told twice, a slip in a tie."""
+    """A joint's name twice, two inertias, one that stands nowhere, a tensor told twice, a slip in a tie."""
     assert [code for code, _ in complaints_of(mujoco("", body, after))] == codes
 
 
@@ -428,6 +430,8 @@ def test_a_joint_s_name_stands_once_in_urdf_and_a_floating_joint_s_damping_is_to
     assert "repeated-name" in [code for code, _ in complaints_of(text)]
     free = PENDULUM.replace('type="revolute"', 'type="floating"')
     assert "damping of a floating joint" in converted(free).left_out
+    follows = free.replace("</joint>", '<mimic joint="pivot"/></joint>', 1)
+    assert "mimicry of a floating joint" in converted(follows).left_out
     loop = PENDULUM.replace("</robot>", '<loop_joint name="l" type="revolute"/></robot>')
     assert "joint that closes a loop (<loop_joint>)" in converted(loop).left_out
 

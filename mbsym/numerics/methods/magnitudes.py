@@ -18,8 +18,8 @@ Of what is at 0 and rests sizes are those that the same kinetic energy gives it:
 the largest of the others, and S_i = max A_ij D_j.  F_j, v_j and S_i/A_ij that have, times sqrt(M_jj), less than 1e-12
 of the largest are roundings and count as 0.  A column y of derivatives of the state, in which single components may be
 roundings, is measured as a whole: y_i has the size S_i max_k |y_k|/S_k, and while all of y is 0 that with y_k' times
-the shortest tau for y_k.  Where nothing tells a time or a size these are 1: all rests then, or begins from rest at 0 by
-a push that has no other measure.
+the shortest tau for y_k.  What begins from rest at 0 by a push has the times that the slopes of the rates tell there.
+Where nothing tells a time or a size these are 1: all rests then, or the push is constant.
 """
 
 from __future__ import annotations
@@ -50,6 +50,10 @@ SHARE = 1 / 32
 
 #: Nor for so little that its tolerance is below so many roundings of that size; velocities change by more than theirs.
 ROUNDINGS, OF_VELOCITIES = 16.0, 1.0
+
+#: Where nothing has a size the rates are differed over such a part of what is moved in a time of 1; their changes are
+#: roundings below such a part of them.
+NEAR, CHANGED = 1e-4, 1e-14
 
 #: Arcs are no longer than what is passed in so many times of the fastest position.
 FARTHEST = 100.0
@@ -202,7 +206,9 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     shortest = np.min(times, axis=0, initial=np.inf)
     passing = _ratio(np.where(sizes > 0, sizes, np.inf)[placed], largest[placed])
     shortest = np.where(np.isfinite(shortest), shortest, np.min(passing, axis=0, initial=np.inf))
-    shortest = np.where(np.isfinite(shortest) & (shortest > 0), shortest, 1.0)
+    told = np.isfinite(shortest) & (shortest > 0)
+    if not np.all(told):
+        shortest = np.where(told, shortest, _from_rest(rates, begin, states, placed, moving, ways, rate, base))
     sizes[moving] = np.where(speeds > 0, speeds, rate * shortest)
     path = np.where(path > 0, path, rate * shortest**2)
     reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
@@ -219,6 +225,24 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     own = np.maximum(own, _alike(own, weights))
     natural[moving] = np.minimum(sizes[moving], np.where(own > 0, own, SHARE * sizes[moving]))
     return Magnitudes(sizes, shortest, natural, np.where(kinds.velocities, OF_VELOCITIES, ROUNDINGS)[:, None])
+
+
+def _from_rest(rates: Rates, begin: Any, states: Any, placed: Any, moving: Any, ways: Any, rate: Any, base: Any) -> Any:
+    """tau (m,) where a push F begins a motion at 0:  1/tau^2 = max A_ij |dv_j'/dq_i|, or 1/tau = max |dv_j'/dv_k|.
+
+    It is 1 where these are 0.  By differences over a small part of what F would move in a time of 1.
+    """
+    apart = NEAR * np.max(ways * rate, axis=1, initial=0.0), NEAR * rate
+    bends = []
+    for places, reach in zip((placed, moving), apart, strict=True):
+        moved = _beside(rates, begin, states, places, reach.astype(states.dtype)) - base[:, None]
+        change = np.abs(moved[moving]).astype(float)  # (velocities, places, m)
+        change[~(change > CHANGED * _finite(base)[moving][:, None])] = 0.0
+        bends.append(np.where(reach > 0, change / np.where(reach > 0, reach, 1.0), 0.0))
+    stiff = np.max(bends[0] * np.swapaxes(ways, 0, 1), axis=(0, 1), initial=0.0)
+    damped = np.max(bends[1], axis=(0, 1), initial=0.0)
+    found = np.where(stiff > 0, 1 / np.sqrt(np.where(stiff > 0, stiff, 1.0)), 1 / np.where(damped > 0, damped, 1.0))
+    return np.where(np.isfinite(found), found, 1.0)
 
 
 def _arcs(kinds: Variables, placed: Any, sizes: Any, base: Any, largest: Any, bends: Any) -> Any:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import ctypes
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -36,6 +36,8 @@ from flint import arb, ctx
 from mbsym.algebra.derivative import jacobian
 from mbsym.algebra.program import Node
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import number
+from mbsym.model.substitution import folded, put
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.elimination import factorise, solve
@@ -483,14 +485,18 @@ def _driver(dynamics: Dynamics, method: Symplectic, scalar: str) -> Library:
     return once(dynamics, ("midpoint", method.name, scalar), make)
 
 
-def without_potential(system: System) -> tuple[str, ...]:
-    """The loads that have no force function, in words."""
-    found = []
-    for load in system.loads:
-        if not load.conservative:
-            words = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(load).__name__).lower()
-            found.append(words)
-    return tuple(dict.fromkeys(found))
+def without_potential(system: System, values: Mapping[str, Fraction]) -> tuple[str, ...]:
+    """The loads that have no force function, in words; those that vanish at values of parameters are none of them."""
+    images = {name: number(value) for name, value in values.items()}
+    acting = (load for load in system.loads if not load.conservative and put(load, images, folded).simplified())
+    return tuple(dict.fromkeys(re.sub(r"(?<=[a-z])(?=[A-Z])", " ", type(load).__name__).lower() for load in acting))
+
+
+def unsuited(system: System, values: Mapping[str, Fraction], name: str) -> Message | None:
+    """Why a method that takes its forces from a potential does not suit a system; None where it does."""
+    loads = without_potential(system, values)
+    words = "[[name]] is for conservative systems, and these loads are given without a potential: [[loads]]"
+    return Message(words, name=name, loads=", ".join(loads)) if loads else None
 
 
 @dataclass(frozen=True)
@@ -520,10 +526,8 @@ class Symplectic:
     ) -> MidpointRun:
         """A run in (q, p).  Raises Unusable where a load has no force function, and with constraints."""
         refuse(dynamics, self.name)
-        loads = without_potential(dynamics.system)
-        if loads:
-            text = "[[name]] is for conservative systems; these loads have no potential: [[loads]]"
-            raise Unusable(Message(text, name=self.name, loads=", ".join(loads)))
+        if (reason := unsuited(dynamics.system, dynamics.fixed_values, self.name)) is not None:
+            raise Unusable(reason)
         if not available(scalar) or scalar not in self.traits.scalars:
             raise Unusable(Message("[[name]] does not run in [[scalar]] here", name=self.name, scalar=scalar))
         state = initial_state(dynamics, SCALARS[scalar].dtype) if initial is None else initial

@@ -183,8 +183,9 @@ class TaylorRun(Stepping):
         self._taylor.time = self._dtype(time)
         state = np.array(state, self._dtype)
         begin, states = np.array([float(time)]), state[:, None].astype(float)
-        sizes = magnitudes(self._rates, self._kinds, begin, states).natural[:, 0]
-        self._scales = self._dtype(2) ** np.ceil(np.log2(sizes)).astype(self._dtype)
+        known = magnitudes(self._rates, self._kinds, begin, states)
+        self._unit = float(known.times[0])  # of the time, where that is 0
+        self._scales = self._dtype(2) ** np.ceil(np.log2(known.natural[:, 0])).astype(self._dtype)
         self._taylor.state[:] = state / self._scales
         cells = np.zeros(0) if self._cells is None else self._cells.values
         self._taylor.pars[:] = np.concatenate([cells, self._scales])[: len(self._taylor.pars)]
@@ -235,7 +236,7 @@ class TaylorRun(Stepping):
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
-            if outcome not in self._pauses or not shortest > self._least * max(1.0, abs(now)):
+            if outcome not in self._pauses or not shortest > self._least * max(self._unit, abs(now)):
                 taylor.time = now  # once more step by step, to see where it goes wrong
                 taylor.state[:] = before
                 return
@@ -250,7 +251,8 @@ class TaylorRun(Stepping):
         now, before = taylor.time, self.end
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
-        room = self._dtype(FAR * (1 + abs(now))) if until is None else self._dtype(until) - now  # at rest: no bound
+        at_rest = FAR * (self._unit + abs(now))  # no bound
+        room = self._dtype(at_rest) if until is None else self._dtype(until) - now
         outcome, step = taylor.step(room, write_tc=True)
         work.steps += 1
         work.evaluations += self.order
@@ -266,7 +268,7 @@ class TaylorRun(Stepping):
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:
             raise self._fail(Cause.BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
-        if step > self._least * max(1.0, abs(now)):
+        if step > self._least * max(self._unit, abs(now)):
             return
         if not np.all(np.abs(self._taylor.state) < LARGEST):  # in units of the scene's sizes
             bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")

@@ -124,7 +124,9 @@ def judged(dynamics: Dynamics, order: int = ORDER, bits: int = BITS) -> Judged:
     with ctx.workprec(bits):
         period = 2 * arb.pi() / ball(frequency)
         monodromy, steps = enclosed(code, period, len(dynamics.inputs) - 1, order)
-        lagrangian = not without_potential(dynamics.system) or (dynamics.size == 1 and _traceless(code, (0, 1)))
+        lagrangian = not without_potential(dynamics.system, dynamics.fixed_values) or (
+            dynamics.size == 1 and _traceless(code, (0, 1))
+        )
         names: tuple[str, ...] = (*dynamics.system.coordinates, *dynamics.system.velocities)
         if dynamics.constraints is not None:
             monodromy, names = _allowed(dynamics, dynamics.constraints, monodromy, period, names)

@@ -24,6 +24,7 @@ import numpy as np
 
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.methods.interface import Breakdown, compiled_kernel
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.orbits.periodic import autonomous
 from mbsym.numerics.orbits.variational import Flow
 
@@ -33,7 +34,7 @@ BLOCKS, STUDENT = 16, 2.131
 #: So many intervals at least.
 LEAST_INTERVALS = 64
 
-#: A state on constraints that is led back rests where it has not moved by more than this part.
+#: A state on constraints that is led back rests where it has not moved by more than this part of its sizes.
 RESTS = 1e-12
 
 #: Points of Gauss and Legendre for about every step, for the mean divergence.
@@ -115,6 +116,7 @@ def exponents(
     state = np.array([float(x) for x in dynamics.scenario.state])
     basis = np.eye(len(state)) if constraints is None else constraints.tangent(0.0, state)
     most = basis.shape[1]
+    near = 0.0 if constraints is None else RESTS * about(dynamics, 0.0, state).sizes[:, 0]
     flow = Flow(dynamics, tolerance, most if count is None else min(count, most))
     intervals = max(LEAST_INTERVALS, int(np.ceil(time / every)))
     ends = np.linspace(0.0, time, intervals + 1)
@@ -125,8 +127,7 @@ def exponents(
             before = state
             state, tangents = flow.passage(state, float(start), float(end), tangents)
             tangents, triangle = np.linalg.qr(tangents)
-            near = 0.0 if constraints is None else RESTS
-            resting = resting and bool(np.all(np.abs(state - first) <= near * (1 + np.abs(first))))
+            resting = resting and bool(np.all(np.abs(state - first) <= near))
             growth.append(np.log(np.abs(np.diag(triangle))))
             divergences.append((before, float(start), float(end)))
             watch(float(end))

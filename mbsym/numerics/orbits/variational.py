@@ -34,6 +34,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import FLOAT64, Code
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.led import lead
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.scenario import Names, Scenario, Specialised, bound, substituted
 
@@ -365,9 +366,11 @@ def gradient_at_end(
     base = Parametrised(scenario, free, overrides)
     require_smooth(base)
     n = len(states)
-    forward = METHODS["dop853"].start(Dynamics(scenario), Setting(tolerance))
+    plain = Dynamics(scenario)
+    forward = METHODS["dop853"].start(plain, Setting(tolerance))
     times = np.linspace(0.0, time, CHECKPOINTS + 1)
     motion = np.array(forward.fill(times))
+    sizes = np.maximum(about(plain, 0.0, motion[:, 0]).sizes[:, 0], np.max(np.abs(motion), axis=1))
     value, slopes = _functional(base, functional, motion[:, -1])
     adjoint = Adjoint(base, Fraction(time))
     state = np.concatenate([motion[:, -1], slopes[:n], np.zeros(adjoint.count)])
@@ -377,8 +380,7 @@ def gradient_at_end(
         state[:n] = motion[:, place]
         run.restart(float(time - times[place]), state)
         state = np.array(run.advance(float(time - times[place - 1])))
-        apart = np.abs(state[:n] - motion[:, place - 1]) / (1 + np.abs(motion[:, place - 1]))
-        mismatch = max(mismatch, float(np.max(apart)))
+        mismatch = max(mismatch, float(np.max(np.abs(state[:n] - motion[:, place - 1]) / sizes)))
     multipliers, sums = state[n : 2 * n], state[2 * n :]
     by = {}
     for name in names:

@@ -15,7 +15,7 @@ from mbsym.model.loads import GeneralizedForce, PointForce, Torque
 from mbsym.model.quantities import with_unit
 from mbsym.model.states import InStates
 from mbsym.numerics.accuracy import ErrorEstimate, Lacking, NoEstimate
-from mbsym.numerics.conservation import Conservation, Standing
+from mbsym.numerics.conservation import Conservation, Standing, swayed
 from mbsym.numerics.events.surfaces import source_of
 from mbsym.numerics.methods.interface import Change, Narrow, Passed, Setting
 from mbsym.numerics.states import StateDynamics, has_quaternions, norm_drifts
@@ -35,15 +35,11 @@ def standing_words(found: Conservation) -> Message:
     return Message("[[standing]]", standing=found.standing)
 
 
-#: A relative error e of coordinates and velocities is one of 2 e in T and in U, of which each may be as large as T.
-_ENERGY_ERRORS = 4
-
-
 def conservation_line(found: Conservation, error: float = 0.0) -> Message:
     """With how far the run keeps it, and what that is a part of: a drift is an error, a change is none.
 
     What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.  ``error`` is
-    the relative one of the run: a change that it alone would make is not told from it.
+    what the run's own errors make of the quantity: a change that is no larger is not told from it.
     """
     said = standing_words(found)
     if found.standing is Standing.CHANGING and found.change == 0:
@@ -52,7 +48,7 @@ def conservation_line(found: Conservation, error: float = 0.0) -> Message:
         return said
     if found.standing in (Standing.PROVED, Standing.VERIFIED):
         return Message("[[standing]]; largest drift [[measured]]", standing=said, measured=_measured(found))
-    if found.standing is Standing.CHANGING and found.change <= _ENERGY_ERRORS * error:
+    if found.standing is Standing.CHANGING and found.change <= error / found.scale:
         text = "[[standing]]; the change in this run, [[measured]], is not told from its error"
         return Message(text, standing=said, measured=_measured(found))
     return Message("[[standing]]; largest change [[measured]]", standing=said, measured=_measured(found))
@@ -68,17 +64,21 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     given = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
 
     # Where the two runs part nobody knows the state, but the energy may be kept all the same.
-    error = run.error.largest if isinstance(run.error, ErrorEstimate) and run.error.parted is None else 0.0
+    errors = run.error.quantities if isinstance(run.error, ErrorEstimate) and run.error.parted is None else ()
 
-    def told(found: Conservation) -> Message:
+    def told(found: Conservation, place: int) -> Message:
+        error = 0.0
+        if errors and found.standing is Standing.CHANGING and len(run.times):
+            states = np.vstack([run.trajectory.times, run.trajectory.states])
+            error = swayed(run.dynamics.energies, place, states, [one.largest for one in errors])
         line = conservation_line(found, error)
         if found.standing is not Standing.CHANGING or not given:
             return line
         return Message("[[line]] (U has no part of forces that are given as such)", line=line)
 
     if not run.dynamics.natural:
-        yield "T2 - T0 - U", told(run.conservation)
-    yield "T - U", told(run.energy_conservation)
+        yield "T2 - T0 - U", told(run.conservation, 1)
+    yield "T - U", told(run.energy_conservation, 0)
 
 
 def invariant_line(found: Conservation) -> Message:

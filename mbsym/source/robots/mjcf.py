@@ -389,8 +389,9 @@ class _Bodies:
                 found.append(matter)
         return tuple(found)
 
-    def pose(self, element: Element) -> tuple[Texts, Turns]:
-        return self.reader.three(element, "pos"), orientation(element, self.angles, self.reader)
+    def pose(self, element: Element, place: str | None = "0 0 0") -> tuple[Texts, Turns]:
+        """Where it stands, by default at ``place`` (None: the file has to say it), and how it is turned."""
+        return self.reader.three(element, "pos", place), orientation(element, self.angles, self.reader)
 
     def joints(self, body: str, element: Element, childclass: str) -> Iterator[Joint]:
         for child in element.children:
@@ -459,7 +460,7 @@ class _Bodies:
 
     def inertial(self, element: Element) -> Inertial:
         reader = self.reader
-        place, turned = self.pose(element)
+        place, turned = self.pose(element, None)
         mass = reader.number(element, "mass", None)
         if float(mass) < 0:
             reader.error("impossible-mass", "a mass is not negative", element)

@@ -44,10 +44,10 @@ class Reader:
         """One number as it is printed; ``default`` None: it must be there."""
         return self.numbers(element, attribute, 1, default)[0]
 
-    def three(self, element: Element | None, attribute: str, default: str = "0 0 0", raw: bool = False) -> Texts:
-        """Three numbers."""
+    def three(self, element: Element | None, attribute: str, default: str | None = "0 0 0", raw: bool = False) -> Texts:
+        """Three numbers; ``default`` None: they must be there."""
         if element is None:
-            return NOWHERE if default == "0 0 0" else _three(default)
+            return NOWHERE if default in (None, "0 0 0") else _three(default)
         first, second, third = self.numbers(element, attribute, 3, default, raw)
         return first, second, third
 

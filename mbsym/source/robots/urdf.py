@@ -223,6 +223,8 @@ def _joint(element: Element, named: Mapping[str, Element], reader: Reader) -> tu
             if any(map(float, limits)):
                 reader.leave_out("limits of a joint that exclude every position, or all but one")
             limits = None
+    if kind == "free" and element.first("mimic") is not None:
+        reader.leave_out("mimicry of a floating joint")
     led = _led(element, named, reader) if kind != "free" else None
     if led is not None and limits is not None:
         reader.leave_out("limits of a joint that mimics another")
@@ -277,10 +279,14 @@ def _inertial(element: Element, reader: Reader) -> Inertial:
     """Tensors with which a kinetic energy could be negative (some are -5e-20) are taken for zero."""
     mass, tensor = element.first("mass"), element.first("inertia")
     centre, turned = _origin(element, reader)
+    if tensor is None:
+        reader.leave_out("inertia that is not given (the link is a point mass)")
     xx, xy, xz, yy, yz, zz = ("0",) * 6 if tensor is None else (reader.number(tensor, part) for part in MOMENTS)
     if not is_nonnegative(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
         reader.leave_out("tensor of inertia with which a kinetic energy could be negative")
         xx = xy = xz = yy = yz = zz = "0"
+    if mass is None:
+        reader.error("missing-key", "this <inertial> has no <mass>", element)
     amount = "0" if mass is None else reader.number(mass, "value", None)
     if float(amount) < 0:
         reader.error("impossible-mass", "a mass is not negative", element)

@@ -369,7 +369,7 @@ MOST_POINTS = 6
 ONSETS = {
     Onset.SOFT: Message("soft: asymptotically stable at the border, small oscillations arise beyond"),
     Onset.HARD: Message("hard: unstable at the border already"),
-    Onset.OPEN: Message("open: terms of third order do not decide, or are not at hand"),
+    Onset.OPEN: Message("open whether soft or hard: terms of third order do not decide, or are not at hand"),
     Onset.NEITHER: Message(
         "neither soft nor hard: roots are to the right on both sides or on none, one side is not judged, or the "
         "equations are exactly linear"

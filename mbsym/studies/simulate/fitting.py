@@ -123,7 +123,7 @@ def settled(asked: Asked, request: Command) -> Settled:
         times = {"step": f"{request.step:g}", "time": f"{request.time:g}"}
         wrong.complain("--step", "bad-number", Message(longer, **times))
     if request.method is not None:
-        _check_method(system, wanted, typed, wrong)
+        _check_method(system, {} if given is None else given.parameters, wanted, typed, wrong)
     if "variables" in typed and request.variables is not None and not system.speeds:
         hint = "coordinates and their velocities are integrated; leave --variables out"
         wrong.complain("--variables", "idle-option", "the description declares no speeds", hint)
@@ -247,9 +247,11 @@ def _check_held(request: Run, system: System, many: bool, wrong: Reasons) -> Non
     wrong.complain(option, "too-large", message, hint)
 
 
-def _check_method(system: System, request: Run, typed: Mapping[str, Any], wrong: Reasons) -> None:
+def _check_method(
+    system: System, values: Mapping[str, Fraction], request: Run, typed: Mapping[str, Any], wrong: Reasons
+) -> None:
     """Whether the method goes with arithmetic, step or tolerance, and loads; before anything is compiled."""
-    from mbsym.numerics.methods.symplectic import without_potential
+    from mbsym.numerics.methods.symplectic import unsuited
     from mbsym.numerics.methods.table import METHODS
 
     name = request.method
@@ -298,11 +300,9 @@ def _check_method(system: System, request: Run, typed: Mapping[str, Any], wrong:
         hint = Message("leave --step out, give a --tolerance, or take a method of fixed step: [[names]]", names=fixed)
         message = Message("[[method]] chooses its steps by a --tolerance", method=name)
         wrong.complain("--step", "conflicting-options", message, hint)
-    loads = without_potential(system) if traits.conservative else ()
-    if loads:
-        words = "[[method]] is for conservative systems; these loads have no potential: [[loads]]"
-        message = Message(words, method=name, loads=", ".join(loads))
-        wrong.complain("--method", "unsuitable-method", message, "for any system: --method auto, dop853 or rk4")
+    reason = unsuited(system, values, name) if traits.conservative else None
+    if reason is not None:
+        wrong.complain("--method", "unsuitable-method", reason, "for any system: --method auto, dop853 or rk4")
 
 
 def _check_members(request: Run, formats: Sequence[str], wrong: Reasons) -> None:
