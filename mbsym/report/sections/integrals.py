@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
     """The section of results.json."""
-    return [doc.Integral.from_result(item, formula=write(item.formula)) for item in found]
+    return [doc.Integral.from_result(item, write) for item in found]
 
 
 _ENERGY = (

@@ -26,10 +26,10 @@ from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json, number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
 from mbsym.report.html.environment import embedded, hash_of
 from mbsym.report.language import Language
-from mbsym.report.sections.stability import verdict_data
 from mbsym.report.viewer.modes import modes, modes_json
 from mbsym.report.viewer.motion import motion, motion_json, moving_picture
 from mbsym.simulation import Request, Simulation
@@ -272,7 +272,7 @@ def at_rest_json(found: AtRest) -> dict[str, Any]:
                 "values": {name: number(value) for name, value in x.values.items()},
                 "texts": dict(x.texts),
                 "free": list(x.free),
-                "verdict": plain(verdict_data(x.verdict)),
+                "verdict": plain(parts.Verdict.from_result(x.verdict)),
                 "proof": x.proof,
                 "otherAngles": x.other_angles,
                 "family": x.family,
