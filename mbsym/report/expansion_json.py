@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET, structs
+from msgspec import UNSET
 
 from mbsym.algebra.quotients import Series
 from mbsym.algebra.signs import Condition
@@ -27,8 +27,8 @@ def expansion_json(
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     manifold = expansion_data(found, str)
-    told = doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measured_data(measured))
-    return written(structs.replace(told, roots=manifold.roots, missing=manifold.missing, steady=manifold.steady))
+    measurement = measured_data(measured)
+    return written(doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measurement))
 
 
 def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:

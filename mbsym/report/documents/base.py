@@ -180,9 +180,11 @@ class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: 
         sources = _sources(cls)
         if type(source) is tuple:
             given = dict(zip(sources, source, strict=False)) | given
-        found = given | {
-            name: find(source) for name, (find, _) in sources.items() if name not in given and find is not None
-        }
+        left = [name for name in sources if name not in given]
+        if isinstance(source, Struct):  # a part of another file has them already
+            found = given | {name: getattr(source, name) for name in left if hasattr(source, name)}
+        else:
+            found = given | {name: find(source) for name in left if (find := sources[name][0]) is not None}
         return cls(**{name: sources[name][1](x, write) for name, x in found.items()})
 
 

@@ -51,6 +51,7 @@ class ExceptionalValue(Part, frozen=True):
         str,
         words(*(x.value for x in Outcome), *(x.value for x in Word if not x.open)),
         "what is said of the nonlinear system: in problem 6's words where terms of higher order leave it open",
+        From("outcome"),
     ]
     theorem: Annotated[str, "the theorem behind it; empty where none applies"]
     reason: WhyOpen
