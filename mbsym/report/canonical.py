@@ -12,11 +12,10 @@ from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
 from mbsym.problems.canonical.canonical import DENOMINATORS
-from mbsym.report.documents.base import Part
+from mbsym.report.documents.base import Part, Write
 from mbsym.report.documents.results import canonical as doc
 from mbsym.report.latex.formulas import width
 from mbsym.report.lengths import formulas
-from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

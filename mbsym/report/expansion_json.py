@@ -15,8 +15,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Choice, Hurwitz, Outcome
 from mbsym.report.documents import expansion as doc
-from mbsym.report.documents.base import written
-from mbsym.report.plain import Write
+from mbsym.report.documents.base import Write, written
 
 if TYPE_CHECKING:
     from mbsym.simulation.expanded import Measured

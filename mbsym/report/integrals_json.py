@@ -17,9 +17,7 @@ from mbsym.problems.polynomial_integrals import (
     DarbouxPolynomials,
     PolynomialIntegrals,
 )
-from mbsym.problems.symmetries import Symmetries
 from mbsym.report.documents import integrals as doc
-from mbsym.report.documents import symmetries
 from mbsym.report.documents.base import Write, written
 
 
@@ -100,11 +98,3 @@ def _darboux_along(there: Setting, found: DarbouxAlong, text: Write) -> doc.Darb
         ]
         values.append((one.value, polynomials, one.complete))
     return doc.DarbouxAlong.from_result(found, text, values=values)
-
-
-# Symmetries as JSON: everything that the table shows, as codes and formulas.
-
-
-def symmetries_json(system: System, values: Mapping[str, Fraction], found: Symmetries) -> str:
-    """One JSON object, keys in a fixed order, the same text for the same input."""
-    return written(symmetries.Symmetries.from_result(found, system=system.name, values=values))

@@ -24,7 +24,6 @@ from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
 from mbsym.report.documents.results.claims import Claim, ClaimPart
 from mbsym.report.lengths import COUNTED, FILE, withheld
-from mbsym.report.plain import Written
 from mbsym.report.sections import section_of
 from mbsym.report.sections.linearisation import first_order
 from mbsym.report.sections.system import accepted_inertias
@@ -88,7 +87,7 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
     forms = forms_of(analysis, problems)
     long = withheld([*(stages[number].value for number in COUNTED if number in stages), *forms.results], FILE)
 
-    def write(formula: Formula) -> Written:
+    def write(formula: Formula) -> str | Counted:
         return counted(formula) if id(formula) in long else str(formula)
 
     for number, stage in stages.items():

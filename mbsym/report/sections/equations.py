@@ -41,8 +41,8 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import equations as doc
-from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

@@ -9,7 +9,7 @@ from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.report.content import Block, Display, Heading, Name, Relation, Said, named, paragraph, say
 from mbsym.report.documents import results as doc
-from mbsym.report.plain import Write
+from mbsym.report.documents.base import Write
 from mbsym.report.sections.system import unperturbed_motion
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ from mbsym.problems.invariant_sets import (
     StationarySet,
 )
 from mbsym.report.content import Block, Heading, Phrase, Said, ragged
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import invariant_sets as doc
-from mbsym.report.plain import Write
 from mbsym.report.words.invariant_words import (
     closing,
     family_title,

@@ -28,8 +28,8 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import linearisation as doc
-from mbsym.report.plain import Write
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis

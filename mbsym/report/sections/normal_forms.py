@@ -10,8 +10,8 @@ from flint import arb
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
 from mbsym.report.content import Block, Heading, Said, ragged
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import normal_forms as doc
-from mbsym.report.plain import Write
 from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:

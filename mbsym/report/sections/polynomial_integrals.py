@@ -10,8 +10,8 @@ from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, ragged, say
 from mbsym.report.documents import integrals
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import polynomial_integrals as doc
-from mbsym.report.plain import Write
 from mbsym.report.words import symmetry_words
 from mbsym.report.words.integrals_words import (
     LEVEL,

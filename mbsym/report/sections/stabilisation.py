@@ -26,8 +26,8 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import stabilisation as doc
-from mbsym.report.plain import Write
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.words.stabilisation_words import ENCLOSED, FEEDBACK, LYAPUNOV, OF_PART, STATES, sentences
 

@@ -63,8 +63,8 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.documents import parts
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import stability as doc
-from mbsym.report.plain import Write
 from mbsym.report.references import keys_of, theorems_named
 from mbsym.report.words.claims import concluded, decided, verdict
 
