@@ -27,6 +27,7 @@ Schema = dict[str, Any]
 
 #: What each kind of file is: a type of this name, in a module of this name unless another one has it.
 TITLES = {
+    "average": "What mbsym average --json prints",
     "branches": "mbsym equilibria --vary: branches.json",
     "diff": "mbsym diff --format json",
     "ensemble": "ensemble.json of mbsym simulate --vary",
@@ -46,9 +47,16 @@ TITLES = {
     "simulation": "simulation.json of mbsym simulate",
     "sweep": "sweep.json of mbsym sweep",
     "symmetries": "What mbsym symmetries --json prints",
+    "trim": "What mbsym trim --json prints",
 }
 
-_MODULES = {"equilibria_map": "branches", "floquet": "orbit", "lyapunov": "orbit", "sweep": "ensemble"}
+_MODULES = {
+    "average": "expansion",
+    "equilibria_map": "branches",
+    "floquet": "orbit",
+    "lyapunov": "orbit",
+    "sweep": "ensemble",
+}
 
 _SIMPLE: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
 _BOUNDS = {
