@@ -36,7 +36,9 @@ TITLES = {
     "expansion": "What mbsym expand --json prints",
     "extremes": "extremes.json of mbsym extremes",
     "floquet": "floquet.json of mbsym floquet",
+    "groups": "What mbsym groups --json prints",
     "integrals": "What mbsym integrals --json prints",
+    "inverse": "What mbsym inverse --json prints",
     "lyapunov": "lyapunov.json of mbsym lyapunov",
     "map": "mbsym map: map.json",
     "nonlinear": "mbsym nonlinear --json",
@@ -54,6 +56,7 @@ _MODULES = {
     "average": "expansion",
     "equilibria_map": "branches",
     "floquet": "orbit",
+    "inverse": "trim",
     "lyapunov": "orbit",
     "sweep": "ensemble",
 }

@@ -1,4 +1,4 @@
-"""What ``mbsym trim --json`` prints."""
+"""What ``mbsym trim --json`` and ``mbsym inverse --json`` print: inputs that hold a posture, or give a motion."""
 
 from __future__ import annotations
 
@@ -24,3 +24,13 @@ class Trim(Head, frozen=True, kw_only=True):
     nonzero: Annotated[list[str], "what was divided by: all this holds where none of it vanishes", From("assumed")]
     conditions: Annotated[list[str], "what has to vanish besides, whatever the values are"]
     signed: Annotated[list[SignDemand], "what the declared signs demand of the values"]
+
+
+class Inverse(Head, frozen=True, kw_only=True):
+    """The inputs with which the coordinates move as given, in the units of the description."""
+
+    exact: Annotated[bool, "whether they give this motion, but for rounding; else the nearest by least squares"]
+    left: Annotated[float | None, "what is left of the equations at most, as a part of the size of their terms"]
+    unique: Annotated[bool, "whether no other inputs do the same at any of the times; else these are the smallest"]
+    times: Annotated[list[float], "the times"]
+    inputs: Annotated[dict[str, Annotated[list[float], "its value at each time"]], "the inputs, by name"]
