@@ -24,8 +24,8 @@ from mbsym.report.documents.base import Write, written
 def integrals_json(
     system: System,
     values: Mapping[str, Fraction],
-    there: Setting,
-    found: PolynomialIntegrals,
+    setting: Setting,
+    basis: PolynomialIntegrals,
     line: Along | None = None,
     special: Cases | None = None,
     invariant: InvariantRelations | None = None,
@@ -34,67 +34,69 @@ def integrals_json(
     """One JSON object, keys in a fixed order, the same text for the same input."""
 
     def text(value: Any) -> str:
-        return str(value) if isinstance(value, Fraction | fmpq | fmpz) else str(there.formula(value))
+        return str(value) if isinstance(value, Fraction | fmpq | fmpz) else str(setting.formula(value))
 
     def factor(p: Any) -> str:
-        return str(there.quotient(p, there.field.denominator))
+        return str(setting.quotient(p, setting.field.denominator))
 
     linear, darboux, levels, others = (
         None if invariant is None else getattr(invariant, name) for name in ("linear", "darboux", "levels", "others")
     )
     data = doc.Integrals.from_result(
-        found,
+        basis,
         text,
         system=system.name,
         values=values,
-        weights=zip(found.field.variables, found.grading.weights, strict=True),
+        weights=zip(basis.field.variables, basis.grading.weights, strict=True),
         along=None
         if line is None
         else doc.Along.from_result(
             line,
             text,
-            weights=None if line.weights is None else zip(there.field.variables, line.weights, strict=True),
+            weights=None if line.weights is None else zip(setting.field.variables, line.weights, strict=True),
         ),
         cases=special,
         relations=linear,
-        darboux=None if darboux is None else _darboux(darboux, there.field.variables, text, factor),
-        darboux_along=None if at is None else _darboux_along(there, at, text),
+        darboux=None if darboux is None else _darboux(darboux, setting.field.variables, text, factor),
+        darboux_along=None if at is None else _darboux_along(setting, at, text),
         zero_levels=None if levels is None else levels.levels,
         other_levels=None
         if others is None
         else [
             doc.OtherLevel.from_result(
-                one,
+                level,
                 text,
-                complete=one.looked and one.complete and not one.drops and not one.undecided,
-                at_any_value=one.looked and one.complete and one.whole,
-                known="proved" if not (one.by_rank and there.field.parameters) else "verified numerically",
+                complete=level.looked and level.complete and not level.drops and not level.undecided,
+                at_any_value=level.looked and level.complete and level.whole,
+                known="proved" if not (level.by_rank and setting.field.parameters) else "verified numerically",
             )
-            for one in others.levels
+            for level in others.levels
         ],
     )
     return written(data)
 
 
-def _darboux(found: DarbouxPolynomials, variables: Sequence[str], text: Write, factor: Write) -> doc.Darboux:
+def _darboux(darboux: DarbouxPolynomials, variables: Sequence[str], text: Write, factor: Write) -> doc.Darboux:
     return doc.Darboux.from_result(
-        found,
+        darboux,
         text,
-        weights=zip(variables, found.weights, strict=True),
-        polynomials=[doc.Polynomial.from_result(one, text, cofactor=factor(one.cofactor)) for one in found.polynomials],
+        weights=zip(variables, darboux.weights, strict=True),
+        polynomials=[
+            doc.Polynomial.from_result(one, text, cofactor=factor(one.cofactor)) for one in darboux.polynomials
+        ],
         not_found=[
-            (one.weight, factor(one.cofactor), one.most - one.products) for one in found.counts if not one.complete
+            (one.weight, factor(one.cofactor), one.most - one.products) for one in darboux.counts if not one.complete
         ],
     )
 
 
-def _darboux_along(there: Setting, found: DarbouxAlong, text: Write) -> doc.DarbouxAlong:
+def _darboux_along(setting: Setting, darboux: DarbouxAlong, text: Write) -> doc.DarbouxAlong:
     values = []
-    for one in found.values:
-        factors = [str(there.quotient_over(one.field, f.cofactor)) for f in one.polynomials]
+    for one in darboux.values:
+        factors = [str(setting.quotient_over(one.field, f.cofactor)) for f in one.polynomials]
         polynomials = [
             doc.Polynomial.from_result(f, text, cofactor=factor)
             for f, factor in zip(one.polynomials, factors, strict=True)
         ]
         values.append((one.value, polynomials, one.complete))
-    return doc.DarbouxAlong.from_result(found, text, values=values)
+    return doc.DarbouxAlong.from_result(darboux, text, values=values)

@@ -4,6 +4,9 @@ A field says what it is in its annotation, ``length: Annotated[float, "in metres
 docstring of its type stands for it.  A field of a type with ``UnsetType`` is left out of the file where nothing is
 given.  A name that is a word of Python has ``_`` behind it, which the file has not.
 
+A part fills itself from a result: a field is found there under its own name, or ``From`` says where, and its type says
+what is made of it (``Part.from_result``).
+
 Other remarks in annotations: bounds and patterns (``msgspec.Meta``), ``words`` that are the only ones, ``Named`` for a
 type that has a name in the schema, and those for ``mbsym.diff``: ``told_apart_by``, ``BY_COORDINATE``,
 ``counted_from``, ``ASIDE``.
@@ -82,16 +85,16 @@ Maker = Callable[[Any, Write], Any]
 @cache
 def _sources(of: type[Struct]) -> dict[str, tuple[Callable[[object], Any] | None, Maker]]:
     """How each field is found in a result, None for those that have to be given, and what is made of it."""
-    return {one.name: (_found(one), _maker(one.type)) for one in fields(of)}
+    return {item.name: (_finder(item), _maker(item.type)) for item in fields(of)}
 
 
-def _found(one: FieldInfo) -> Callable[[object], Any] | None:
-    remarks = get_args(one.type)[1:] if get_origin(one.type) is Annotated else ()
+def _finder(item: FieldInfo) -> Callable[[object], Any] | None:
+    remarks = get_args(item.type)[1:] if get_origin(item.type) is Annotated else ()
     source = next((remark for remark in remarks if isinstance(remark, From)), None)
     if source is None:
-        return attrgetter(one.name) if one.required else None
-    path, by = (source.path or one.name).split("."), source.by
-    may_be_left_out = UnsetType in get_args(get_args(one.type)[0])
+        return attrgetter(item.name) if item.required else None
+    path, by = (source.path or item.name).split("."), source.by
+    may_be_left_out = UnsetType in get_args(get_args(item.type)[0])
 
     def find(result: object) -> Any:
         for name in path:
@@ -179,13 +182,13 @@ class Part(Struct, frozen=True, forbid_unknown_fields=True, rename=lambda name: 
         """
         sources = _sources(cls)
         if type(source) is tuple:
-            given = dict(zip(sources, source, strict=False)) | given
+            given = dict(zip(sources, source, strict=len(source) > len(sources))) | given
         left = [name for name in sources if name not in given]
         if isinstance(source, Struct):  # a part of another file has them already
-            found = given | {name: getattr(source, name) for name in left if hasattr(source, name)}
+            values = given | {name: getattr(source, name) for name in left if hasattr(source, name)}
         else:
-            found = given | {name: find(source) for name in left if (find := sources[name][0]) is not None}
-        return cls(**{name: sources[name][1](x, write) for name, x in found.items()})
+            values = given | {name: find(source) for name in left if (find := sources[name][0]) is not None}
+        return cls(**{name: sources[name][1](x, write) for name, x in values.items()})
 
 
 #: The items of a list belong to the coordinates, one each.
@@ -221,8 +224,8 @@ class Named(str):
 
 def words(*of: type[Enum] | str | int) -> Meta:
     """It is one of these; of an enumeration, one of its names in small letters."""
-    found = [word for one in of for word in ([x.name.lower() for x in one] if isinstance(one, type) else [one])]
-    return Meta(extra_json_schema={"enum": list(dict.fromkeys(found))})
+    listed = [word for one in of for word in ([x.name.lower() for x in one] if isinstance(one, type) else [one])]
+    return Meta(extra_json_schema={"enum": list(dict.fromkeys(listed))})
 
 
 def told_apart_by(*properties: str) -> Meta:
