@@ -123,6 +123,11 @@ class Cell:
     nonlinear: Verdict | None = None
 
     @property
+    def standing(self) -> str:
+        """Whether there is a verdict, and if not, why."""
+        return self.lack or "judged"
+
+    @property
     def judged(self) -> Judged | None:
         """The verdict on the one motion that a map is of."""
         return self.said if isinstance(self.said, Judged) and self.lack is None else None

@@ -12,10 +12,10 @@ from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
 from mbsym.problems.canonical.canonical import DENOMINATORS
+from mbsym.report.documents.base import Part, Write
 from mbsym.report.documents.results import canonical as doc
 from mbsym.report.latex.formulas import width
 from mbsym.report.lengths import formulas
-from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
@@ -77,45 +77,10 @@ TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "P
 
 def data(found: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """The sections of results.json, and what is unavailable."""
-    sections: dict[str, Any] = {}
-    if found.routh is not None:
-        sections["routh"] = _routh(found.routh, write)
-    if found.hamilton is not None:
-        sections["hamilton"] = _hamilton(found.hamilton, write)
-    if found.brackets is not None:
-        sections["brackets"] = _brackets(found.brackets, write)
+    parts: dict[str, type[Part]] = {"routh": doc.Routh, "hamilton": doc.Hamilton, "brackets": doc.Brackets}
+    results = {name: getattr(found, name) for name in parts}
+    sections = {name: parts[name].from_result(form, write) for name, form in results.items() if form is not None}
     return sections, {name: failure(why) for name, why in found.failures}
-
-
-def _routh(found: Routh, write: Write) -> doc.Routh:
-    return doc.Routh.from_result(
-        found,
-        function=write(found.function),
-        mass_matrix=matrix_text(found.mass_matrix, write),
-        linear=column_text(found.linear, write),
-        reduced_potential=write(found.reduced_potential),
-        forcing=column_text(found.forcing, write),
-        ignored_rates=column_text(found.ignored_rates, write),
-    )
-
-
-def _hamilton(found: Hamilton, write: Write) -> doc.Hamilton:
-    return doc.Hamilton(
-        momenta=list(found.momenta),
-        momenta_in_velocities=column_text(found.momenta_in_velocities, write),
-        hamiltonian=write(found.hamiltonian),
-        velocities=column_text(found.velocities, write),
-        rates=column_text(found.rates, write),
-    )
-
-
-def _brackets(found: Brackets, write: Write) -> doc.Brackets:
-    return doc.Brackets(
-        integrals=list(found.names),
-        formulas=column_text(found.formulas, write),
-        matrix=matrix_text(found.matrix, write),
-        in_involution=found.in_involution,
-    )
 
 
 # Long denominators of Hamilton's and Routh's forms, written once: 1/Delta in place of 1/(a sum that no line holds).

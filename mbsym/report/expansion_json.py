@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET, structs
+from msgspec import UNSET
 
 from mbsym.algebra.quotients import Series
 from mbsym.algebra.signs import Condition
@@ -15,8 +15,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.result import Choice, Hurwitz, Outcome
 from mbsym.report.documents import expansion as doc
-from mbsym.report.documents.base import written
-from mbsym.report.plain import Write
+from mbsym.report.documents.base import Write, written
 
 if TYPE_CHECKING:
     from mbsym.simulation.expanded import Measured
@@ -27,8 +26,8 @@ def expansion_json(
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     manifold = expansion_data(found, str)
-    told = doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measured_data(measured))
-    return written(structs.replace(told, roots=manifold.roots, missing=manifold.missing, steady=manifold.steady))
+    measurement = measured_data(measured)
+    return written(doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measurement))
 
 
 def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:

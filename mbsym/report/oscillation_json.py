@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET, UnsetType
 
@@ -31,17 +31,22 @@ def oscillations_json(
 def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
     """A periodic solution; formulas in Python syntax."""
     found = told.found
+
+    def text(x: Any) -> str:
+        return str(told.formula(x))
+
+    # The ring grows as formulas are made, and their shape with it: in the order of the file.
     return doc.Oscillation.from_result(
         found,
         phase=told.phase,
         amplitude=_amplitude(told),
         exponent=_exponent(told),
-        constants=[doc.Constant(variable=name, value=str(told.formula(x))) for name, x in found.constants],
-        frequency=str(told.formula(found.frequency)),
-        corrections=[str(told.formula(x)) for x in found.corrections],
+        constants=[(name, text(x)) for name, x in found.constants],
+        frequency=text(found.frequency),
+        corrections=list(map(text, found.corrections)),
         phase_rate=sum_of_powers(
             (
-                (n, str(told.formula(found.frequency * x)))
+                (n, text(found.frequency * x))
                 for n, x in enumerate((found.tower.one, *found.corrections))
                 if not x.is_zero()
             ),
@@ -54,14 +59,7 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
             )
             for name, one, left in zip(found.names, found.series, found.residuals, strict=False)
         ],
-        drifts=[
-            doc.Drift(
-                variable=one.variable,
-                rates=[str(told.formula(x)) for x in one.rates],
-                coefficients=_series(told, one.waves),
-            )
-            for one in found.drifts
-        ],
+        drifts=[(one.variable, list(map(text, one.rates)), _series(told, one.waves)) for one in found.drifts],
         resonances=[
             doc.Resonance.from_result(
                 one,
@@ -70,10 +68,7 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
             )
             for one in found.divisors
         ],
-        left_out=[doc.LeftOut(variables=list(names), square=str(told.formula(x))) for names, x in found.others],
-        forced=[list(names) for names in found.damped],
-        with_root_zero=[list(names) for names in found.with_zero],
-        roots_not_found=[list(names) for names in found.not_known],
+        left_out=[(names, text(x)) for names, x in found.others],
         taylor=told.taylor,
         conditions=[str(x) for x in _positive(told)],
         measured=measured_data(measured),

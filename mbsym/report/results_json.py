@@ -6,16 +6,15 @@ The types of ``mbsym.report.documents.results`` say what each property is.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET
 
-from mbsym.expressions.table import Table
 from mbsym.expressions.tree import text
 from mbsym.formulas.formula import Formula
 from mbsym.model.quantities import energy_unit, unit_of, units_by_name
-from mbsym.model.system import SmallParameter, System
+from mbsym.model.system import System
 from mbsym.problems.claims import ClaimResult
 from mbsym.report.canonical import data as canonical_data
 from mbsym.report.canonical import forms_of
@@ -23,9 +22,8 @@ from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import plain, written
 from mbsym.report.documents.parts import Counted
 from mbsym.report.documents.results import linearisation
-from mbsym.report.documents.results.claims import Claim, ClaimPart, Counterexample, Repair
+from mbsym.report.documents.results.claims import Claim, ClaimPart
 from mbsym.report.lengths import COUNTED, FILE, withheld
-from mbsym.report.plain import Written, matrix_text
 from mbsym.report.sections import section_of
 from mbsym.report.sections.linearisation import first_order
 from mbsym.report.sections.system import accepted_inertias
@@ -33,8 +31,6 @@ from mbsym.report.words.claims import claim_line, left_side
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.analysis.stages import NoResult
-    from mbsym.problems.state_space import StateSpace
 
 
 def render(analysis: Analysis, problems: Sequence[int]) -> str:
@@ -60,23 +56,21 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
         system=doc.Described.from_result(system),
         coordinates=list(system.coordinates),
         prescribed={item.name: text(item.rate) for item in system.prescribed},
-        parameters=_parameters(system),
+        parameters=[
+            doc.Parameter.from_result(item, text, unit=unit_of(system, item.name) or UNSET)
+            for item in system.parameters
+        ],
         relations={one.name: text(one.value) for one in system.relations} or UNSET,
-        assumptions=[
-            doc.Assumption(left=text(x.left), relation=x.relation, right=text(x.right)) for x in system.assumptions
-        ]
-        or UNSET,
-        small_parameter=_small(system.small) if system.small else UNSET,
-        tables=[_table(one) for one in system.tables] or UNSET,
+        assumptions=[doc.Assumption.from_result(x, text) for x in system.assumptions] or UNSET,
+        small_parameter=doc.SmallParameter.from_result(system.small) if system.small else UNSET,
+        tables=[doc.Table.from_result(x, held=x.held if x.jumps else UNSET) for x in system.tables] or UNSET,
         checks=[doc.SelfCheck(**vars(check)) for check in analysis.checks],
         units=units_by_name(system, [("energy", energy_unit(system))]) or UNSET,
-        motion={one.coordinate: doc.Motion(value=text(one.value), rate=text(one.rate)) for one in system.motion}
-        or UNSET,
+        motion={one.coordinate: doc.Motion.from_result(one, text) for one in system.motion} or UNSET,
         initial=_initial(system) or UNSET,
-        inputs=[doc.Input.from_result(x, held=text(x.held)) for x in system.inputs] or UNSET,
-        outputs=[doc.Output(name=one.name, value=text(one.value)) for one in system.outputs] or UNSET,
-        accepted_inertias=[doc.AcceptedInertia(body=name, violation=reason) for name, reason in accepted.items()]
-        or UNSET,
+        inputs=[doc.Input.from_result(x, text) for x in system.inputs] or UNSET,
+        outputs=[doc.Output.from_result(x, text) for x in system.outputs] or UNSET,
+        accepted_inertias=[doc.AcceptedInertia.from_result(one) for one in accepted.items()] or UNSET,
         claims=[_claim(result, system) for result in analysis.claims] if system.claims else UNSET,
         unavailable=unavailable,
         **sections,
@@ -93,7 +87,7 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
     forms = forms_of(analysis, problems)
     long = withheld([*(stages[number].value for number in COUNTED if number in stages), *forms.results], FILE)
 
-    def write(formula: Formula) -> Written:
+    def write(formula: Formula) -> str | Counted:
         return counted(formula) if id(formula) in long else str(formula)
 
     for number, stage in stages.items():
@@ -101,13 +95,13 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
         if stage.failure is None:
             found[key] = section_of(PROBLEMS[number]).data(stage.value, system, write)
         else:
-            unavailable[key] = _failure(stage.failure)
+            unavailable[key] = doc.Failure.from_result(stage.failure)
     if 5 in stages and stages[5].failure is None:
         told = first_order(analysis, stages[5].value)
         if told["first_order"] is not None:
-            found["state_space"] = _state_space(told["first_order"], write)
+            found["state_space"] = linearisation.StateSpace.from_result(told["first_order"], write)
     if forms.some:
-        sections, missing = canonical_data(forms, write, _failure)
+        sections, missing = canonical_data(forms, write, doc.Failure.from_result)
         found |= sections
         unavailable |= missing
     if system.reactions and 3 in problems:
@@ -118,32 +112,11 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
             tied = analysis.constraints if system.constraints else None
             found["reactions"] = reaction_data(stage.value, tied, write)
         else:
-            unavailable["reactions"] = _failure(stage.failure)
+            unavailable["reactions"] = doc.Failure.from_result(stage.failure)
     state = analysis.optional("first_order") if system.speeds and 5 in problems else None
     if state is not None:
-        found["first_order"] = linearisation.FirstOrder(
-            speeds=list(state.names),
-            values=[write(x) for x in state.values],
-            A=[[write(x) for x in row] for row in state.A],
-            relations=state.relations,
-        )
+        found["first_order"] = linearisation.FirstOrder.from_result(state, write)
     return found
-
-
-def _state_space(found: StateSpace, write: Callable[[Formula], Written]) -> linearisation.StateSpace:
-    matrices = {name: matrix_text(getattr(found, name), write) for name in "ABCD"}
-    return linearisation.StateSpace(states=list(found.states), **matrices)
-
-
-def _small(small: SmallParameter) -> doc.SmallParameter:
-    named = small.leading or UNSET
-    return doc.SmallParameter(small.name, dict(small.powers), list(small.fast), list(small.slow), named)
-
-
-def _table(table: Table) -> doc.Table:
-    points = [[str(x), str(y)] for x, y in table.points]
-    held = table.held if table.jumps else UNSET
-    return doc.Table.from_result(table, points=points, held=held)
 
 
 def _initial(system: System) -> dict[str, doc.Initial]:
@@ -170,51 +143,21 @@ def counted(formula: Formula) -> Counted:
     return Counted(terms=formula.terms, sha256=digest.hexdigest())
 
 
-def _failure(failure: NoResult) -> doc.Failure:
-    return doc.Failure.from_result(failure)
-
-
 def _claim(result: ClaimResult, system: System) -> Claim:
     """One claim; what does not concern it is left out."""
     claim, line = result.claim, claim_line(result)
-    claimed = result.claim.printed or text(result.claim.equals)
-    formulas = {name: getattr(result, name) for name in ("derived", "difference", "factor")}
-    example = result.counterexample
-    return Claim(
-        kind=claim.kind,
-        of=claim.of,
-        entry=list(claim.entry),
-        role=claim.role or UNSET,
+    return Claim.from_result(
+        result,
         place=line.place,
         title=line.title,
         word=line.word,
-        outcome=result.outcome,
-        claimed=claimed if result.claim.right is None else UNSET,
-        **{name: str(formula) for name, formula in formulas.items() if formula is not None},
-        value=result.value or UNSET,
-        digits_right=UNSET if result.digits is None else result.digits,
-        digits_printed=UNSET if result.printed_digits is None else result.printed_digits,
-        remark=result.remark or UNSET,
-        where=result.where or UNSET,
+        claimed=UNSET if claim.right is not None else claim.printed or text(claim.equals),
         difference_is=left_side(result) if result.difference is not None or result.parts else UNSET,
-        counterexample=UNSET if example is None else Counterexample.from_result(example),
         parts=[
-            ClaimPart(
-                of=str(part.factor) if part.power is None else f"{result.claim.variable}**{part.power}",
-                difference=str(part.difference),
-                same_as=part.same_as,
-                repairs=[Repair(abbreviation=name, add=str(change)) for name, change in part.repairs],
+            ClaimPart.from_result(
+                part, of=str(part.factor) if part.power is None else f"{claim.variable}**{part.power}"
             )
             for part in result.parts
         ]
         or UNSET,
     )
-
-
-def _parameters(system: System) -> list[doc.Parameter]:
-    return [
-        doc.Parameter.from_result(
-            item, value=None if item.value is None else text(item.value), unit=unit_of(system, item.name) or UNSET
-        )
-        for item in system.parameters
-    ]

@@ -27,6 +27,7 @@ Schema = dict[str, Any]
 
 #: What each kind of file is: a type of this name, in a module of this name unless another one has it.
 TITLES = {
+    "average": "What mbsym average --json prints",
     "branches": "mbsym equilibria --vary: branches.json",
     "diff": "mbsym diff --format json",
     "ensemble": "ensemble.json of mbsym simulate --vary",
@@ -35,7 +36,9 @@ TITLES = {
     "expansion": "What mbsym expand --json prints",
     "extremes": "extremes.json of mbsym extremes",
     "floquet": "floquet.json of mbsym floquet",
+    "groups": "What mbsym groups --json prints",
     "integrals": "What mbsym integrals --json prints",
+    "inverse": "What mbsym inverse --json prints",
     "lyapunov": "lyapunov.json of mbsym lyapunov",
     "map": "mbsym map: map.json",
     "nonlinear": "mbsym nonlinear --json",
@@ -46,9 +49,17 @@ TITLES = {
     "simulation": "simulation.json of mbsym simulate",
     "sweep": "sweep.json of mbsym sweep",
     "symmetries": "What mbsym symmetries --json prints",
+    "trim": "What mbsym trim --json prints",
 }
 
-_MODULES = {"equilibria_map": "branches", "floquet": "orbit", "lyapunov": "orbit", "sweep": "ensemble"}
+_MODULES = {
+    "average": "expansion",
+    "equilibria_map": "branches",
+    "floquet": "orbit",
+    "inverse": "trim",
+    "lyapunov": "orbit",
+    "sweep": "ensemble",
+}
 
 _SIMPLE: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}
 _BOUNDS = {

@@ -167,8 +167,17 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "it cannot be averaged", True)
 
 
+def as_json(asked: Asked, request: Request, found: Found) -> str:
+    from mbsym.report.documents.base import written
+    from mbsym.report.documents.expansion import Average
+    from mbsym.report.expansion_json import measured_data
+
+    measurement = measured_data(found.measured)
+    return written(Average.from_result(found.averaged, system=asked.system.name, measured=measurement))
+
+
 STUDY = Study(
-    "average", Request, derive, answer, refusal, unfit,
+    "average", Request, derive, answer, refusal, unfit, as_json,
     matrices=True, held=False, out=Single("Write the averaged description here."), document=document,
     letters=True,
 )  # fmt: skip

@@ -171,7 +171,14 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "the groups cannot be found")
 
 
+def as_json(asked: Asked, request: Request, found: Found) -> str:
+    from mbsym.report.documents.base import written
+    from mbsym.report.documents.groups import Groups as Document
+
+    return written(Document.from_result(found.groups, system=asked.system.name))
+
+
 STUDY = Study(
-    "groups", Request, derive, answer, refusal,
+    "groups", Request, derive, answer, refusal, json=as_json,
     matrices=True, constraints=True, held=False, out=Single("Write the description in groups here."), document=document,
 )  # fmt: skip

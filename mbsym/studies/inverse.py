@@ -83,7 +83,15 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return no_program(error, asked, request)
 
 
-STUDY = Study("inverse", Request, derive, answer, refusal, unfit, constraints=True, held=False)
+def as_json(asked: Asked, request: Request, found: InverseDynamics) -> str:
+    from mbsym.report.documents.base import written
+    from mbsym.report.documents.trim import Inverse
+
+    inputs = zip(found.names, found.inputs, strict=True)
+    return written(Inverse.from_result(found, system=asked.system.name, inputs=inputs))
+
+
+STUDY = Study("inverse", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False)
 
 
 def inverse_dynamics(

@@ -52,9 +52,10 @@ def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
 
 
 def as_json(asked: Asked, request: Request, found: Symmetries) -> str:
-    from mbsym.report.integrals_json import symmetries_json
+    from mbsym.report.documents.base import written
+    from mbsym.report.documents.symmetries import Symmetries as Document
 
-    return symmetries_json(asked.system, request.values, found)
+    return written(Document.from_result(found, system=asked.system.name, values=request.values))
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

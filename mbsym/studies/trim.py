@@ -129,4 +129,11 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "no values found")
 
 
-STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, constraints=True, held=False, out=None)
+def as_json(asked: Asked, request: Request, found: Trim) -> str:
+    from mbsym.report.documents.base import written
+    from mbsym.report.documents.trim import Trim as Document
+
+    return written(Document.from_result(found, system=asked.system.name))
+
+
+STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import runpy
 from pathlib import Path
@@ -9,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 from scipy.interpolate import CubicSpline
 
 import mbsym
 from mbsym.numerics.inverse import NotLinear
 from mbsym.report.code import python_module
+from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
 POLE = Path(__file__).parents[2] / "systems" / "cart-pole.yaml"
@@ -150,3 +153,15 @@ loads: [{generalized force: {x: u, y: -y}}]
     assert np.abs(found.residual).max() == pytest.approx(3.8e-9, rel=0.02)  # at t = 1: 2 sin 1 + 4 cos 1 = 3.84
     assert 1e-9 < found.left < 5e-9
     assert not found.exact
+
+
+@pytest.mark.parametrize(("theta", "exact"), [("pi", True), ("pi/2", False)])
+def test_the_inputs_of_a_motion_as_json(theta, exact, tmp_path):
+    """At a constant speed the friction 0.1 p' remains where the pole hangs; level it falls, whatever the force is."""
+    words = ["--motion", "p=t", "--motion", f"theta={theta}", "--time", "2", "--samples", "3", "--json"]
+    done = CliRunner().invoke(main, ["inverse", str(POLE), *words, "--out", str(tmp_path)])
+    assert done.exit_code == (0 if exact else 3), done.output
+    found = json.loads(done.stdout)
+    assert list(Draft202012Validator(schema("inverse")).iter_errors(found)) == []
+    assert (found["exact"], found["unique"], found["times"]) == (exact, True, [0, 1, 2])
+    assert found["inputs"]["F"] == pytest.approx([0.1] * 3) or not exact

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import sympy
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 from scipy.integrate import solve_ivp
 
 import mbsym
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis import Analysis
 from mbsym.analysis.averaged import averaged_system, averaging_of
+from mbsym.report.schemas import schema
 from mbsym.report.words.expansion_measured import contradicts
 from mbsym.simulation.averaged import measured
 from mbsym.source import read, to_yaml
@@ -295,3 +299,18 @@ def test_relations_that_tie_what_is_small_or_large_are_refused(relation):
     tied = mbsym.loads(text.replace("motion:", f"relations: {{{relation}}}\nmotion:"))
     with pytest.raises(NoClosedForm, match="is tied by the relation"):
         averaging_of(tied, "phi")
+
+
+def test_kapitza_s_potential_as_json():
+    """m h^2 nu^2 sin(theta)^2/4 and the weight, m g l cos(theta), but for constants (Landau and Lifshitz, 30)."""
+    done = CliRunner().invoke(main, ["average", "systems/shaken-pendulum.yaml", "--json", "--time", "1"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert list(Draft202012Validator(schema("average")).iter_errors(found)) == []
+    theta, added = sympy.Symbol("theta"), sympy.sympify("m*h**2*nu**2*sin(theta)**2/4")
+    for key, by_hand in (("vibrational", added), ("potential", added + sympy.sympify("m*g*l*cos(theta)"))):
+        assert sympy.simplify(sympy.diff(sympy.sympify(found[key]) - by_hand, theta)) == 0
+    assert found["phases"] == ["phi"]
+    assert found["rates"] == ["nu"]
+    assert found["orders"] == {"h": 1}
+    assert len(found["measured"]["distances"]) == len(found["measured"]["parts"])

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.algebra.base import Lowering
@@ -16,6 +19,7 @@ from mbsym.expressions.place import Complaints, Span
 from mbsym.mechanics.variables import ring_environment
 from mbsym.model.scaling import Scaling
 from mbsym.model.system import System
+from mbsym.report.schemas import schema
 from mbsym.source import read
 from mbsym.source.scaling import read_scaling
 from mbsym.studies.groups import in_scale
@@ -238,3 +242,23 @@ def test_a_run_in_dimensionless_variables_tells_its_units_and_names_no_physical_
     assert "mass, in units in which w = 1, m = 1" in told
     assert "Eigenvalues there, in the time t, of x: +- 1 i" in " ".join(told.split())
     assert "physical" not in told
+
+
+def test_groups_as_json_have_no_dimension() -> None:
+    """Of m, k, l0, g and r in kg, m, s: Buckingham leaves 4 - 3 groups; rate and length have the powers of theirs."""
+    dimensions = {"m": (1, 0, 0), "k": (1, 0, -2), "l0": (0, 1, 0), "g": (0, 1, -2), "r": (0, 1, 0)}
+
+    def of(powers: dict[str, str]) -> list[Fraction | int]:
+        return [
+            sum((Fraction(x) * dimensions[name][axis] for name, x in powers.items()), Fraction(0)) for axis in range(3)
+        ]
+
+    done = CliRunner().invoke(main, ["groups", str(SYSTEMS / "spring-pendulum.yaml"), "--json"])
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert list(Draft202012Validator(schema("groups")).iter_errors(found)) == []
+    assert len(found["groups"]) == 1
+    assert of({found["groups"][0]["parameter"]: "1", **found["groups"][0]["powers"]}) == [0, 0, 0]
+    assert of(found["rate"]) == [0, 0, -1]
+    assert [(one["parameter"], of(one["powers"])) for one in found["lengths"]] == [("r", [0, 1, 0])]
+    assert (found["idle"], found["unused"]) == ([], 0)

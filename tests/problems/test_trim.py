@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 from typing import Any
 
 import pytest
+import sympy
 from click.testing import CliRunner
+from jsonschema import Draft202012Validator
 
 import mbsym
 from mbsym.algebra.failures import Failure
+from mbsym.report.schemas import schema
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: Held\n"
@@ -192,3 +196,31 @@ def test_what_is_held_is_told_and_divisors_leave_open_what_they_exclude(
     file.write_text(text)
     done = CliRunner().invoke(main, ["trim", str(file), "--solve", name])
     assert not {line.strip() for line in lines} - {line.strip() for line in done.output.splitlines()}, done.output
+
+
+def test_what_holds_a_pendulum_as_json(tmp_path: Any) -> None:
+    """tau = m g l cos(a) by virtual work, F at rest; with both asked for one of them is free."""
+    path = tmp_path / "held.yaml"
+    path.write_text(PENDULUM, encoding="utf-8")
+    torque = sympy.sympify("m*g*l*cos(a)")
+    for options, free in ((["--solve", "tau"], set()), ([], {"tau", "F"})):
+        done = CliRunner().invoke(main, ["trim", str(path), "--json", *options])
+        assert done.exit_code == 0, done.output
+        found = json.loads(done.stdout)
+        assert list(Draft202012Validator(schema("trim")).iter_errors(found)) == []
+        assert found["possible"] is True
+        assert set(found["free"]) <= free
+        assert len(found["free"]) == bool(free)
+        values = {name: sympy.sympify(value) for name, value in found["solved"].items()}
+        tau, force = (values.get(name, sympy.Symbol(name)) for name in ("tau", "F"))
+        assert sympy.simplify(tau + (2 * force if free else 0) - torque) == 0
+
+
+def test_where_no_values_hold_it_json_says_so(tmp_path: Any) -> None:
+    """An input that does nothing holds no pendulum that is level: m g l cos(0) is not zero."""
+    path = tmp_path / "held.yaml"
+    text = PENDULUM.replace("{q: tau + 2*F}", "{q: 0*tau}").replace("motion: {q: a}", "motion: {q: 0}")
+    path.write_text(text, encoding="utf-8")
+    done = CliRunner().invoke(main, ["trim", str(path), "--json"])
+    assert done.exit_code == 1, done.output
+    assert json.loads(done.stdout)["possible"] is False

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from enum import Enum
+from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Annotated, Any
 
 import pytest
@@ -22,7 +25,7 @@ from mbsym.problems.normal_forms import Theorem
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Part, told_apart_by, written
+from mbsym.report.documents.base import From, Part, told_apart_by, words, written
 from mbsym.report.results_json import render
 from mbsym.report.runs.simulation_json import simulation_json
 from mbsym.report.schemas import names, schema, schema_of
@@ -186,3 +189,35 @@ def test_the_other_files_follow_theirs() -> None:
         found = json.loads(done.stdout)
         assert complaints("equilibria", found) == []
         assert complaints("equilibria", found | {"complete": "yes"})
+
+
+class Rank(Enum):
+    FULL = "of full rank"
+
+
+class Kept(Part, frozen=True):
+    length: Annotated[str, "exact", From("size.length")]
+    rank: Annotated[str, words(Rank), "in small letters"]
+    largest: Annotated[float | None, "null where it is infinite"]
+    rods: Annotated[list[Rod], "as tuples"]
+    names: Annotated[dict[str, str], "from pairs"]
+    beside: Annotated[str | UnsetType, "left out where it is empty", From()] = UNSET
+    given: Annotated[int, "where nothing is given"] = 7
+
+
+def test_a_part_fills_itself_from_a_result() -> None:
+    """By names, paths and types: what has to be text is written, None stays, what is empty may be left out."""
+    result = SimpleNamespace(
+        size=SimpleNamespace(length=Fraction(1, 3)), rank=Rank.FULL, largest=float("inf"), rods=[(1.0, 2.0, "pole")],
+        names=(("a", Fraction(1, 2)),), beside=(), given=8,
+    )  # fmt: skip
+    rod = {"length": 1.0, "mass": 2.0, "from": "pole"}
+    filled = {"length": "1/3", "rank": "full", "largest": None, "rods": [rod], "names": {"a": "1/2"}, "given": 7}
+    assert json.loads(written(Kept.from_result(result))) == filled
+    assert Kept.from_result(result, lambda x: f"<{x}>").names == {"a": "<1/2>"}
+    assert Kept.from_result(result, beside="b").beside == "b"
+    assert Kept.from_result(SimpleNamespace(**vars(result) | {"size": None}), length="2").length == "2"
+    with pytest.raises(AttributeError, match="rank"):
+        Kept.from_result(SimpleNamespace(size=result.size))
+    with pytest.raises(ValueError, match="longer"):
+        Rod.from_result((1.0, 2.0, "pole", "one more"))

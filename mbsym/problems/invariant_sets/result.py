@@ -101,6 +101,16 @@ class StationarySet:
     #: Real points: whether one was found at rational values that the description allows.
     real: bool
 
+    @property
+    def invariance(self) -> str:
+        """How it is known to be invariant."""
+        return {True: "proved", None: "undecided", False: "failed"}[self.invariant]
+
+    @property
+    def proved_variation(self) -> SecondVariation | None:
+        """The second variation where the set is proved to be invariant."""
+        return self.variation if self.invariant else None
+
 
 @dataclass(frozen=True)
 class Family:
@@ -114,6 +124,11 @@ class Family:
     singular: int = 0
     #: Pieces that are not invariant by themselves, left out: the whole set of stationary points is.
     parts: int = 0
+
+    @property
+    def complete(self) -> bool:
+        """Whether no branch was left aside."""
+        return not (self.unfinished or self.singular or self.parts)
 
 
 @dataclass(frozen=True, repr=False)
@@ -135,4 +150,4 @@ class InvariantSets(Shown):
     @property
     def complete(self) -> bool:
         """Whether no branch was left aside."""
-        return not any(family.unfinished or family.singular or family.parts for family in self.families)
+        return all(family.complete for family in self.families)

@@ -67,6 +67,11 @@ class PermanentRotations:
     quadratic: tuple[str, ...]
 
     @property
+    def components(self) -> list[tuple[str, str, str]]:
+        """Constant, linear and quadratic part of each component."""
+        return list(zip(self.constant, self.linear, self.quadratic, strict=True))
+
+    @property
     def loaded(self) -> bool:
         """Whether something acts on the body at rest."""
         return any(x != "0" for x in self.constant)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from mbsym.maps.boundaries import OF_EQUILIBRIA
 from mbsym.maps.branches_events import Event
 from mbsym.maps.branches_result import Doubt
 from mbsym.maps.result import Lack
-from mbsym.report.documents.base import ASIDE, Hashed, Part, words
-from mbsym.report.documents.parts import Axis, CoordinateValue, Number, Verdict
+from mbsym.report.documents.base import ASIDE, From, Hashed, Part, words
+from mbsym.report.documents.parts import AnglesOf, Axis, Coordinates, Number, Verdict
 
 
 class Remark(Part, frozen=True):
@@ -22,9 +22,9 @@ class Remark(Part, frozen=True):
 class Equilibrium(Part, frozen=True):
     """a relative equilibrium"""
 
-    coordinates: Annotated[list[CoordinateValue], "constant coordinates"]
-    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
-    stability: Verdict
+    coordinates: Coordinates
+    angles_of: AnglesOf
+    stability: Annotated[Verdict, From("verdict")]
 
 
 class Interval(Part, frozen=True):
@@ -42,15 +42,21 @@ class Interval(Part, frozen=True):
 class CriticalValueEquilibrium(Part, frozen=True):
     """an equilibrium"""
 
-    coordinates: Annotated[list[CoordinateValue], "constant coordinates"]
-    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
-    event: Annotated[Event, "what it is on the curve of equilibria"]
-    below: Annotated[int | None, "equilibria near it at smaller values; null where it is not known"]
-    above: Annotated[int | None, "equilibria near it at larger values"]
-    derivatives: Annotated[
-        dict[str, float], "of the reduced equation g(y, p) = 0, rounded; their signs and zeros are exact"
+    coordinates: Coordinates
+    angles_of: AnglesOf
+    event: Annotated[Event, "what it is on the curve of equilibria", From("named.event")]
+    below: Annotated[
+        int | None, "equilibria near it at smaller values; null where it is not known", From("named.below")
     ]
-    stability: Annotated[Verdict | None, "its stability at the critical value; null where it was not sought"]
+    above: Annotated[int | None, "equilibria near it at larger values", From("named.above")]
+    derivatives: Annotated[
+        dict[str, float],
+        "of the reduced equation g(y, p) = 0, rounded; their signs and zeros are exact",
+        From("named.derivatives"),
+    ]
+    stability: Annotated[
+        Verdict | None, "its stability at the critical value; null where it was not sought", From("verdict")
+    ]
 
 
 class CriticalValue(Part, frozen=True):
@@ -83,18 +89,30 @@ class CriticalValue(Part, frozen=True):
         "constraints singular",
     ]
     counts_agree: Annotated[
-        bool | None, "whether the events account for the counts on both sides; null where there is nothing to compare"
+        bool | None,
+        "whether the events account for the counts on both sides; null where there is nothing to compare",
+        From("balance"),
     ]
     equilibria: Annotated[
-        list[CriticalValueEquilibrium] | None, "the isolated equilibria there; null where they are not all solved"
+        list[CriticalValueEquilibrium] | None,
+        "the isolated equilibria there; null where they are not all solved",
+        From("meetings"),
     ]
+
+
+#: Digits of numbers that are followed in floating point.
+DIGITS = 10
+
+
+def _rounded(value: Any) -> Any:
+    return float(f"{value:.{DIGITS}g}") if isinstance(value, float) else [_rounded(x) for x in value]
 
 
 class Branch(Part, frozen=True):
     """a piece"""
 
     interval: Annotated[int, "the interval, from 0"]
-    equilibrium: Annotated[int, "which of the equilibria at its sample, from 0"]
+    equilibrium: Annotated[int, "which of the equilibria at its sample, from 0", From("number")]
     throughout: Annotated[bool, "whether the verdict at the sample is proved for the whole open interval"]
     start: Annotated[
         int | None,
@@ -102,8 +120,13 @@ class Branch(Part, frozen=True):
         "where it is not told",
     ]
     end: Annotated[int | None, "the same at the upper one"]
-    parameter: Annotated[list[float], "values of the parameter, rounded", ASIDE]
-    points: Annotated[list[list[float]], "coordinates there, in the order of the equilibrium's, rounded", ASIDE]
+    parameter: Annotated[list[float], "values of the parameter, rounded", ASIDE, From(by=_rounded)]
+    points: Annotated[
+        list[list[float]],
+        "coordinates there, in the order of the equilibrium's, rounded",
+        ASIDE,
+        From("values", _rounded),
+    ]
 
 
 class Branches(Hashed, frozen=True, kw_only=True):
@@ -121,7 +144,7 @@ class Branches(Hashed, frozen=True, kw_only=True):
     critical_values: Annotated[
         list[CriticalValue], "values at which equilibria bifurcate or stability may change, ascending"
     ]
-    branches: Annotated[list[Branch], "pieces of branches over one interval each"]
+    branches: Annotated[list[Branch], "pieces of branches over one interval each", From("pieces")]
 
 
 #: Where a curve comes from.
@@ -147,10 +170,11 @@ class Region(Part, frozen=True):
     standing: Annotated[str, words(*STANDINGS), "what is known of their number"]
     count: Annotated[int | None, "how many there are; null where they are not counted"]
     stable: Annotated[int | None, "how many of them are stable at the sample"]
-    stable_throughout: Annotated[bool, "whether those are proved to be stable in the whole region"]
+    stable_throughout: Annotated[bool, "whether those are proved to be stable in the whole region", From("throughout")]
     found_by_newton_elsewhere: Annotated[
         int | None,
         "how many Newton's method found and proved at another point of the region; null where it was not asked",
+        From("confirmed"),
     ]
     area: Annotated[float, "its area, rounded"]
     equilibria: Annotated[list[Equilibrium], "those at the sample"]

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import UNSET, Meta, UnsetType
 
-from mbsym.report.documents.base import ASIDE, Hashed, Part, told_apart_by, words
+from mbsym.report.documents.base import ASIDE, From, Hashed, Part, told_apart_by, words
 
 
 class Varied(Part, frozen=True):
@@ -71,8 +71,8 @@ class Ensemble(Hashed, frozen=True, kw_only=True):
     sampling: Annotated[str, words("grid", "random", "sobol"), "how members were chosen"]
     time: Time
     method: Annotated[str, "integration method"]
-    tolerance: Annotated[float | None, "error of one step"]
-    step: Annotated[float | None, "length of a step"]
+    tolerance: Annotated[float | None, "error of one step", From("setting.tolerance")]
+    step: Annotated[float | None, "length of a step", From("setting.step")]
     ended: Annotated[list[Ended], "members that ended early", told_apart_by("member")]
     final: Annotated[dict[str, Final], "the spread of every coordinate and velocity at the last time, by name"]
     compared: Compared

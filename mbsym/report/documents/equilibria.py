@@ -6,25 +6,25 @@ from typing import Annotated
 
 from msgspec import UNSET, UnsetType
 
-from mbsym.report.documents.base import Head, Part
-from mbsym.report.documents.parts import CoordinateValue, Verdict
+from mbsym.report.documents.base import From, Head, Part
+from mbsym.report.documents.parts import AnglesOf, Coordinates, CoordinateValue, Verdict
 
 
 class Equilibrium(Part, frozen=True):
     """a relative equilibrium"""
 
-    coordinates: Annotated[list[CoordinateValue], "constant coordinates"]
-    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
-    arbitrary: Annotated[list[str], "coordinates that may have any value"]
-    descriptions: Annotated[int, "how many sets of coordinates describe the same equilibrium"]
+    coordinates: Coordinates
+    angles_of: AnglesOf
+    arbitrary: Annotated[list[str], "coordinates that may have any value", From("free")]
+    descriptions: Annotated[int, "how many sets of coordinates describe the same equilibrium", From("described")]
     proof: Annotated[str, "exact, or how it is proved to exist"]
-    stability: Verdict
+    stability: Annotated[Verdict, From("verdict")]
 
 
 class Beyond(Equilibrium, frozen=True):
     """one outside of the declared signs"""
 
-    negative: Annotated[list[str], "what is negative there"]
+    negative: Annotated[list[str], "what is negative there", From("beyond")]
 
 
 class Family(Part, frozen=True):
@@ -33,9 +33,9 @@ class Family(Part, frozen=True):
     dimension: Annotated[int, "its dimension"]
     equations: Annotated[list[str], "equations that it obeys"]
     free: Annotated[list[str], "coordinates that are free"]
-    angles_of: Annotated[str | None, "the body whose other angles these are; null for the description's own"]
+    angles_of: AnglesOf
     sample: Annotated[list[CoordinateValue], "one member"]
-    stability_of_the_sample: Verdict
+    stability_of_the_sample: Annotated[Verdict, From("verdict")]
 
 
 class RotationEquation(Part, frozen=True):
@@ -65,17 +65,19 @@ class PermanentRotations(Part, frozen=True):
         "is real",
     ]
     one_parameter_family: Annotated[
-        bool, "whether it is proved that these axes, with real rates, are curves of the sphere"
+        bool, "whether it is proved that these axes, with real rates, are curves of the sphere", From("family")
     ]
     one_direction_of_each_line: Annotated[
         bool,
         "whether exactly one of g and -g carries a rotation where axes vanishes, and neither constant nor quadratic "
         "does",
+        From("either"),
     ]
     equations: Annotated[
         list[RotationEquation],
         "constant + rate linear + rate**2 quadratic = 0, three components in the axes of the body: necessary and "
         "sufficient with |g| = 1",
+        From("components"),
     ]
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Generic, TypeVar
 from msgspec import UNSET, UnsetType, field
 
 from mbsym.problems.small_parameter.result import Choice, Outcome
-from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
+from mbsym.report.documents.base import ASIDE, Format, Head, Part, SystemName, Version, told_apart_by, version
 
 #: Text, or in results.json text or its length.
 F = TypeVar("F")
@@ -117,4 +117,16 @@ class Expansion(SlowManifold[str], frozen=True, kw_only=True):
     version: Version = field(default_factory=version)
     system: SystemName
     values: Annotated[dict[str, str], "numbers that were put in for parameters"]
+    measured: Annotated[Measured, ASIDE]
+
+
+class Average(Head, frozen=True, kw_only=True):
+    """The effective potential of a system that is shaken fast, and how good it is; formulas in Python syntax."""
+
+    phases: Annotated[list[str], "the fast phases"]
+    rates: Annotated[list[str], "their rates, of order 1/eps"]
+    orders: Annotated[dict[str, int], "powers of eps of the amplitudes; all else is taken as of order 1"]
+    vibrational: Annotated[str, "what the phases add to the potential energy"]
+    potential: Annotated[str, "the effective potential energy, but for constants"]
+    beside: Annotated[list[str], "coordinates on which forces act that have no part in it, and act as they did"]
     measured: Annotated[Measured, ASIDE]

@@ -2,24 +2,44 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import UNSET, UnsetType
 
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Head, Part, words
+from mbsym.report.documents.base import From, Head, Part, words
 from mbsym.report.documents.parts import TheoremName
+
+if TYPE_CHECKING:
+    from mbsym.numerics.extremes.singular import Value
+
+
+def _labels(values: Sequence[Value]) -> list[str]:
+    return [value.label for value in values]
+
+
+def _rounded(digits: Any) -> Any:
+    return {name: round(x, 2) for name, x in digits.items()} if isinstance(digits, Mapping) else round(digits, 2)
+
+
+def _rounded_to_3(cost: float) -> float:
+    return round(cost, 3)
 
 
 class Set(Part, frozen=True):
     """one set, whatever the coordinates are that it does not name"""
 
     names: Annotated[list[str], "the coordinates that decide"]
-    values: Annotated[list[str], "values of the one coordinate, exact where they are multiples of pi or rational"]
+    values: Annotated[
+        list[str], "values of the one coordinate, exact where they are multiples of pi or rational", From(by=_labels)
+    ]
     equation: Annotated[str, "a factor of det M that vanishes there"]
     places: Annotated[list[dict[str, float]], "points of the set"]
     finite: Annotated[bool, "of several coordinates: there are no other points"]
-    fails: Annotated[str, words("coordinates", "model", "coordinates and model", "not told apart"), "what fails there"]
+    fails: Annotated[
+        str, words("coordinates", "model", "coordinates and model", "not told apart"), "what fails there", From("kind")
+    ]
     joint: Annotated[str, "the body two of whose turns are about one axis there, or empty"]
     proved: Annotated[bool, "whether that is proved, not found by a search"]
 
@@ -66,10 +86,12 @@ class Compensated(Part, frozen=True):
 
     subject: Annotated[str, "the parameter that is extreme, or empty"]
     size: Annotated[float, "the factor"]
-    operations_in_pairs: Annotated[int, "how many operations"]
-    digits_without: Annotated[float, "fewest digits of the plain kernel at the states looked at"]
-    digits_with: Annotated[float, "fewest digits of the kernel that is used"]
-    cost: Annotated[float, "operations, as a multiple of the plain kernel's"]
+    operations_in_pairs: Annotated[int, "how many operations", From("found.sensitive")]
+    digits_without: Annotated[
+        float, "fewest digits of the plain kernel at the states looked at", From("found.before", _rounded)
+    ]
+    digits_with: Annotated[float, "fewest digits of the kernel that is used", From("found.after", _rounded)]
+    cost: Annotated[float, "operations, as a multiple of the plain kernel's", From("found.cost", _rounded_to_3)]
 
 
 class Row(Part, frozen=True):
@@ -79,12 +101,14 @@ class Row(Part, frozen=True):
     subject: Annotated[str, "what is extreme"]
     size: Annotated[float, "how extreme"]
     quantity: Annotated[str, "the quantity"]
-    digits: Annotated[dict[str, float], "correct digits, by arithmetic"]
-    digits_of_worst_entry: Annotated[dict[str, float], "correct digits, by arithmetic"]
-    formula_digits: Annotated[float, "digits that the formula loses beyond the question, float64"]
-    condition: Annotated[float | None, "condition of the question; null where it is infinite"]
-    verdict: Annotated[str, "what loses the digits: question, formula, none"]
-    bits: Annotated[int, "precision of the reference"]
+    digits: Annotated[dict[str, float], "correct digits, by arithmetic", From("found.digits", _rounded)]
+    digits_of_worst_entry: Annotated[dict[str, float], "correct digits, by arithmetic", From("found.worst", _rounded)]
+    formula_digits: Annotated[
+        float, "digits that the formula loses beyond the question, float64", From("found.formula", _rounded)
+    ]
+    condition: Annotated[float | None, "condition of the question; null where it is infinite", From("found.condition")]
+    verdict: Annotated[str, "what loses the digits: question, formula, none", From("found.verdict")]
+    bits: Annotated[int, "precision of the reference", From("found.bits")]
 
 
 class StabilityAt(Part, frozen=True):
@@ -93,9 +117,9 @@ class StabilityAt(Part, frozen=True):
     kind: Annotated[str, "the kind of ladder"]
     subject: Annotated[str, "what is extreme"]
     size: Annotated[float, "how extreme"]
-    exact: Annotated[Word, "the exact verdict"]
-    theorems: Annotated[list[TheoremName], "the theorems that prove it"]
-    floats: Annotated[dict[str, str], "what eigenvalues in an arithmetic say"]
+    exact: Annotated[Word, "the exact verdict", From("judged.exact.word")]
+    theorems: Annotated[list[TheoremName], "the theorems that prove it", From("judged.exact.theorems")]
+    floats: Annotated[dict[str, str], "what eigenvalues in an arithmetic say", From("judged.floats")]
     floats_wrong: Annotated[dict[str, bool], "whether that is wrong"]
 
 
@@ -114,4 +138,4 @@ class Extremes(Head, frozen=True, kw_only=True):
     ]
     rows: Annotated[list[Row], "measurements"]
     stability: Annotated[list[StabilityAt], "verdicts"]
-    singular_positions: SingularPositions | UnsetType = UNSET
+    singular_positions: Annotated[SingularPositions | UnsetType, From("positions")] = UNSET

@@ -7,23 +7,25 @@ from typing import Annotated, Literal
 from msgspec import field
 
 from mbsym.problems.polynomial_integrals.result import Obstacle
-from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, version, words
+from mbsym.report.documents.base import Format, From, Part, SystemName, Version, told_apart_by, version, words
 
 
 class Integral(Part, frozen=True):
     weight: Annotated[int, "weighted degree"]
     name: Annotated[str, "name in problem 7; empty for one that it does not list"]
-    new: Annotated[bool, "whether problem 7 does not list it"]
-    formula: Annotated[str, "in Python syntax"]
+    new: Annotated[bool, "whether problem 7 does not list it", From("is_new")]
+    formula: Annotated[str, "in Python syntax", From("polynomial")]
     independent: Annotated[bool, "of those before it, as a function"]
-    independence: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known"]
+    independence: Annotated[
+        str, words("proved", "verified numerically", "undecided"), "how that is known", From("certainty")
+    ]
 
 
 class Count(Part, frozen=True):
     weight: Annotated[int, "of this weight, or up to it where the equations are not quasi-homogeneous"]
     monomials: Annotated[int, "unknown coefficients"]
-    at_most: Annotated[int, "independent linear combinations that are integrals, at most"]
-    found: Annotated[int, "those that products of the listed ones span, at least"]
+    at_most: Annotated[int, "independent linear combinations that are integrals, at most", From("most")]
+    found: Annotated[int, "those that products of the listed ones span, at least", From("products")]
 
 
 class WeightedIntegral(Part, frozen=True):
@@ -32,26 +34,33 @@ class WeightedIntegral(Part, frozen=True):
 
 
 class OnLevel(Part, frozen=True):
-    zero: Annotated[str, "name of the integral that vanishes"]
+    zero: Annotated[str, "name of the integral that vanishes", From("level.name")]
     integrals: Annotated[list[WeightedIntegral], "whose derivatives it divides", told_apart_by("formula")]
 
 
 class SpecialValue(Part, frozen=True):
     value: Annotated[str, "rational number"]
     integrals: Annotated[list[WeightedIntegral], "that hold everywhere", told_apart_by("formula")]
-    on_levels: Annotated[list[OnLevel], "that hold where another one vanishes", told_apart_by("zero")]
+    on_levels: Annotated[list[OnLevel], "that hold where another one vanishes", told_apart_by("zero"), From("levels")]
     complete: Annotated[bool, "proved: no others that hold everywhere, of weight up to the degree"]
+
+
+UndecidedAtZerosOf = Annotated[
+    list[list[str]],
+    "polynomials by their coefficients, the lowest first",
+    From("irrational", lambda polynomials: [p.coeffs() for p in polynomials]),
+]
 
 
 class Along(Part, frozen=True):
     """special values of one parameter; null where none was varied"""
 
-    parameter: Annotated[str, "its name"]
+    parameter: Annotated[str, "its name", From("name")]
     low: Annotated[str, "rational number"]
     high: Annotated[str, "rational number"]
     values: Annotated[list[SpecialValue], "rational values with further integrals", told_apart_by("value")]
-    undecided_at: Annotated[list[str], "values at which there may be more than is listed"]
-    undecided_at_zeros_of: Annotated[list[list[str]], "polynomials by their coefficients, the lowest first"]
+    undecided_at: Annotated[list[str], "values at which there may be more than is listed", From("undecided")]
+    undecided_at_zeros_of: UndecidedAtZerosOf
     weights: Annotated[
         dict[str, int] | None,
         "weights of the variables where a constant more made the equations quasi-homogeneous, and unit vectors have "
@@ -61,29 +70,40 @@ class Along(Part, frozen=True):
         bool,
         "proved for all other values, but for algebraic numbers whose polynomials over the integers need "
         "coefficients beyond 10^9",
+        From("whole"),
     ]
-    no_other_rational: Annotated[bool, "proved for all other rational values with numerator and denominator up to 10^9"]
+    no_other_rational: Annotated[
+        bool, "proved for all other rational values with numerator and denominator up to 10^9", From("usual")
+    ]
 
 
 class SpecialCase(Part, frozen=True):
-    vanishing: Annotated[list[str], "what of the parameters vanishes"]
-    integrals: Annotated[list[WeightedIntegral], "that hold everywhere", told_apart_by("formula")]
-    on_levels: Annotated[list[OnLevel], "that hold where another one vanishes", told_apart_by("zero")]
-    complete: Annotated[bool, "proved: no others that hold everywhere, of weight up to the degree"]
+    vanishing: Annotated[list[str], "what of the parameters vanishes", From("conditions")]
+    integrals: Annotated[
+        list[WeightedIntegral], "that hold everywhere", told_apart_by("formula"), From("special.integrals")
+    ]
+    on_levels: Annotated[
+        list[OnLevel], "that hold where another one vanishes", told_apart_by("zero"), From("special.levels")
+    ]
+    complete: Annotated[
+        bool, "proved: no others that hold everywhere, of weight up to the degree", From("special.complete")
+    ]
 
 
 class Cases(Part, frozen=True):
     """special cases; null where they were not asked for"""
 
     families: Annotated[int, "families of parameters that were looked at"]
-    families_left: Annotated[int, "families that were not looked at within the budget"]
-    conditions_not_found: Annotated[int, "families in which the rank drops under conditions that were not found"]
+    families_left: Annotated[int, "families that were not looked at within the budget", From("left")]
+    conditions_not_found: Annotated[
+        int, "families in which the rank drops under conditions that were not found", From("unread")
+    ]
     cases: Annotated[list[SpecialCase], "each proved", told_apart_by("vanishing")]
 
 
 class InvariantRelation(Part, frozen=True):
-    formula: Annotated[str, "the form"]
-    vanishing: Annotated[list[str], "what of the parameters vanishes"]
+    formula: Annotated[str, "the form", From("polynomial")]
+    vanishing: Annotated[list[str], "what of the parameters vanishes", From("conditions")]
     nonzero: Annotated[list[str], "what of them does not"]
 
 
@@ -100,7 +120,7 @@ class InvariantRelations(Part, frozen=True):
 
 class Polynomial(Part, frozen=True):
     weight: Annotated[int, "weighted degree"]
-    formula: Annotated[str, "f in Python syntax"]
+    formula: Annotated[str, "f in Python syntax", From("polynomial")]
     cofactor: Annotated[str, "K in Python syntax"]
     defined: Annotated[bool, "false where the equations are not defined on f = 0, which is no relation of motions then"]
 
@@ -141,27 +161,32 @@ class DarbouxAlong(Part, frozen=True):
     all; null where they were not asked for
     """
 
-    parameter: Annotated[str, "its name"]
+    parameter: Annotated[str, "its name", From("name")]
     low: Annotated[str, "rational number"]
     high: Annotated[str, "rational number"]
     values: Annotated[list[DarbouxValue], "rational values with further ones", told_apart_by("value")]
-    undecided_at: Annotated[list[str], "values at which there may be more than is listed"]
-    undecided_at_zeros_of: Annotated[list[list[str]], "polynomials by their coefficients, the lowest first"]
+    undecided_at: Annotated[list[str], "values at which there may be more than is listed", From("undecided")]
+    undecided_at_zeros_of: UndecidedAtZerosOf
     undecided_where_square: Annotated[
-        list[str], "polynomials in the parameter: where one is the square of a rational number there may be others"
+        list[str],
+        "polynomials in the parameter: where one is the square of a rational number there may be others",
+        From("square"),
     ]
-    cofactors_left: Annotated[int, "so many K were not looked at within the budget"]
+    cofactors_left: Annotated[int, "so many K were not looked at within the budget", From("left")]
     all_followed: Annotated[
-        bool, "whether all K that become rational at single values were followed, but for those left"
+        bool,
+        "whether all K that become rational at single values were followed, but for those left",
+        From("followed"),
     ]
     no_other_rational: Annotated[
         bool,
         "proved for all other rational values with numerator and denominator up to 10^9, for rational coefficients",
+        From("complete"),
     ]
 
 
 class ZeroLevel(Part, frozen=True):
-    zero: Annotated[str, "name of the integral that vanishes"]
+    zero: Annotated[str, "name of the integral that vanishes", From("level.name")]
     integrals: Annotated[list[WeightedIntegral], "whose derivatives it divides", told_apart_by("formula")]
     complete: Annotated[bool, "proved: there are no others up to the degree, for almost all parameters"]
 
@@ -177,11 +202,11 @@ class Value(Part, frozen=True):
 
 
 class OtherLevel(Part, frozen=True):
-    integral: Annotated[str, "name of the integral that has a value"]
+    integral: Annotated[str, "name of the integral that has a value", From("level.name")]
     power: Annotated[int, "the values are those of this power of it"]
     values: Annotated[list[Value], "at which there are others", told_apart_by("value")]
-    undecided_at: Annotated[list[str], "values at which there may be more than is listed"]
-    undecided_at_zeros_of: Annotated[list[list[str]], "polynomials by their coefficients, the lowest first"]
+    undecided_at: Annotated[list[str], "values at which there may be more than is listed", From("undecided")]
+    undecided_at_zeros_of: UndecidedAtZerosOf
     looked: Annotated[bool, "false where that was beyond the bounds"]
     complete: Annotated[bool, "at no other rational value with numerator and denominator up to 10^9 are there others"]
     at_any_value: Annotated[
@@ -200,7 +225,7 @@ class PolynomialBasis(Part, frozen=True, kw_only=True):
 
     degree: Annotated[int, "up to this weighted degree"]
     weights: Annotated[dict[str, int], "weight of each variable"]
-    quasi_homogeneous: Annotated[bool, "whether d/dt raises all weights alike"]
+    quasi_homogeneous: Annotated[bool, "whether d/dt raises all weights alike", From("grading.homogeneous")]
     complete: Annotated[
         bool,
         "proved: every polynomial integral up to the degree, of the variables that have weights, is a polynomial in "
@@ -208,17 +233,21 @@ class PolynomialBasis(Part, frozen=True, kw_only=True):
     ]
     independent: Annotated[int, "so many are independent as functions, at least"]
     rational: Annotated[
-        list[str], "integrals of problem 7 that are quotients of polynomials in the variables, and no polynomials"
+        list[str],
+        "integrals of problem 7 that are quotients of polynomials in the variables, and no polynomials",
+        From(),
     ] = field(default_factory=list)
     not_contained: Annotated[
         list[str],
         "positions that the equations do not contain: integrals that do are not looked for, and all that is said is "
         "said of those without",
+        From("aside"),
     ]
     integrals: Annotated[
         list[Integral],
         "integrals that are no polynomials in those before them, each proved",
         told_apart_by("weight", "name"),
+        From("generators"),
     ]
 
 

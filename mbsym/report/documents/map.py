@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, Any
 
 from msgspec import UNSET, Meta, UnsetType
 
+from mbsym.algebra.plane import Point
+from mbsym.maps.admissible import Demand as Demanded
 from mbsym.maps.boundaries import OF_EQUILIBRIA, Origin
 from mbsym.maps.boxes import Method
 from mbsym.maps.check import Mistake
@@ -13,7 +16,7 @@ from mbsym.maps.result import Lack, Of
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.subdivision import End
 from mbsym.maps.verdicts import Border
-from mbsym.report.documents.base import Hashed, Part, words
+from mbsym.report.documents.base import From, Hashed, Part, or_null, words
 from mbsym.report.documents.parts import Axis, Number, Verdict
 
 #: Which condition a curve comes from.
@@ -25,12 +28,40 @@ STANDINGS = (
 )
 
 
+def demanded(demands: Sequence[Demanded]) -> list[str]:
+    """What is demanded, in words, or the polynomials that should have a sign."""
+    return [x.condition.about or str(x.condition.polynomial) for x in demands]
+
+
+def _coordinates(point: Any) -> tuple[Any, ...]:
+    return (point.x, point.y) if isinstance(point, Point) else (point,)
+
+
+#: What is proved at a place, field by field: files have them in orders of their own.
+StandingThere = Annotated[str, words(*STANDINGS), "whether there is a verdict, and if not, why", From("standing")]
+Broken = Annotated[list[str], "what is not kept there", From("broken", demanded)]
+VerdictThere = Annotated[
+    Verdict | None,
+    "the verdict of problem 6, without terms of higher order; nothing where none is given",
+    From("judged.verdict"),
+]
+UnstableRoots = Annotated[
+    int | None, "roots with a positive real part, with multiplicity, over all subsystems", From("judged.right")
+]
+RealUnstableRoots = Annotated[int | None, "how many of them are real", From("judged.real_right")]
+NegativeEigenvalues = Annotated[int | None, "Poincare's degree of instability", From("judged.degree")]
+ZeroEigenvalues = Annotated[int | None, "how many of K's eigenvalues vanish", From("judged.null")]
+BorderOf = Annotated[Border | None, "of arcs and corners: what is special about the roots there", From("judged.border")]
+
+
 class Condition(Part, frozen=True):
     """a condition of which the curve is a border"""
 
     origin: Annotated[str, words(*ORIGINS), "which condition it is"]
     subsystem: Annotated[
-        int | None, "the subsystem it belongs to, by its place in subsystems; nothing for the whole system"
+        int | None,
+        "the subsystem it belongs to, by its place in subsystems; nothing for the whole system",
+        From("part"),
     ]
     about: Annotated[str, "which factor, assumption, parameter or body"]
     reduced: Annotated[bool, "whether it belongs to the system that Routh's reduction leaves"]
@@ -74,20 +105,23 @@ class Place(Part, frozen=True, kw_only=True):
     """a place and what is proved there"""
 
     number: Annotated[int, "its place in this list"]
-    point: Annotated[list[Number], "the exact point at which it was judged, a coordinate for each axis"]
-    standing: Annotated[str, words(*STANDINGS), "whether there is a verdict, and if not, why"]
-    broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[
-        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
+    point: Annotated[
+        list[Number],
+        "the exact point at which it was judged, a coordinate for each axis",
+        From("sample", _coordinates),
     ]
-    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
-    real_unstable_roots: Annotated[int | None, "how many of them are real"]
-    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
-    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
-    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    standing: StandingThere
+    broken: Broken
+    stability: VerdictThere
+    unstable_roots: UnstableRoots
+    real_unstable_roots: RealUnstableRoots
+    negative_eigenvalues_of_K: NegativeEigenvalues
+    zero_eigenvalues_of_K: ZeroEigenvalues
+    border: BorderOf
     nonlinear: Annotated[
         Verdict | UnsetType,
         "of a verdict that leaves the motion open: what the nonlinear system shows at the exact point alone",
+        From(),
     ] = UNSET
 
 
@@ -109,8 +143,8 @@ class Along(Part, frozen=True):
     axis: Annotated[
         int, words(0, 1), "by which axis the stretch is told: 0, or 1 along a line on which the first axis is constant"
     ]
-    from_: Annotated[Number, "where it starts, by its axis"]
-    to: Annotated[Number, "where it ends"]
+    from_: Annotated[Number, "where it starts, by its axis", From("start")]
+    to: Annotated[Number, "where it ends", From("end")]
     onset: Annotated[str, words("soft", "hard", "open"), "soft, hard or open"]
 
 
@@ -140,6 +174,7 @@ class SoftOrHard(Part, frozen=True):
             "one-side",
         ),
         "why it is open: of problem 11, or why there is no expansion; or why it is neither",
+        From("why"),
     ]
     frequency: Annotated[float | None, "w of the pair +-i w at the point"]
     coefficient: Annotated[float | None, "a of r' = a r^3 at the point"]
@@ -148,6 +183,7 @@ class SoftOrHard(Part, frozen=True):
         list[Along] | None,
         "of an arc: its stretches with what holds on each but for its ends; one: it holds on the whole arc but for "
         "its corners; nothing: only the point is decided",
+        From("stretches"),
     ]
 
 
@@ -184,10 +220,12 @@ class Corner(Place, frozen=True, kw_only=True):
 class Picture(Part, frozen=True):
     """slices in which the same is shown, and all values of the third axis between them"""
 
-    slices: Annotated[list[int], "by their numbers"]
+    slices: Annotated[list[int], "by their numbers", From("layers")]
     shown: Annotated[int, "the slice that stands for them"]
     not_looked_at: Annotated[
-        list[int], "slices among them that were not looked at: nothing is said of these single values"
+        list[int],
+        "slices among them that were not looked at: nothing is said of these single values",
+        From("unseen"),
     ]
     low: Annotated[Number, "from this value of the third axis"]
     low_belongs: Annotated[bool, "whether that value belongs to it"]
@@ -199,14 +237,15 @@ class Slice(Part, frozen=True):
     """a slice; between two critical values regions, with their verdicts, are deformed into each other"""
 
     number: Annotated[int, "its place in this list"]
-    value: Annotated[Number, "the value of the third axis"]
+    value: Annotated[Number, "the value of the third axis", From("z")]
     critical: Annotated[bool, "whether the arrangement of the curves may be another one on its two sides"]
     missing: Annotated[
         str | None,
         words(Lack.IRRATIONAL, Lack.OUTSIDE, Lack.TOO_LARGE, Lack.NOT_REACHED),
         "why there is no map of it",
+        From("lack"),
     ]
-    broken: Annotated[list[str], "what no point of it keeps"]
+    broken: Annotated[list[str], "what no point of it keeps", From(by=demanded)]
     further_curves: Annotated[
         list[Curve],
         "curves that bound something in this slice alone; others are those of the whole, which may vanish in the slice",
@@ -216,7 +255,7 @@ class Slice(Part, frozen=True):
     ]
     confirmed: Annotated[bool, "whether that one corresponds to it, with the verdicts of its regions"]
     interrupted: Annotated[bool, "whether some places were not reached"]
-    check: Annotated[MapCheck | None, "more points of this slice"]
+    check: Annotated[MapCheck | None, "more points of this slice", From("plane.check")]
     regions: Annotated[
         list[Region],
         "connected regions of the slice; the signs are those of the curves, 1 for one that vanishes in the whole "
@@ -229,16 +268,14 @@ class Slice(Part, frozen=True):
 class Statement(Part, frozen=True):
     """a statement"""
 
-    standing: Annotated[str, words(*STANDINGS), "whether there is a verdict, and if not, why"]
-    broken: Annotated[list[str], "what is not kept there"]
-    stability: Annotated[
-        Verdict | None, "the verdict of problem 6, without terms of higher order; nothing where none is given"
-    ]
-    unstable_roots: Annotated[int | None, "roots with a positive real part, with multiplicity, over all subsystems"]
-    real_unstable_roots: Annotated[int | None, "how many of them are real"]
-    negative_eigenvalues_of_K: Annotated[int | None, "Poincare's degree of instability"]
-    zero_eigenvalues_of_K: Annotated[int | None, "how many of K's eigenvalues vanish"]
-    border: Annotated[Border | None, "of arcs and corners: what is special about the roots there"]
+    standing: StandingThere
+    broken: Broken
+    stability: VerdictThere
+    unstable_roots: UnstableRoots
+    real_unstable_roots: RealUnstableRoots
+    negative_eigenvalues_of_K: NegativeEigenvalues
+    zero_eigenvalues_of_K: ZeroEigenvalues
+    border: BorderOf
 
 
 class Box(Part, frozen=True):
@@ -251,10 +288,12 @@ class Box(Part, frozen=True):
 class Subdivision(Part, frozen=True):
     """of planes without an exact arrangement: boxes, each with what is proved at all of its points"""
 
-    because: Annotated[str | None, "why there is no exact arrangement; nothing where boxes were asked for"]
+    because: Annotated[
+        str | None, "why there is no exact arrangement; nothing where boxes were asked for", From(by=or_null)
+    ]
     method: Annotated[Method, "how boxes are proved"]
-    end: Annotated[End, "why no more boxes were halved"]
-    white: Annotated[str, "exact share of the area of which nothing is proved"]
+    end: Annotated[End, "why no more boxes were halved", From("subdivision.end")]
+    white: Annotated[str, "exact share of the area of which nothing is proved", From("subdivision.white")]
     statements: Annotated[list[Statement], "what is proved of boxes, each once"]
     boxes: Annotated[list[Box], "they fill the plane"]
 
@@ -268,12 +307,20 @@ class Map(Hashed, frozen=True, kw_only=True):
     of: Annotated[str, words(Of.STABILITY, Of.SIGNATURE), "what the picture is coloured by"]
     axes: Annotated[list[Axis], "to the right, upwards, and the one that is different in every slice"]
     values: Annotated[dict[str, str], "exact numbers that were put in for parameters and symbols, by name"]
-    constant: Annotated[str | None, "an irrational number among the coefficients, if there is one"]
-    subsystems: Annotated[list[Annotated[list[str], "its coordinates"]], "coordinates of each subsystem"]
+    constant: Annotated[
+        str | None, "an irrational number among the coefficients, if there is one", From("section.constant.text")
+    ]
+    subsystems: Annotated[
+        list[Annotated[list[str], "its coordinates"]], "coordinates of each subsystem", From("section.coordinates")
+    ]
     demands: Annotated[list[Demand], "what parameters have to keep: declared signs, assumptions, triangle inequalities"]
-    left_out: Annotated[list[str], "what they have to keep besides, but cannot be expressed in the axes"]
+    left_out: Annotated[
+        list[str], "what they have to keep besides, but cannot be expressed in the axes", From("admissibility.left_out")
+    ]
     curves: Annotated[list[Curve], "irreducible polynomials whose zeros are the curves"]
-    vanishing: Annotated[list[Condition], "conditions that are equalities in the whole plane"]
+    vanishing: Annotated[
+        list[Condition], "conditions that are equalities in the whole plane", From("boundaries.vanishing")
+    ]
     interrupted: Annotated[bool, "whether some places were not reached"]
     check: Annotated[MapCheck | None, "the map's check of itself"]
     regions: Annotated[list[Region], "open regions of one verdict each"]

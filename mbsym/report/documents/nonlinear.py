@@ -6,7 +6,7 @@ from typing import Annotated
 
 from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Format, Part, told_apart_by, words
+from mbsym.report.documents.base import Format, From, Part, told_apart_by, words
 
 NUMBER = "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"
 
@@ -19,9 +19,9 @@ class Determinant(Part, frozen=True):
 
 
 #: What is decided at a point, field by field: files have them in orders of their own.
-SaidOfHigherOrder = Annotated[Outcome, "what is said of the nonlinear system"]
+SaidOfHigherOrder = Annotated[Outcome, "what is said of the nonlinear system", From("outcome")]
 TheoremOfHigherOrder = Annotated[Theorem, "the theorem behind it; empty where none applies"]
-WhyOpen = Annotated[Why, "why nothing, or no more, is decided; empty where that is not so"]
+WhyOpen = Annotated[Why, "why nothing, or no more, is decided; empty where that is not so", From("why")]
 Frequencies = Annotated[list[Annotated[str, NUMBER]], "of Hamiltonian systems with the signs of their energies"]
 Determinants = Annotated[list[Determinant], "D_4, and D_6 where it was needed", told_apart_by("order")]
 Coefficient = Annotated[
@@ -51,6 +51,7 @@ class ExceptionalValue(Part, frozen=True):
         str,
         words(*(x.value for x in Outcome), *(x.value for x in Word if not x.open)),
         "what is said of the nonlinear system: in problem 6's words where terms of higher order leave it open",
+        From("outcome"),
     ]
     theorem: Annotated[str, "the theorem behind it; empty where none applies"]
     reason: WhyOpen

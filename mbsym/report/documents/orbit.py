@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from mbsym.numerics.orbits.floquet import Word
 from mbsym.numerics.orbits.lyapunov import Parting
-from mbsym.report.documents.base import ASIDE, Hashed, Part, words
+from mbsym.report.documents.base import ASIDE, From, Hashed, Part, words
 
 
 class Verified(Part, frozen=True):
@@ -51,7 +51,7 @@ class Orbit(Hashed, frozen=True, kw_only=True):
     energy: Annotated[float, "generalised energy"]
     closure: Annotated[float, "how far the motion is from closing, as part of the state's size"]
     verified: Verified
-    newton_steps: Annotated[int, "steps of Newton's method", ASIDE]
+    newton_steps: Annotated[int, "steps of Newton's method", ASIDE, From("steps")]
     autonomous: Annotated[bool, "whether the equations do not know the time"]
     multipliers: Annotated[list[Multiplier], "Floquet multipliers, the largest first"]
     uncertainty: Annotated[float, "how far the multipliers move when they are computed with another tolerance"]
@@ -60,37 +60,54 @@ class Orbit(Hashed, frozen=True, kw_only=True):
     monodromy: Annotated[list[Annotated[list[Annotated[float, "entry"]], "row"]], "the monodromy matrix, row by row"]
 
 
+#: Digits of enclosed numbers.
+DIGITS = 12
+
+
+def _shown(ball: Any) -> str:
+    return str(ball.str(DIGITS))
+
+
+def _entries(matrix: Any) -> list[list[str]]:
+    return [[_shown(entry) for entry in row] for row in matrix.tolist()]
+
+
 class PeriodicMultiplier(Part, frozen=True):
     """one of them"""
 
-    real: Annotated[str, "real part, midpoint and radius"]
-    imaginary: Annotated[str, "imaginary part, midpoint and radius"]
-    size_at_least: Annotated[float, "proved lower bound of its absolute value"]
-    size_at_most: Annotated[float, "proved upper bound"]
-    on_unit_circle: Annotated[bool, "whether it is proved to be on the unit circle"]
+    real: Annotated[str, "real part, midpoint and radius", From("ball.real", _shown)]
+    imaginary: Annotated[str, "imaginary part, midpoint and radius", From("ball.imag", _shown)]
+    size_at_least: Annotated[float, "proved lower bound of its absolute value", From("least")]
+    size_at_most: Annotated[float, "proved upper bound", From("greatest")]
+    on_unit_circle: Annotated[bool, "whether it is proved to be on the unit circle", From("on_circle")]
 
 
 class Floquet(Hashed, frozen=True, kw_only=True):
     """What the multipliers of a time-periodic first approximation prove."""
 
     verdict: Annotated[
-        str, words(Word), "what is proved of the unperturbed motion; of the first approximation only where it says so"
+        str,
+        words(Word),
+        "what is proved of the unperturbed motion; of the first approximation only where it says so",
+        From("word"),
     ]
     motion: Annotated[
         Literal["proved", "verified numerically"],
         "how far it is known that the unperturbed motion satisfies the equations",
+        From("rests", lambda rests: "proved" if rests else "verified numerically"),
     ]
     lagrangian: Annotated[
         bool,
         "whether the equations are known to follow from a Lagrangian, so that multipliers come in pairs mu, 1/conj(mu)",
     ]
     frequency: Annotated[str, "2 pi over the period, an exact fraction of the numbers as they are computed with"]
-    period: Annotated[str, "a period of the coefficients, 30 digits"]
+    period: Annotated[str, "a period of the coefficients, 30 digits", From(by=lambda x: x.str(30, radius=False))]
     multipliers: Annotated[list[PeriodicMultiplier], "multipliers as balls, the largest first"]
     simple: Annotated[bool, "whether all multipliers are proved to be simple"]
     monodromy: Annotated[
         list[Annotated[list[Annotated[str, "entry, midpoint and radius"]], "row"]],
         "a matrix of balls that contains the monodromy matrix, row by row",
+        From(by=_entries),
     ]
     steps: Annotated[int, "steps of the enclosure", ASIDE]
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, UnsetType, field
 
 from mbsym.problems.small_parameter.oscillation_result import Amplitude
-from mbsym.report.documents.base import ASIDE, Format, Part, SystemName, Version, told_apart_by, version
+from mbsym.report.documents.base import ASIDE, Format, From, Part, SystemName, Version, told_apart_by, version
 
 
 class AmplitudeValue(Part, frozen=True):
@@ -123,14 +123,17 @@ class Oscillation(Part, frozen=True, kw_only=True):
     forced: Annotated[
         list[Annotated[list[str], "names of variables"]],
         "variables with roots that are surely not imaginary: free motions that belong to those are left out",
+        From("damped"),
     ]
     with_root_zero: Annotated[
         list[Annotated[list[str], "names of variables"]],
         "variables with a root that is zero: free displacements and drifts that belong to it are left out",
+        From("with_zero"),
     ]
     roots_not_found: Annotated[
         list[Annotated[list[str], "names of variables"]],
         "variables some of whose roots were not found: free motions that belong to those are left out",
+        From("not_known"),
     ]
     taylor: Annotated[bool, "whether the equations were expanded about the unperturbed motion"]
     conditions: Annotated[

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
+from flint import fmpq
 from msgspec import Meta
 
 from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.theorems import THEOREMS, HigherOrder
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import ASIDE, SHA256, Named, Part, words
+from mbsym.report.documents.base import ASIDE, SHA256, From, Named, Part, Write, or_null, words
 
 
 class Counted(Part, frozen=True):
@@ -37,13 +38,17 @@ class Reason(Part, frozen=True):
     """a reason"""
 
     code: Annotated[str, words(Because), "what the reason is"]
-    data: Annotated[list[str | int], "the numbers, names and formulas that it is about, in the order of the sentence"]
+    data: Annotated[
+        list[str | int],
+        "the numbers, names and formulas that it is about, in the order of the sentence",
+        From(by=lambda data: [x if isinstance(x, int) else str(x) for x in data]),
+    ]
 
 
 class Verdict(Part, frozen=True):
     """its stability"""
 
-    verdict: Annotated[Word, "what is proved of the motion, in the words of every output"]
+    verdict: Annotated[Word, "what is proved of the motion, in the words of every output", From("word")]
     theorems: Annotated[list[TheoremName], "the theorems that prove it; none where none applies"]
     reasons: Annotated[list[Reason], "why, as codes with data"]
     explanation: Annotated[str, "the reasons in sentences", ASIDE]
@@ -60,6 +65,17 @@ class Axis(Part, frozen=True):
 class Number(Part, frozen=True):
     """an exact number"""
 
+    @classmethod
+    def from_result(cls, source: Any, write: Write = str, /, **given: Any) -> Number:
+        """A rational number as text, an algebraic one by its minimal polynomial and an interval with no other root."""
+        from mbsym.algebra.plane.numbers import AlgebraicNumber, enclosure
+
+        if isinstance(source, fmpq):
+            return cls(exact=str(source), polynomial=None, between=None, number=float(enclosure(source).mid()))
+        polynomial = [str(c) for c in source.polynomial.coeffs()] if isinstance(source, AlgebraicNumber) else None
+        between = [str(source.low), str(source.high)]
+        return cls(exact=None, polynomial=polynomial, between=between, number=float(source.enclosure(64).mid()))
+
     exact: Annotated[str | None, "the number where it is rational; null where it is irrational"]
     polynomial: Annotated[
         list[str] | None,
@@ -74,6 +90,14 @@ class CoordinateValue(Part, frozen=True):
     """a coordinate's value"""
 
     name: Annotated[str, "the coordinate"]
-    value: Annotated[str, "the value as text: exact where exact is true"]
+    value: Annotated[str, "the value as text: exact where exact is true", From("text")]
     exact: Annotated[bool, "whether the text is exact"]
-    number: Annotated[float, "the value as a double"]
+    number: Annotated[float, "the value as a double", From("value")]
+
+
+Coordinates = Annotated[list[CoordinateValue], "constant coordinates", From("values")]
+AnglesOf = Annotated[
+    str | None,
+    "the body whose other angles these are; null for the description's own",
+    From("coordinates_of", or_null),
+]

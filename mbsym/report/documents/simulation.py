@@ -9,7 +9,7 @@ from msgspec import UNSET, Meta, UnsetType
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Standing
 from mbsym.numerics.events.surfaces import Action, Direction
-from mbsym.report.documents.base import ASIDE, SHA256, Format, Part, told_apart_by, words
+from mbsym.report.documents.base import ASIDE, SHA256, Format, From, Part, told_apart_by, words
 
 
 class Variables(Part, frozen=True):
@@ -137,16 +137,19 @@ class Work(Part, frozen=True):
 
 
 #: How a quantity keeps its value; its name or formula comes before that.
-Conserved = Annotated[bool | None, "true, false, or null where it is undecided"]
-Known = Annotated[Standing, "how that is known"]
-Doubted = Annotated[str | None, "why it is undecided", words(Doubt)]
+Conserved = Annotated[bool | None, "true, false, or null where it is undecided", From("standing.conserved")]
+Known = Annotated[Standing, "how that is known", From("standing")]
+Doubted = Annotated[str | None, "why it is undecided", words(Doubt), From("doubt")]
 LargestDrift = Annotated[
-    float | str, "the largest difference from the initial value, over relative_to; text where it is not finite"
+    float | str,
+    "the largest difference from the initial value, over relative_to; text where it is not finite",
+    From("change"),
 ]
 RelativeTo = Annotated[
     float | str,
     "what it is relative to: of an energy the largest kinetic energy (its first value where nothing moves, else 1), "
     "of a first integral the largest sum of the sizes of its terms",
+    From("scale"),
 ]
 
 
@@ -175,7 +178,7 @@ class GeneralizedEnergy(Part, frozen=True):
 class Invariant(Part, frozen=True):
     """a first integral"""
 
-    name: Annotated[str, "its name, in words"]
+    name: Annotated[str, "its name, in words", From("quantity")]
     conserved: Conserved
     how: Known
     doubt: Doubted
@@ -194,10 +197,10 @@ class Against(Part, frozen=True):
     """the better run"""
 
     method: Annotated[str, "its method"]
-    arithmetic: Annotated[str, "its arithmetic"]
-    tolerance: Annotated[float | str | None, "its tolerance"]
-    step: Annotated[float | str | None, "its step"]
-    longest_step: Annotated[float | str | None, "its longest step"]
+    arithmetic: Annotated[str, "its arithmetic", From("scalar")]
+    tolerance: Annotated[float | str | None, "its tolerance", From("setting.tolerance")]
+    step: Annotated[float | str | None, "its step", From("setting.step")]
+    longest_step: Annotated[float | str | None, "its longest step", From("setting.longest")]
 
 
 class Over(Part, frozen=True):
@@ -259,7 +262,7 @@ class Resting(Part, frozen=True):
 class SystemPart(Part, frozen=True):
     """a part"""
 
-    coordinates: Annotated[list[Annotated[str, "name of a coordinate"]], "its coordinates"]
+    coordinates: Annotated[list[Annotated[str, "name of a coordinate"]], "its coordinates", From("names")]
     method: Annotated[str, "the method that integrates it"]
 
 

@@ -6,19 +6,21 @@ from typing import Annotated, Literal
 
 from msgspec import field
 
-from mbsym.report.documents.base import Format, Part, SystemName, Version, told_apart_by, version, words
+from mbsym.report.documents.base import Format, From, Part, SystemName, Version, told_apart_by, version, words
 
 
 class Symmetry(Part, frozen=True):
-    field: Annotated[dict[str, str], "xi by coordinate or speed, where it is not zero"]
+    field: Annotated[dict[str, str], "xi by coordinate or speed, where it is not zero", From("directions")]
     time: Annotated[str, "tau, the shift of time"]
     gauge: Annotated[str, "Gamma, whose time derivative the Lagrangian gains"]
     integral: Annotated[str, "sum xi p + tau H - Gamma, in Python syntax"]
     name: Annotated[
         str, "the integral of problem 7 of which it is a multiple, or of what it is a function; empty for others"
     ]
-    new: Annotated[bool, "proved to be no function of those known without it"]
-    told_apart: Annotated[str, words("proved", "verified numerically", "undecided"), "how it is known what it is"]
+    new: Annotated[bool, "proved to be no function of those known without it", From("is_new")]
+    told_apart: Annotated[
+        str, words("proved", "verified numerically", "undecided"), "how it is known what it is", From("certainty")
+    ]
     substituted: Annotated[
         str, words("proved", "verified numerically", "undecided"), "how dI/dt = 0 came out by substitution"
     ]
@@ -29,7 +31,11 @@ class SymmetryBasis(Part, frozen=True, kw_only=True):
     bound
     """
 
-    directions: Annotated[Literal["coordinates", "speeds"], "what fields move"]
+    directions: Annotated[
+        Literal["coordinates", "speeds"],
+        "what fields move",
+        From("in_speeds", lambda in_speeds: "speeds" if in_speeds else "coordinates"),
+    ]
     complete: Annotated[
         bool, "proved: every symmetry of this kind is a combination of those listed, for almost all parameters"
     ]

@@ -17,7 +17,6 @@ from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.ensembles.ensemble import QUANTILES, Ensemble
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.base import finite
 from mbsym.report.documents.base import written as document
 from mbsym.report.runs.simulation_words import laws_json
 from mbsym.report.runs.trajectory_csv import text_table, written
@@ -70,7 +69,7 @@ def ensemble_json(
 ) -> str:
     """The file's text; ``files`` are those that belong to it."""
     scenario = found.members.dynamics.scenario
-    spread, compared = found.statistics, found.compared
+    spread = found.statistics
     content = doc.Ensemble.from_result(
         found,
         system=scenario.system.name,
@@ -81,30 +80,21 @@ def ensemble_json(
         varied=[_variation(one) for one in variations],
         seed=None if isinstance(variations[0], Grid) else seed,
         sampling="grid" if isinstance(variations[0], Grid) else sampling,
-        time=doc.Time(from_=0.0, to=float(found.times[-1]), samples=len(found.times)),
-        tolerance=found.setting.tolerance,
-        step=found.setting.step,
+        time=(0.0, float(found.times[-1]), len(found.times)),
         ended=[
             doc.Ended.from_result(
                 fate,
-                values=dict(zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True)),
+                values=zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True),
             )
             for fate in found.fates
         ],
         final={
-            name: doc.Final(
-                mean=finite(spread.mean[-1, place]),
-                std=finite(spread.deviation[-1, place]),
-                min=finite(spread.least[-1, place]),
-                max=finite(spread.greatest[-1, place]),
-                quantiles={
-                    f"{chance:g}": finite(row[-1, place])
-                    for chance, row in zip(QUANTILES, spread.quantiles, strict=True)
-                },
+            name: (
+                *(x[-1, place] for x in (spread.mean, spread.deviation, spread.least, spread.greatest)),
+                {f"{chance:g}": row[-1, place] for chance, row in zip(QUANTILES, spread.quantiles, strict=True)},
             )
             for place, name in enumerate(found.quantities)
         },
-        compared=doc.Compared(members=list(compared.members), largest=finite(compared.largest)),
         files=files,
     )
     return document(content)

@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from msgspec import UNSET
-
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.numerics.extremes.extremes import Extremes, Row
 from mbsym.numerics.extremes.extremes_told import sentences
-from mbsym.numerics.extremes.singular import Singularities
-from mbsym.numerics.extremes.singular_positions import SingularPositions
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.trade.digits import FULL
 from mbsym.report.documents import extremes as doc
-from mbsym.report.documents.base import finite, written
+from mbsym.report.documents.base import written
 from mbsym.report.runs.trajectory_csv import text_table
 
 HEADER = (
@@ -53,84 +49,22 @@ def extremes_csv(found: Extremes) -> str:
 
 def extremes_json(found: Extremes) -> str:
     """Everything, with the sentences; numbers that are infinite are null."""
-    rows = [
-        doc.Row.from_result(
-            row,
-            digits=_rounded(row.found.digits),
-            digits_of_worst_entry=_rounded(row.found.worst),
-            formula_digits=round(row.found.formula, 2),
-            condition=finite(row.found.condition),
-            verdict=row.found.verdict,
-            bits=row.found.bits,
-        )
-        for row in found.rows
-    ]
-    verdicts = [
-        doc.StabilityAt.from_result(
-            item,
-            exact=item.judged.exact.word,
-            theorems=list(item.judged.exact.theorems),
-            floats=dict(item.judged.floats),
-            floats_wrong={scalar: item.judged.wrong(scalar) for scalar in FULL},
-        )
-        for item in found.verdicts
-    ]
-    whole = doc.Extremes(
+    singular = found.singularities
+    whole = doc.Extremes.from_result(
+        found,
         system=found.system.name,
-        sentences=list(sentences(found)),
-        left_out=list(found.left_out),
-        singular=_singular(found.singularities),
+        sentences=sentences(found),
+        singular=None if singular is None or not singular.how else singular,
         eigenvalues=[
-            doc.Eigenvalue(
-                real=float(x.real.mid()),
-                imaginary=float(x.imag.mid()),
-                radius=float(max(x.real.rad(), x.imag.rad())),
-            )
+            (float(x.real.mid()), float(x.imag.mid()), float(max(x.real.rad(), x.imag.rad())))
             for x in found.eigenvalues
         ],
-        compensated=[
-            doc.Compensated.from_result(
-                one,
-                operations_in_pairs=one.found.sensitive,
-                digits_without=round(one.found.before, 2),
-                digits_with=round(one.found.after, 2),
-                cost=round(one.found.cost, 3),
-            )
-            for one in found.compensated
+        stability=[
+            doc.StabilityAt.from_result(item, floats_wrong={scalar: item.judged.wrong(scalar) for scalar in FULL})
+            for item in found.verdicts
         ],
-        rows=rows,
-        stability=verdicts,
-        singular_positions=UNSET if found.positions is None else _positions(found.positions),
     )
     return written(whole)
-
-
-def _singular(found: Singularities | None) -> doc.Singular | None:
-    """Where M is singular; None where that was not to be had."""
-    if found is None or not found.how:
-        return None
-    sets = [
-        doc.Set.from_result(
-            one,
-            values=[value.label for value in one.values],
-            places=[{name: float(x) for name, x in place.items()} for place in one.places],
-            fails=one.kind,
-        )
-        for one in found.sets
-    ]
-    return doc.Singular.from_result(
-        found, ranges={name: float(bound) for name, bound in found.ranges.items()}, sets=sets
-    )
-
-
-def _positions(found: SingularPositions) -> doc.SingularPositions:
-    """Where constraints lose their rank."""
-    listed = [doc.SingularPosition.from_result(one) for one in found.found]
-    return doc.SingularPositions.from_result(found, found=listed)
-
-
-def _rounded(digits: Any) -> dict[str, float]:
-    return {scalar: round(value, 2) for scalar, value in digits.items()}
 
 
 def tables(found: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:

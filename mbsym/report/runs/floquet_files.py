@@ -9,10 +9,8 @@ from mbsym.model.system import System
 from mbsym.numerics.orbits.floquet import Judged, Multiplier, Word
 from mbsym.report.documents import orbit as doc
 from mbsym.report.documents.base import written
+from mbsym.report.documents.orbit import DIGITS
 from mbsym.source.yaml_writer import meaning
-
-#: Digits of numbers that are shown.
-DIGITS = 12
 
 _SAID = {
     Word.UNSTABLE: Message("unstable: a multiplier is outside the unit circle (Lyapunov)"),
@@ -35,28 +33,7 @@ _SAID = {
 
 def floquet_json(system: System, found: Judged) -> str:
     """The file's text."""
-    content = doc.Floquet.from_result(
-        found,
-        system=system.name,
-        description_sha256=meaning(system),
-        verdict=found.word.name.lower(),
-        motion="proved" if found.rests else "verified numerically",
-        frequency=str(found.frequency),
-        period=found.period.str(30, radius=False),
-        multipliers=[_multiplier(one) for one in found.multipliers],
-        monodromy=[[entry.str(DIGITS) for entry in row] for row in found.monodromy.tolist()],
-    )
-    return written(content)
-
-
-def _multiplier(one: Multiplier) -> doc.PeriodicMultiplier:
-    return doc.PeriodicMultiplier(
-        real=one.ball.real.str(DIGITS),
-        imaginary=one.ball.imag.str(DIGITS),
-        size_at_least=one.least,
-        size_at_most=one.greatest,
-        on_unit_circle=one.on_circle,
-    )
+    return written(doc.Floquet.from_result(found, system=system.name, description_sha256=meaning(system)))
 
 
 def sentences(found: Judged) -> Iterator[tuple[str, str]]:

@@ -15,7 +15,6 @@ from mbsym.expressions.message import Message
 from mbsym.model.system import System
 from mbsym.numerics.orbits.lyapunov import Exponents, Parting
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.base import finite
 from mbsym.report.documents.base import written as document
 from mbsym.report.figures.drawing import BLUE, GREY, pictures
 from mbsym.report.runs.trajectory_csv import written
@@ -29,18 +28,12 @@ def lyapunov_csv(found: Exponents) -> str:
 
 def lyapunov_json(system: System, found: Exponents) -> str:
     """The file's text."""
-    content = doc.Lyapunov(
+    content = doc.Lyapunov.from_result(
+        found,
         system=system.name,
         description_sha256=meaning(system),
-        time=found.time,
-        exponents=[
-            doc.Exponent(value=finite(value), uncertainty=finite(doubt))
-            for value, doubt in zip(found.values, found.uncertainty, strict=True)
-        ],
+        exponents=list(zip(found.values, found.uncertainty, strict=True)),
         largest=found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
-        divergence=finite(found.divergence),
-        sum_error=finite(found.sum_error),
-        ended=None if found.ended is None else str(found.ended),
     )
     return document(content)
 

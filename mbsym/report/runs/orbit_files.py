@@ -14,7 +14,6 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.quantities import marked, unit_of
 from mbsym.numerics.orbits.periodic import Orbit
 from mbsym.report.documents import orbit as doc
-from mbsym.report.documents.base import finite
 from mbsym.report.documents.base import written as document
 from mbsym.report.runs.trajectory_csv import written
 from mbsym.simulation.motions import PeriodicMotion
@@ -34,20 +33,12 @@ def orbit_json(found: PeriodicMotion) -> str:
         orbit,
         system=system.name,
         description_sha256=meaning(system),
-        initial=dict(zip(orbit.names, map(float, orbit.state), strict=True)),
+        initial=zip(orbit.names, map(float, orbit.state), strict=True),
         repeats=found.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
-        verified=doc.Verified(closure=finite(orbit.verified), method=orbit.verifier),
-        newton_steps=orbit.steps,
-        multipliers=[
-            doc.Multiplier(real=float(mu.real), imaginary=float(mu.imag), size=float(abs(mu)))
-            for mu in orbit.multipliers
-        ],
-        trivial=doc.Trivial(
-            count=orbit.trivial,
-            reasons=[doc.Reason.from_result(one) for one in orbit.reasons],
-        ),
-        monodromy=[[float(x) for x in row] for row in orbit.monodromy],
+        verified=(orbit.verified, orbit.verifier),
+        multipliers=[(float(mu.real), float(mu.imag), float(abs(mu))) for mu in orbit.multipliers],
+        trivial=(orbit.trivial, orbit.reasons),
     )
     return document(content)
 

@@ -14,7 +14,6 @@ from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import with_unit
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.planning.kinds import Kind
-from mbsym.numerics.planning.models import Model
 from mbsym.numerics.planning.plan import (
     ARITHMETIC,
     ENERGY,
@@ -214,11 +213,6 @@ def repeating_command(file: str, settings: Sequence[str], request: Request, carr
 
 
 # --- simulation.json ---
-
-
-def model_json(model: Model) -> doc.Model:
-    """What is in the equations."""
-    return doc.Model.from_result(model)
 
 
 def plan_json(plan: Plan, request: Request) -> doc.Plan:

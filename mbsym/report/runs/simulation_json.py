@@ -15,7 +15,6 @@ import numpy as np
 from msgspec import UNSET, Struct
 
 from mbsym.model.quantities import energy_unit, units_by_name
-from mbsym.numerics.methods.interface import COUNTS
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.simulate import Trajectory
 from mbsym.report.documents import simulation as doc
@@ -23,8 +22,8 @@ from mbsym.report.documents.base import plain, written
 from mbsym.report.runs.certificate import certificate_json
 from mbsym.report.runs.constrained_run_words import constraints_json
 from mbsym.report.runs.events import events_json
-from mbsym.report.runs.plan_words import model_json, plan_json
-from mbsym.report.runs.simulation_words import between_steps_json, conservation_json, error_json, laws_json, states_json
+from mbsym.report.runs.plan_words import plan_json
+from mbsym.report.runs.simulation_words import between_steps_json, error_json, laws_json, states_json
 from mbsym.simulation import Simulation
 from mbsym.simulation.sampling import may_change
 from mbsym.source.yaml_writer import meaning
@@ -61,26 +60,25 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         parameters={name: float(value) for name, value in scenario.parameters.items()},
         inputs=laws_json(scenario) if scenario.inputs else UNSET,
         initial=dict(zip(names, state, strict=True)),
-        work=doc.Work(**{name: getattr(found.work, name) for name in COUNTS}),
+        work=doc.Work.from_result(found.work),
         files=list(files),
         table_sha256=table_sha256,
         versions=versions(),
         units=_units(run) or UNSET,
-        energy=doc.Energy(is_="T - U", **conservation_json(run.energy_conservation)),
+        energy=doc.Energy.from_result(run.energy_conservation, is_="T - U"),
         generalized_energy=UNSET
         if run.dynamics.natural
-        else doc.GeneralizedEnergy(is_="T2 - T0 - U", **conservation_json(run.conservation)),
+        else doc.GeneralizedEnergy.from_result(run.conservation, is_="T2 - T0 - U"),
         invariants={
-            kept.column: doc.Invariant(name=kept.conservation.quantity, **conservation_json(kept.conservation))
-            for kept in run.invariants
+            invariant.column: doc.Invariant.from_result(invariant.conservation) for invariant in run.invariants
         },
         estimated_error=error_json(run.error),
         resting=_resting(chosen.resting),
         **events_json(run),
-        parts=[doc.SystemPart(coordinates=list(part.names), method=part.method) for part in chosen.parts],
-        model=model_json(run.request.model),
+        parts=[doc.SystemPart.from_result(part) for part in chosen.parts],
+        model=doc.Model.from_result(run.request.model),
         plan=None if run.plan is None else plan_json(run.plan, run.request),
-        method_changes=[doc.MethodChange(**vars(one)) for one in found.work.changes] or UNSET,
+        method_changes=[doc.MethodChange.from_result(one) for one in found.work.changes] or UNSET,
         constraints=constraints_json(run),
         variables=states_json(run),
         certificate=UNSET if run.certificate is None else certificate_json(run.certificate, names),

@@ -180,36 +180,16 @@ def quality(run: Simulation) -> tuple[list[Message], list[Message], bool]:
     return list(warnings(run.conservation, run.error)), told, isinstance(run.error, NoEstimate)
 
 
-def conservation_json(found: Conservation) -> dict[str, Any]:
-    """``conserved`` is true, false or null; ``how`` says how that is known."""
-    return {
-        "conserved": found.standing.conserved,
-        "how": found.standing,
-        "doubt": found.doubt.name.lower() if found.doubt is not None else None,
-        "largest_relative_drift": found.change,
-        "relative_to": found.scale,
-    }
-
-
 def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:
     """The estimate with what it was made of, or why there is none."""
     if isinstance(found, NoEstimate):
-        return doc.NoEstimate(available=False, why=found.why.name.lower())
-    against = found.against
+        return doc.NoEstimate.from_result(found, available=False)
     return doc.Estimate.from_result(
         found,
         available=True,
         how="better run",
-        against=doc.Against.from_result(
-            against.setting, method=against.method, arithmetic=against.scalar, longest_step=against.setting.longest
-        ),
-        over=doc.Over(
-            from_=0.0,
-            to=found.compared.end,
-            samples=found.compared.points,
-            every_step=found.compared.followed,
-        ),
-        quantities={q.name: doc.QuantityError.from_result(q) for q in found.quantities},
+        over=(0.0, found.compared.end, found.compared.points, found.compared.followed),
+        quantities={q.name: q for q in found.quantities},
     )
 
 
@@ -234,13 +214,7 @@ SHOWN = 4
 
 def between_steps_json(passed: Passed | None) -> doc.BetweenSteps | None:
     """Times of switches, narrow features with the steps that passed them."""
-    if passed is None:
-        return None
-    return doc.BetweenSteps(
-        switches=[float(t) for t in passed.switches],
-        narrow=[doc.Narrow.from_result(one) for one in passed.narrow],
-        unresolved=[float(t) for t in passed.unresolved],
-    )
+    return None if passed is None else doc.BetweenSteps.from_result(passed)
 
 
 def switch_line(passed: Passed | None) -> Message | None:

@@ -24,8 +24,8 @@ from mbsym.report.content import (
     paragraph,
     say,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import energy as doc
-from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -33,15 +33,7 @@ if TYPE_CHECKING:
 
 def data(found: Energy, system: System, write: Write) -> doc.Energy:
     """The section of results.json."""
-    return doc.Energy(
-        kinetic_energy=write(found.kinetic_energy),
-        A2=matrix_text(found.A2, write),
-        A1=column_text(found.A1, write),
-        A0=write(found.A0),
-        force_function=write(found.force_function),
-        cyclic=list(found.cyclic),
-        speeds=list(found.speeds) if system.speeds else UNSET,
-    )
+    return doc.Energy.from_result(found, write, speeds=found.speeds if system.speeds else UNSET)
 
 
 def content(results: Results) -> Iterator[Block]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import reduce
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
-from msgspec import UNSET, UnsetType
+from msgspec import UNSET
 
 from mbsym.algebra.factors import content as content_of
 from mbsym.expressions.rates import acceleration_name, velocity_name
@@ -41,12 +41,12 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import equations as doc
-from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.constraints import Constraints, Solved
+    from mbsym.problems.constraints import Constraints
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.reactions import Reaction
     from mbsym.report.results import Results
@@ -54,66 +54,25 @@ if TYPE_CHECKING:
 
 def data(found: Equations, system: System, write: Write) -> doc.Equations:
     """The section of results.json."""
-    constraints = found.constraints
-    return doc.Equations(
-        mass_matrix=matrix_text(found.mass_matrix, write),
-        forcing=column_text(found.forcing, write),
-        **(_in_speeds(cast("SpeedEquations", found), write) if found.in_speeds else {}),
-        constraints=UNSET if constraints is None else _constraints(constraints, write),
-        embedded=UNSET if constraints is None else _embedded(found, write),
-    )
-
-
-def _in_speeds(found: SpeedEquations, write: Write) -> dict[str, Any]:
-    rates = zip(found.positions, found.rates, strict=True)
-    return {
-        "speeds": list(found.speeds),
-        "needed": column_text(found.needed, write),
-        "supplied": column_text(found.supplied, write),
-        "positions": {name: write(rate) for name, rate in rates},
-        "aside": list(found.aside),
-    }
+    tied, own = found.constraints, {}
+    if found.in_speeds:
+        kane = cast("SpeedEquations", found)
+        own = {name: getattr(kane, name) for name in ("speeds", "needed", "supplied", "aside")}
+        own["positions"] = zip(kane.positions, kane.rates, strict=True)
+    constraints = UNSET if tied is None else _constraints(tied, write)
+    return doc.Equations.from_result(found, write, constraints=constraints, **own)
 
 
 def _constraints(found: Constraints, write: Write) -> doc.Constraints:
-    rows = [
-        doc.ConstraintRow.from_result(
-            name,
-            constraint=name.constraint + 1,
-            component=name.component or None,
-            position=None if position is None else write(position),
-            velocity=write(velocity),
-            independent=k in found.independent,
-        )
-        for k, (name, position, velocity) in enumerate(zip(found.names, found.position, found.velocity, strict=True))
-    ]
-    integrable = found.integrability
-    return doc.Constraints(
-        rows=rows,
-        jacobian=matrix_text(found.jacobian, write),
-        acceleration=column_text(found.acceleration, write),
-        position_rank=found.position_rank,
-        velocity_rank=found.velocity_rank,
-        degrees_of_freedom=len(found.free),
-        redundant=[
-            doc.RedundantRow(
-                row=one.name.label,
-                follows_from=[name.label for name in one.from_rows],
-                known=one.certainty.value,
-            )
-            for one in found.redundant
+    rows = zip(found.names, found.position, found.velocity, strict=True)
+    return doc.Constraints.from_result(
+        found,
+        write,
+        rows=[
+            doc.ConstraintRow.from_result(name, write, position=f, velocity=rate, independent=k in found.independent)
+            for k, (name, f, rate) in enumerate(rows)
         ],
-        parameter_conditions=found.demanded.count,
-        parameter_relations=[write(x) for x in found.demanded.relations],
-        parameters_satisfy_them=found.demanded.satisfied,
-        velocity_rank_beside=found.rank_beside,
-        integrability=None
-        if integrable is None
-        else doc.Integrability.from_result(integrable, known=integrable.certainty.value),
-        integrable_alone=[doc.IntegrableAlone(row=name.label, integrable=decided) for name, decided in found.alone],
-        dependent=list(found.dependent),
-        independent=list(found.free),
-        **_solved(found.solved, write),
+        integrable_alone=[(name.label, decided) for name, decided in found.alone],
     )
 
 
@@ -121,46 +80,13 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
     """What each joint transmits, for results.json."""
     names = [] if tied is None else [tied.names[i].label for i in tied.independent]
     return [
-        doc.Reaction(
-            body=one.body,
-            force=column_text(one.force, write),
-            moment=column_text(one.moment, write),
-            per_multiplier=[
-                doc.PerMultiplier(row=name, force=column_text(force, write), moment=column_text(moment, write))
-                for name, (force, moment) in zip(names, one.per_multiplier, strict=True)
-            ],
-            undetermined=[
-                doc.Balance(
-                    rows=[name.label for name in balance.rows],
-                    components=list(balance.components),
-                    force=None if balance.added is None else column_text(balance.added[0], write),
-                    moment=None if balance.added is None else column_text(balance.added[1], write),
-                )
-                for balance in one.balances
-            ],
-            determined_combinations=one.combinations,
+        doc.Reaction.from_result(
+            one,
+            write,
+            per_multiplier=[(name, *both) for name, both in zip(names, one.per_multiplier, strict=True)],
         )
         for one in found
     ]
-
-
-def _solved(found: Solved | None, write: Write) -> dict[str, Any]:
-    """The dependent velocities, where they have closed forms."""
-    if found is None:
-        return {}
-    return {
-        "regular_where_not_zero": write(found.regular_where),
-        "Y": matrix_text(found.transformation, write),
-        "y0": column_text(found.shift, write),
-        "a0": column_text(found.acceleration_shift, write),
-    }
-
-
-def _embedded(found: Equations, write: Write) -> doc.Embedded | UnsetType:
-    if found.embedded is None:
-        return UNSET
-    matrix, forcing = found.embedded.mass_matrix, found.embedded.forcing
-    return doc.Embedded(mass_matrix=matrix_text(matrix, write), forcing=column_text(forcing, write))
 
 
 _LAGRANGE = (

@@ -9,7 +9,7 @@ from mbsym.model.system import System
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.report.content import Block, Display, Heading, Name, Relation, Said, named, paragraph, say
 from mbsym.report.documents import results as doc
-from mbsym.report.plain import Write, column_text
+from mbsym.report.documents.base import Write
 from mbsym.report.sections.system import unperturbed_motion
 
 if TYPE_CHECKING:
@@ -18,12 +18,8 @@ if TYPE_CHECKING:
 
 def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
     """The section of results.json."""
-    return doc.Equilibrium(
-        satisfied=found.satisfied,
-        impossible=bool(found.impossible),
-        conditions=column_text(found.conditions, write),
-        solved={name: str(value) for name, value in found.solved},
-    )
+    solved = {name: str(value) for name, value in found.solved}
+    return doc.Equilibrium.from_result(found, write, impossible=bool(found.impossible), solved=solved)
 
 
 IN_COORDINATES = (

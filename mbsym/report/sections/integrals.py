@@ -10,7 +10,7 @@ from mbsym.model.system import System
 from mbsym.problems.integrals import ENERGY, Integral
 from mbsym.report.content import Block, Display, Folded, Heading, Inline, Name, Notation, Relation, Said, paragraph, say
 from mbsym.report.documents import results as doc
-from mbsym.report.plain import Write
+from mbsym.report.documents.base import Write
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
     """The section of results.json."""
-    return [doc.Integral.from_result(item, formula=write(item.formula)) for item in found]
+    return [doc.Integral.from_result(item, write) for item in found]
 
 
 _ENERGY = (

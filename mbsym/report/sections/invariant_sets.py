@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.model.system import System
 from mbsym.problems.invariant_sets import (
-    FirstApproximation,
     InvariantSets,
-    Relation,
-    SecondVariation,
     StationarySet,
 )
 from mbsym.report.content import Block, Heading, Phrase, Said, ragged
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import invariant_sets as doc
-from mbsym.report.plain import Write
 from mbsym.report.words.invariant_words import (
     closing,
     family_title,
@@ -33,65 +30,7 @@ if TYPE_CHECKING:
 
 def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSets:
     """The section of results.json."""
-    return doc.InvariantSets(
-        integrals=[doc.NamedFormula(name=name, formula=str(x)) for name, x in found.integrals],
-        left_out=list(found.left_out),
-        relations=[str(x) for x in found.relations],
-        stand_for=dict(found.written),
-        families=[
-            doc.Family.from_result(
-                family,
-                complete=not (family.unfinished or family.singular or family.parts),
-                sets=[_set(one) for one in family.sets],
-            )
-            for family in found.families
-        ],
-        provided_nonzero=[str(x) for x in found.generic],
-    )
-
-
-def _set(one: StationarySet) -> doc.InvariantSet:
-    stands = one.invariant is True
-    return doc.InvariantSet.from_result(
-        one,
-        dimension_of_union=one.union,
-        solved={name: str(x) for name, x in one.solved},
-        relations=[str(x) for x in one.relations],
-        nonzero=[str(x) for x in one.nonzero],
-        multipliers={name: None if x is None else str(x) for name, x in one.multipliers},
-        motion={name: str(x) for name, x in one.motion},
-        invariant={True: "proved", None: "undecided", False: "failed"}[one.invariant],
-        real_point_found=one.real,
-        second_variation=None if one.variation is None or not stands else _variation(one.variation),
-        first_approximation=None if one.first is None else _first(one.first),
-        gap=one.gap.value,
-    )
-
-
-def _variation(found: SecondVariation) -> doc.SecondVariation:
-    return doc.SecondVariation.from_result(
-        found,
-        positive=None if found.positive is None else _relations(found.positive),
-        negative=None if found.negative is None else _relations(found.negative),
-        for_some_value_of=list(found.chosen),
-    )
-
-
-def _first(found: FirstApproximation) -> doc.FirstApproximation:
-    return doc.FirstApproximation.from_result(
-        found,
-        zero_roots=found.zeros,
-        factors_in_lambda_squared=[[str(x) for x in factor] for factor in found.factors],
-        necessary=_relations(found.necessary),
-        roots_left_out=found.left,
-    )
-
-
-def _relations(relations: Sequence[Relation]) -> list[doc.SignCondition]:
-    return [
-        doc.SignCondition(formula=str(one.formula), relation=one.relation, unless_zero=[str(x) for x in one.unless])
-        for one in relations
-    ]
+    return doc.InvariantSets.from_result(found)
 
 
 def content(results: Results) -> Iterator[Block]:

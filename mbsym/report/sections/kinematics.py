@@ -21,8 +21,8 @@ from mbsym.report.content import (
     Subheading,
     Symbol,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import kinematics as doc
-from mbsym.report.plain import Write, column_text, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.report.results import Results
@@ -30,18 +30,7 @@ if TYPE_CHECKING:
 
 def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
     """The section of results.json."""
-    return doc.Kinematics(
-        bodies=[
-            doc.Body(
-                name=body.name,
-                rotation=matrix_text(body.rotation, write),
-                angular_velocity=column_text(body.angular_velocity, write),
-                velocity_origin=column_text(body.velocity_origin, write),
-                velocity_mass_centre=column_text(body.velocity_mass_centre, write),
-            )
-            for body in found.bodies
-        ]
-    )
+    return doc.Kinematics.from_result(found, write)
 
 
 def content(results: Results) -> Iterator[Block]:

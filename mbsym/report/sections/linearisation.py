@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from msgspec import UNSET
-
 from mbsym.algebra.failures import Failure, message_of
 from mbsym.expressions.message import worded
 from mbsym.expressions.tree import text
@@ -30,13 +28,12 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import linearisation as doc
-from mbsym.report.plain import Write, Written, matrix_text
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.problems.first_order import FirstOrder
-    from mbsym.problems.reduction import Reduction
     from mbsym.report.results import Results
 
 
@@ -46,25 +43,11 @@ SHORT = 12
 
 def data(found: Linearisation, system: System, write: Write) -> doc.Linearisation:
     """The section of results.json."""
-    return doc.Linearisation(
-        **_five(found, write),
-        B=UNSET if found.B is None else matrix_text(found.B, write),
-        reduction=UNSET if found.constrained is None else _reduction(found.constrained, write),
-        subsystems=[
-            doc.LinearSubsystem(coordinates=list(part.coordinates), **_five(part, write)) for part in found.subsystems
-        ],
+    return doc.Linearisation.from_result(
+        found,
+        write,
         time="t" if found.time_scale is None else f"({found.time_scale})*t",
         notation={item.name: text(item.value) for item in system.notation},
-    )
-
-
-def _reduction(about: Reduction, write: Write) -> doc.Reduction:
-    return doc.Reduction.from_result(
-        about,
-        following=list(about.following) or UNSET,
-        leaf=about.leaf or UNSET,
-        rates={name: write(rate) for name, rate in about.rates},
-        assumed_nonzero=[write(x) for x in about.assumed],
     )
 
 
@@ -213,10 +196,6 @@ def _in_speeds(state: FirstOrder) -> Iterator[Block]:
         zeros.append(say(text, count=str(state.norms)))
     if zeros:
         yield paragraph(joined(zeros, " "))
-
-
-def _five(found: Any, write: Write) -> dict[str, list[list[Written]]]:
-    return {name: matrix_text(getattr(found, name), write) for name in "MDGKN"}
 
 
 # The first-order form of problem 5 as reports show it: for systems with inputs or outputs alone.

@@ -10,9 +10,8 @@ from flint import arb
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms
 from mbsym.report.content import Block, Heading, Said, ragged
-from mbsym.report.documents.nonlinear import Determinant
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import normal_forms as doc
-from mbsym.report.plain import Write
 from mbsym.report.words.normal_form_words import sentences
 
 if TYPE_CHECKING:
@@ -25,47 +24,17 @@ def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
     symbols = found.in_symbols
     return doc.NormalForms.from_result(
         found,
-        hamiltonian=found.conservative,
-        generalized_potential=found.taken_in,
-        first_approximation=None if found.first is None else found.first.value,
+        write,
         at_values=None if found.at_values is None else _judged(found.at_values),
-        two_frequencies=_in_symbols(symbols, write) if isinstance(symbols, InSymbols) else None,
-        pair=_focus(symbols, write) if isinstance(symbols, Focus) else None,
-        no_formula=found.no_symbols,
+        two_frequencies=symbols if isinstance(symbols, InSymbols) else None,
+        pair=symbols if isinstance(symbols, Focus) else None,
     )
 
 
 def _judged(found: Judged) -> doc.NormalFormAtValues:
+    actions = [(i + 1, j + 1, value) for (i, j), value in found.quadratic]
     return doc.NormalFormAtValues.from_result(
-        found,
-        verdict=found.outcome,
-        reason=found.why,
-        frequencies=list(map(enclosure, found.frequencies)),
-        actions=[
-            doc.ActionTerm(first=i + 1, second=j + 1, coefficient=enclosure(value)) for (i, j), value in found.quadratic
-        ],
-        determinants=[Determinant(order=order, value=enclosure(value)) for order, value in found.determinants],
-        resonances=[list(one.vector) for one in found.resonances],
-        coefficient=None if found.coefficient is None else enclosure(found.coefficient),
-    )
-
-
-def _in_symbols(found: InSymbols, write: Write) -> doc.TwoFrequencies:
-    return doc.TwoFrequencies(
-        sum_of_squares=write(found.trace),
-        product_of_squares=write(found.product),
-        discriminant=write(found.discriminant),
-        D4=write(found.determinant),
-        D4_vanishes=write(found.zero),
-        resonances=[doc.Resonance(ratio=list(vector), vanishes=write(x)) for vector, x in found.resonances],
-    )
-
-
-def _focus(found: Focus, write: Write) -> doc.Pair:
-    return doc.Pair(
-        frequency_squared=write(found.square),
-        coefficient=write(found.coefficient),
-        amplitude_of=found.amplitude_of,
+        found, enclosure, actions=actions, resonances=[one.vector for one in found.resonances]
     )
 
 

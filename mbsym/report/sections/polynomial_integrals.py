@@ -10,9 +10,8 @@ from mbsym.model.system import System
 from mbsym.problems.polynomial_integrals import Polynomials
 from mbsym.report.content import Block, Display, Heading, Inline, Notation, Relation, Said, ragged, say
 from mbsym.report.documents import integrals
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import polynomial_integrals as doc
-from mbsym.report.integrals_json import symmetries_data
-from mbsym.report.plain import Write
 from mbsym.report.words import symmetry_words
 from mbsym.report.words.integrals_words import (
     LEVEL,
@@ -38,26 +37,18 @@ def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialInt
     found = result.found
     return doc.PolynomialIntegrals.from_result(
         found,
-        weights=dict(zip(found.field.variables, found.grading.weights, strict=True)),
-        quasi_homogeneous=found.grading.homogeneous,
-        not_contained=list(found.aside),
-        rational=list(found.rational),
+        weights=zip(found.field.variables, found.grading.weights, strict=True),
         integrals=[
-            integrals.Integral.from_result(one, new=one.is_new, formula=str(formula), independence=one.certainty.value)
+            integrals.Integral.from_result(one, formula=formula)
             for one, formula in zip(found.generators, result.formulas, strict=True)
         ],
         on_levels=[
-            integrals.ZeroLevel(
-                zero=one.level.name,
-                integrals=[
-                    integrals.WeightedIntegral(weight=weight, formula=str(formula))
-                    for (weight, _), formula in zip(one.integrals, formulas, strict=True)
-                ],
-                complete=one.complete,
+            integrals.ZeroLevel.from_result(
+                one, integrals=[(weight, f) for (weight, _), f in zip(one.integrals, formulas, strict=True)]
             )
             for one, formulas in zip(result.levels, result.on_levels, strict=True)
         ],
-        symmetries=None if result.symmetries is None else symmetries_data(result.symmetries),
+        symmetries=result.symmetries,
     )
 
 

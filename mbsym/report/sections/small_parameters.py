@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from mbsym.analysis.small import SmallParameters
 from mbsym.model.system import System
 from mbsym.report.content import Block, Definitions, Display, Heading, Paragraph, Said, ragged
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import small_parameters as doc
 from mbsym.report.expansion_json import expansion_data, measured_data
 from mbsym.report.oscillation_json import oscillation_data
-from mbsym.report.plain import Write
 from mbsym.report.words import oscillation_words
 from mbsym.report.words.expansion_measured import JudgedAverage, averages, flow_measured, oscillation_measured
 from mbsym.report.words.expansion_words import (

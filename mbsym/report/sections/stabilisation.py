@@ -6,12 +6,10 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from msgspec.structs import asdict
-
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import is_velocity
 from mbsym.model.system import System
-from mbsym.problems.stabilisation import Feedback, Locus, Rank, Stabilisation
+from mbsym.problems.stabilisation import Stabilisation
 from mbsym.report.content import (
     Block,
     Display,
@@ -28,8 +26,8 @@ from mbsym.report.content import (
     say,
     speeds,
 )
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import stabilisation as doc
-from mbsym.report.plain import Write
 from mbsym.report.sections.stability import verdict_data
 from mbsym.report.words.stabilisation_words import ENCLOSED, FEEDBACK, LYAPUNOV, OF_PART, STATES, sentences
 
@@ -39,85 +37,9 @@ if TYPE_CHECKING:
 
 def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
     """The section of results.json."""
-    return doc.Stabilisation.from_result(
-        found,
-        gyroscopic=[
-            doc.Gyroscopic(
-                coordinates=list(part.coordinates),
-                zero_eigenvalues=part.free,
-                regions=[
-                    doc.Region(
-                        where=[doc.Relation(formula=write(x), relation=relation) for x, relation in region.signs],
-                        degree=region.degree,
-                    )
-                    for region in part.regions
-                ],
-            )
-            for part in found.gyroscopic
-        ],
-        energies=[
-            doc.BundleEnergy.from_result(
-                part,
-                minors=[write(x) for x in part.minors],
-                definite_at_values=part.at_values,
-                bundle_at_values=None if part.bundle is None else list(map(str, part.bundle)),
-            )
-            for part in found.energy
-        ],
-        dissipation=[
-            doc.Dissipation.from_result(
-                part,
-                rank=_rank(part.rank, write),
-                undamped=[
-                    doc.Undamped(
-                        minus_lambda_squared=write(one.square),
-                        shape=None if one.shape is None else [write(x) for x in one.shape],
-                    )
-                    for one in part.motions
-                ],
-                pervasive_at_values=part.at_values,
-            )
-            for part in found.dissipation
-        ],
-        control=[
-            doc.Control.from_result(part, rank=_rank(part.rank, write), controllable_at_values=part.at_values)
-            for part in found.control
-        ],
-        least_inputs=[list(one) for one in found.least],
-        feedback=None if found.feedback is None else _feedback(found.feedback),
-    )
-
-
-def _rank(found: Rank, write: Write) -> doc.Rank:
-    return doc.Rank.from_result(
-        found,
-        sure=found.certainty.value,
-        roots_without=[[write(x) for x in factor] for factor in found.factors],
-        lost=None if found.locus is None else _locus(found.locus, write),
-    )
-
-
-def _locus(found: Locus, write: Write) -> doc.Lost:
-    return doc.Lost(
-        where_one_vanishes=[write(x) for x in found.factors],
-        where_all_vanish=[write(x) for x in found.together],
-        provided_nonzero=[write(x) for x in found.provided],
-    )
-
-
-def _feedback(found: Feedback) -> doc.Feedback:
-    return doc.Feedback(
-        states=list(found.states),
-        of_part=found.of_part,
-        gains=_numbers(found.gains),
-        characteristic_polynomial=list(map(str, found.characteristic)),
-        **asdict(verdict_data(found.verdict)),
-        lyapunov=None if found.lyapunov is None else _numbers(found.lyapunov),
-    )
-
-
-def _numbers(rows: Sequence[Sequence[Fraction]]) -> list[list[str]]:
-    return [list(map(str, row)) for row in rows]
+    law = found.feedback
+    feedback = None if law is None else doc.Feedback.from_result(law, **verdict_data(law.verdict))
+    return doc.Stabilisation.from_result(found, write, feedback=feedback)
 
 
 def content(results: Results) -> Iterator[Block]:

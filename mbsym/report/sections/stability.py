@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from msgspec import UNSET, UnsetType
 from msgspec.structs import asdict
@@ -63,8 +63,8 @@ from mbsym.report.content import (
     say,
 )
 from mbsym.report.documents import parts
+from mbsym.report.documents.base import Write
 from mbsym.report.documents.results import stability as doc
-from mbsym.report.plain import Write
 from mbsym.report.references import keys_of, theorems_named
 from mbsym.report.words.claims import concluded, decided, verdict
 
@@ -79,33 +79,17 @@ def data(found: Stability, system: System, write: Write) -> doc.Stability:
     """The section of results.json."""
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
     variable = free_name("lam", taken)
-    return doc.Stability(
-        **asdict(verdict_data(found.verdict)),
-        at_values=None if found.numerical is None else verdict_data(found.numerical),
-        subsystems=[_subsystem(part, variable) for part in found.subsystems],
-        eigenvalues_at_values=[
-            doc.Spectrum(
-                coordinates=list(part.coordinates),
-                roots=[doc.Root.from_result(x) for x in numbers(part)],
-            )
-            for part in found.spectra
-        ],
-    )
-
-
-def verdict_data(found: Verdict) -> parts.Verdict:
-    """A verdict in every JSON file: its word, its theorems and reasons as codes, the reasons in sentences beside."""
-    return parts.Verdict.from_result(
+    return doc.Stability.from_result(
         found,
-        verdict=found.word,
-        reasons=[
-            parts.Reason(code=item.code.name.lower(), data=[_datum(x) for x in item.data]) for item in found.reasons
-        ],
+        **verdict_data(found.verdict),
+        subsystems=[_subsystem(part, variable) for part in found.subsystems],
+        eigenvalues_at_values=[(part.coordinates, numbers(part)) for part in found.spectra],
     )
 
 
-def _datum(value: object) -> int | str:
-    return value if isinstance(value, int) else str(value)
+def verdict_data(found: Verdict) -> dict[str, Any]:
+    """The fields of a verdict in every JSON file, for parts that have more of them."""
+    return asdict(parts.Verdict.from_result(found))
 
 
 def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsystem:
@@ -114,12 +98,10 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
     shown = Shown()
     for item in listed:
         shown.show(item)
-    return doc.StabilitySubsystem(
-        coordinates=list(part.coordinates),
+    return doc.StabilitySubsystem.from_result(
+        part,
         variable=variable,
-        characteristic_polynomial=[str(coefficient) for coefficient in part.characteristic],
-        method=part.theory.method.name.lower(),
-        **asdict(verdict_data(part.theory.verdict)),
+        **verdict_data(part.theory.verdict),
         conditions=[_condition_of(item) for item in listed],
         cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered)],
     )
@@ -128,9 +110,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
 def _statement(item: Statement) -> doc.Statement:
     """``formula`` ``relation`` 0; null for a formula that is too long to be written out."""
     formula = item.formula if item.never is None else item.never
-    return doc.Statement.from_result(
-        item, formula=None if formula is None else str(formula), never=item.never is not None
-    )
+    return doc.Statement.from_result(item, formula=formula, never=item.never is not None)
 
 
 def _condition_of(item: Statement) -> doc.Condition:
@@ -138,8 +118,8 @@ def _condition_of(item: Statement) -> doc.Condition:
     told: doc.InCoefficients | UnsetType = UNSET
     if item.told is not None:
         letters = {str(letter): str(value) for letter, value in item.told.letters}
-        told = doc.InCoefficients(formula=str(item.told.formula), coefficients=letters)
-    return doc.Condition(**asdict(_statement(item)), in_coefficients=told, place=item.place.name.lower())
+        told = doc.InCoefficients.from_result(item.told, coefficients=letters)
+    return doc.Condition.from_result(item, **asdict(_statement(item)), in_coefficients=told)
 
 
 def _case(case: CaseStatement, shown: Shown) -> doc.Case:
@@ -153,7 +133,6 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
         case,
         all_of=[named(item) for item in case.all_of],
         any_of=[named(item) for item in case.any_of],
-        verdict=case.word,
     )
 
 

@@ -25,8 +25,8 @@ from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
 from mbsym.problems.stability.verdict import Verdict
+from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
-from mbsym.report.sections.stability import verdict_data
 
 #: A singular value of the pencil below this part of its largest belongs to a shape.
 NULL = 1e-8
@@ -176,7 +176,7 @@ def modes_json(found: Modes) -> dict[str, Any]:
     return {
         "base": {name: number(value) for name, value in found.base.items()},
         "turning": {name: number(value) for name, value in found.turning.items()},
-        "verdict": plain(verdict_data(found.verdict)),
+        "verdict": plain(parts.Verdict.from_result(found.verdict)),
         "still": list(found.still),
         "modes": [
             {

@@ -28,10 +28,10 @@ from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
 from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.word import Word
+from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
 from mbsym.report.html.environment import embedded, hash_of
 from mbsym.report.language import Language
-from mbsym.report.sections.stability import verdict_data
 from mbsym.report.viewer.modes import modes, modes_json
 from mbsym.report.viewer.motion import motion, motion_json, moving_picture
 from mbsym.simulation import Request, Simulation
@@ -301,7 +301,7 @@ def at_rest_json(found: AtRest) -> dict[str, Any]:
                 "values": {name: number(value) for name, value in x.values.items()},
                 "texts": dict(x.texts),
                 "free": list(x.free),
-                "verdict": plain(verdict_data(x.verdict)),
+                "verdict": plain(parts.Verdict.from_result(x.verdict)),
                 "proof": x.proof,
                 "otherAngles": x.other_angles,
                 "family": x.family,

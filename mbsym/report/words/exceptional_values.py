@@ -126,16 +126,18 @@ def as_text(system: System, found: Along) -> str:
         low=str(found.low),
         high=str(found.high),
         values=[
-            doc.ExceptionalValue(
+            doc.ExceptionalValue.from_result(
+                one.judged,
+                enclosure,
                 value=_number(one),
-                enclosure=enclosure(one.enclosure),
+                enclosure=one.enclosure,
                 root_of=list(map(str, one.polynomial)),
                 vanishing=[VANISHING[key] for key in one.vanishing],
-                **_judged(one.judged) | _of_problem_6(one.verdict),
+                **_of_problem_6(one.verdict),
             )
             for one in found.specials
         ],
-        between=[doc.Between(sample=str(one.sample), **_judged(one.judged)) for one in found.between],
+        between=[doc.Between.from_result(one.judged, enclosure, sample=str(one.sample)) for one in found.between],
     )
     return written(whole)
 
@@ -143,17 +145,3 @@ def as_text(system: System, found: Along) -> str:
 def _of_problem_6(verdict: Verdict | None) -> dict[str, Any]:
     """In place of what terms of higher order leave open."""
     return {} if verdict is None else {"verdict": verdict.word, "theorem": verdict.theorem, "reason": ""}
-
-
-def _judged(judged: Judged) -> dict[str, Any]:
-    return {
-        "verdict": judged.outcome,
-        "theorem": judged.theorem,
-        "reason": judged.why,
-        "frequencies": list(map(enclosure, judged.frequencies)),
-        "determinants": [doc.Determinant(order=order, value=enclosure(value)) for order, value in judged.determinants],
-        "coefficient": None if judged.coefficient is None else enclosure(judged.coefficient),
-        "amplitude_of": judged.amplitude_of,
-        "along": judged.along,
-        "degree": judged.degree,
-    }

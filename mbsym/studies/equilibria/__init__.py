@@ -180,10 +180,23 @@ def answer(asked: Asked, request: Request, found: Listed | Branches) -> Answer:
 
 
 def as_json(asked: Asked, request: Request, found: Listed | Branches) -> str:
-    from mbsym.report.maps.equilibria_json import equilibria_json
+    from msgspec import UNSET
+
+    from mbsym.expressions.tree import text
+    from mbsym.model.quantities import units_by_name
+    from mbsym.report.documents import equilibria as doc
+    from mbsym.report.documents.base import written
 
     assert isinstance(found, Listed)
-    return equilibria_json(asked.system, _numbers(asked.system, request), found.equilibria, found.permanent)
+    values = _numbers(asked.system, request)
+    whole = doc.Equilibria.from_result(
+        found.equilibria,
+        system=asked.system.name,
+        units=units_by_name(asked.system) or UNSET,
+        values={name: x if isinstance(x, Fraction) else text(x) for name, x in values.items()},
+        permanent_rotations=found.permanent,
+    )
+    return written(whole)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, UnsetType, field
 
 from mbsym.algebra.failures import Limit, Severity
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
-from mbsym.report.documents.base import ASIDE, Format, Part, Version, told_apart_by, version, words
+from mbsym.report.documents.base import ASIDE, Format, From, Part, Version, told_apart_by, version, words
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
 from mbsym.report.documents.results.claims import Claim
@@ -58,7 +58,7 @@ class SmallParameter(Part, frozen=True):
     powers: Annotated[dict[str, int], "parameters and variables that hold it, each with its power; or none"]
     fast: Annotated[list[str], "variables that a slow manifold expresses by the others; none: they are found"]
     slow: Annotated[list[str], "variables that are not among the fast ones"]
-    leading: Annotated[str | UnsetType, "the variable whose oscillation is followed, where it is given"] = UNSET
+    leading: Annotated[str | UnsetType, "the variable whose oscillation is followed, where it is given", From()] = UNSET
 
 
 class Table(Part, frozen=True):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from mbsym.report.documents.base import BY_COORDINATE, Part
+from mbsym.report.documents.base import BY_COORDINATE, From, Part
 from mbsym.report.documents.parts import Formula
 
 
@@ -35,7 +35,7 @@ class Hamilton(Part, frozen=True):
 class Brackets(Part, frozen=True):
     """the first integrals of problem 7 in momenta"""
 
-    integrals: Annotated[list[str], "their names"]
+    integrals: Annotated[list[str], "their names", From("names")]
     formulas: Annotated[list[Formula], "F_i(q, p, t)"]
     matrix: Annotated[list[list[Formula]], "their Poisson brackets"]
     in_involution: Annotated[bool | None, "whether all brackets are zero; null where that is not decided"]

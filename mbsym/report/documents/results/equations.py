@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Sequence
+from operator import itemgetter
+from typing import TYPE_CHECKING, Annotated
 
 from msgspec import UNSET, Meta, UnsetType
 
-from mbsym.report.documents.base import BY_COORDINATE, Part, words
+from mbsym.report.documents.base import BY_COORDINATE, From, Part, words
 from mbsym.report.documents.parts import Formula
+
+if TYPE_CHECKING:
+    from mbsym.mechanics.constraints.rows import RowName
+
+
+def _labels(rows: Sequence[RowName]) -> list[str]:
+    return [row.label for row in rows]
 
 
 class ConstraintRow(Part, frozen=True):
-    constraint: Annotated[int, "number of the constraint in the description, from 1"]
-    component: Annotated[int | None, "number of its row, from 1; null where it has one"]
+    constraint: Annotated[int, "number of the constraint in the description, from 1", From(by=lambda k: k + 1)]
+    component: Annotated[int | None, "number of its row, from 1; null where it has one", From(by=lambda k: k or None)]
     kind: Annotated[str, "coincide, parallel, distance, relation, rolling or velocity"]
     holonomic: Annotated[bool, "whether it is given as a relation between coordinates"]
     position: Annotated[Formula | None, "f(q, t), which is zero; null of one that is given by velocities"]
@@ -21,9 +30,9 @@ class ConstraintRow(Part, frozen=True):
 
 
 class RedundantRow(Part, frozen=True):
-    row: Annotated[str, "which row"]
-    follows_from: Annotated[list[str], "the rows that it follows from"]
-    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known"]
+    row: Annotated[str, "which row", From("name.label")]
+    follows_from: Annotated[list[str], "the rows that it follows from", From("from_rows", _labels)]
+    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known", From("certainty")]
 
 
 class Integrability(Part, frozen=True):
@@ -32,7 +41,7 @@ class Integrability(Part, frozen=True):
     word: Annotated[str, words("holonomic", "partly", "nonholonomic", "undecided"), "the verdict"]
     growth: Annotated[list[int], "dimensions spanned by the fields, with their first brackets, and so on"]
     kept: Annotated[int | None, "relations between coordinates that follow besides those given"]
-    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known"]
+    known: Annotated[str, words("proved", "verified numerically", "undecided"), "how that is known", From("certainty")]
 
 
 class IntegrableAlone(Part, frozen=True):
@@ -48,32 +57,42 @@ class Constraints(Part, frozen=True):
     acceleration: Annotated[list[Formula], "J' q' + j'"]
     position_rank: Annotated[int, "independent constraints on positions"]
     velocity_rank: Annotated[int, "independent constraints on velocities, derivatives of those on positions included"]
-    degrees_of_freedom: Annotated[int, "independent velocities"]
+    degrees_of_freedom: Annotated[int, "independent velocities", From("free", len)]
     redundant: Annotated[list[RedundantRow], "rows that follow from others"]
     parameter_conditions: Annotated[
-        int, "how many relations between the parameters the constraints on positions demand"
+        int, "how many relations between the parameters the constraints on positions demand", From("demanded.count")
     ]
     parameter_relations: Annotated[
-        list[Formula], "these, as formulas that are zero (verified numerically); empty where they were not recognised"
+        list[Formula],
+        "these, as formulas that are zero (verified numerically); empty where they were not recognised",
+        From("demanded.relations"),
     ]
     parameters_satisfy_them: Annotated[
-        bool | None, "whether the given values satisfy them; null where there are none, or not all values are given"
+        bool | None,
+        "whether the given values satisfy them; null where there are none, or not all values are given",
+        From("demanded.satisfied"),
     ]
     velocity_rank_beside: Annotated[
-        int | None, "velocity_rank at values of the parameters near the given ones, where it is another; else null"
+        int | None,
+        "velocity_rank at values of the parameters near the given ones, where it is another; else null",
+        From("rank_beside"),
     ]
     integrability: Integrability | None
     integrable_alone: Annotated[
         list[IntegrableAlone], "of each independent velocity constraint by itself (proved; null: undecided)"
     ]
     dependent: Annotated[list[str], "coordinates whose velocities are expressed by the others"]
-    independent: Annotated[list[str], "the others, whose velocities are u"]
+    independent: Annotated[list[str], "the others, whose velocities are u", From("free")]
     regular_where_not_zero: Annotated[
-        Formula | UnsetType, "the determinant by which the dependent velocities are solved for"
+        Formula | UnsetType,
+        "the determinant by which the dependent velocities are solved for",
+        From("solved.regular_where"),
     ] = UNSET
-    Y: Annotated[list[list[Formula]] | UnsetType, "q' = Y u + y0, a row for each coordinate"] = UNSET
-    y0: Annotated[list[Formula] | UnsetType, "see Y"] = UNSET
-    a0: Annotated[list[Formula] | UnsetType, "q'' = Y u' + a0"] = UNSET
+    Y: Annotated[
+        list[list[Formula]] | UnsetType, "q' = Y u + y0, a row for each coordinate", From("solved.transformation")
+    ] = UNSET
+    y0: Annotated[list[Formula] | UnsetType, "see Y", From("solved.shift")] = UNSET
+    a0: Annotated[list[Formula] | UnsetType, "q'' = Y u' + a0", From("solved.acceleration_shift")] = UNSET
 
 
 class Embedded(Part, frozen=True):
@@ -97,7 +116,7 @@ class Equations(Part, frozen=True):
     ] = UNSET
     aside: Annotated[list[str] | UnsetType, "those on which no equation depends"] = UNSET
     constraints: Constraints | UnsetType = UNSET
-    embedded: Embedded | UnsetType = UNSET
+    embedded: Annotated[Embedded | UnsetType, From()] = UNSET
 
 
 class PerMultiplier(Part, frozen=True):
@@ -109,12 +128,16 @@ class PerMultiplier(Part, frozen=True):
 class Balance(Part, frozen=True):
     """forces of constraints that are in balance with each other: any multiple of them may be added"""
 
-    rows: Annotated[list[str], "whose forces; the first one is left out of the formulas"]
+    rows: Annotated[list[str], "whose forces; the first one is left out of the formulas", From(by=_labels)]
     components: Annotated[
         list[int], "what they change and the equations do not determine: 0, 1, 2 of the force, 3, 4, 5 of the moment"
     ]
-    force: Annotated[list[Formula] | None, "what they add to the force; null where that is long"]
-    moment: Annotated[list[Formula] | None, "what they add to the moment; null where that is long"]
+    force: Annotated[
+        list[Formula] | None, "what they add to the force; null where that is long", From("added", itemgetter(0))
+    ]
+    moment: Annotated[
+        list[Formula] | None, "what they add to the moment; null where that is long", From("added", itemgetter(1))
+    ]
 
 
 class Reaction(Part, frozen=True):
@@ -122,7 +145,7 @@ class Reaction(Part, frozen=True):
     force: Annotated[list[Formula], "without multipliers", Meta(min_length=3, max_length=3)]
     moment: Annotated[list[Formula], "the same of the moment", Meta(min_length=3, max_length=3)]
     per_multiplier: Annotated[list[PerMultiplier], "of each independent row of the constraints, for lambda = 1"]
-    undetermined: Annotated[list[Balance], "why components are not determined; empty where all are"]
+    undetermined: Annotated[list[Balance], "why components are not determined; empty where all are", From("balances")]
     determined_combinations: Annotated[
-        int, "combinations of the undetermined components that are determined all the same"
+        int, "combinations of the undetermined components that are determined all the same", From("combinations")
     ]

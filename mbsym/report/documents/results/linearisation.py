@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import UNSET, UnsetType
 
-from mbsym.report.documents.base import BY_COORDINATE, Part, told_apart_by
+from mbsym.report.documents.base import BY_COORDINATE, From, Part, or_null, told_apart_by
 from mbsym.report.documents.parts import Formula
 
 
@@ -20,16 +20,18 @@ class Reduction(Part, frozen=True, kw_only=True):
     following: Annotated[
         list[str] | UnsetType,
         "felt coordinates whose velocities are dependent: each has an equation of first order of its own",
+        From(),
     ] = UNSET
     idle: Annotated[
         list[str], "independent coordinates on which no equation of the speeds depends in the first approximation"
     ]
     rates: Annotated[dict[str, Formula], "velocities of the motion that follow from the constraints"]
-    assumed_nonzero: Annotated[list[Formula], "formulas that must not vanish on the motion"]
+    assumed_nonzero: Annotated[list[Formula], "formulas that must not vanish on the motion", From("assumed")]
     leaf: Annotated[
         int | UnsetType,
         "how many relations the velocity constraints keep, which are proved to be integrable; the first "
         "approximation is that on the leaf of the motion",
+        From(by=or_null),
     ] = UNSET
     holonomic: Annotated[
         bool,
@@ -59,11 +61,12 @@ class Linearisation(Matrices, frozen=True, kw_only=True):
     constraints x are the coordinates of the independent speeds
     """
 
-    reduction: Reduction | UnsetType = UNSET
+    reduction: Annotated[Reduction | UnsetType, From("constrained")] = UNSET
     B: Annotated[
         list[list[Formula]] | UnsetType,
         "input matrix: a column for each of the inputs, where there are any",
         BY_COORDINATE,
+        From(),
     ] = UNSET
     subsystems: Annotated[list[LinearSubsystem], "decoupled parts", told_apart_by("coordinates")]
     time: Annotated[Formula, "the time of the subsystems; t is that of the description"]
@@ -85,7 +88,7 @@ class StateSpace(Part, frozen=True):
 class FirstOrder(Part, frozen=True):
     """problem 5 in speeds and positions: x' = A x"""
 
-    speeds: Annotated[list[str], "positions and speeds, in the order of x"]
+    speeds: Annotated[list[str], "positions and speeds, in the order of x", From("names")]
     values: Annotated[list[Formula], "their values on the motion", BY_COORDINATE]
     A: Annotated[list[Annotated[list[Formula], BY_COORDINATE]], "A, in the order of x", BY_COORDINATE]
     relations: Annotated[

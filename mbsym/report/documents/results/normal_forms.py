@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from mbsym.report.documents.base import Part, told_apart_by
+from mbsym.report.documents.base import From, Part, told_apart_by
 from mbsym.report.documents.nonlinear import (
     NUMBER,
     AmplitudeOf,
@@ -62,18 +62,18 @@ class Resonance(Part, frozen=True):
 class TwoFrequencies(Part, frozen=True):
     """formulas"""
 
-    sum_of_squares: Annotated[Formula, "w1^2 + w2^2"]
-    product_of_squares: Annotated[Formula, "w1^2 w2^2"]
+    sum_of_squares: Annotated[Formula, "w1^2 + w2^2", From("trace")]
+    product_of_squares: Annotated[Formula, "w1^2 w2^2", From("product")]
     discriminant: Annotated[Formula, "(w1^2 - w2^2)^2"]
-    D4: Annotated[Formula, "the determinant of fourth order"]
-    D4_vanishes: Annotated[Formula, "its numerator"]
+    D4: Annotated[Formula, "the determinant of fourth order", From("determinant")]
+    D4_vanishes: Annotated[Formula, "its numerator", From("zero")]
     resonances: Annotated[list[Resonance], "resonances of orders 3 and 4", told_apart_by("ratio")]
 
 
 class Pair(Part, frozen=True):
     """formulas"""
 
-    frequency_squared: Annotated[Formula, "w^2"]
+    frequency_squared: Annotated[Formula, "w^2", From("square")]
     coefficient: Annotated[Formula, "a of r' = a r^3"]
     amplitude_of: Annotated[str, "the coordinate whose amplitude r is"]
 
@@ -86,15 +86,23 @@ class NormalForms(Part, frozen=True):
         list[str], "cyclic coordinates, left out: of Hamiltonian systems with their momenta at the unperturbed values"
     ]
     hamiltonian: Annotated[
-        bool, "whether Lagrange's function gives all forces: none is applied, or they have a generalized potential"
+        bool,
+        "whether Lagrange's function gives all forces: none is applied, or they have a generalized potential",
+        From("conservative"),
     ]
     generalized_potential: Annotated[
-        bool, "whether there are applied forces that Lagrange's function takes in (Helmholtz's conditions)"
+        bool,
+        "whether there are applied forces that Lagrange's function takes in (Helmholtz's conditions)",
+        From("taken_in"),
     ]
     first_approximation: Annotated[
-        str | None, "the verdict of problem 6 at the given values, without terms of higher order"
+        str | None, "the verdict of problem 6 at the given values, without terms of higher order", From("first")
     ]
     at_values: Annotated[NormalFormAtValues | None, "what is decided at the given values; null without numbers"]
     two_frequencies: Annotated[TwoFrequencies | None, "Hamiltonian systems of two frequencies, in parameters"]
     pair: Annotated[Pair | None, "one pair of imaginary roots for all parameters"]
-    no_formula: Annotated[str, "why there is no formula in parameters; empty where there is one, or none is looked for"]
+    no_formula: Annotated[
+        str,
+        "why there is no formula in parameters; empty where there is one, or none is looked for",
+        From("no_symbols"),
+    ]

@@ -8,7 +8,7 @@ from msgspec import UNSET, Meta, UnsetType
 
 from mbsym.problems.stability.requirements import Method, Place
 from mbsym.problems.stability.word import Word
-from mbsym.report.documents.base import Part, counted_from, told_apart_by, words
+from mbsym.report.documents.base import From, Part, counted_from, told_apart_by, words
 from mbsym.report.documents.parts import Formula, TheoremName, Verdict
 
 
@@ -76,7 +76,7 @@ class Case(Part, frozen=True):
         "conditions of which one holds",
     ]
     otherwise: Annotated[bool, "whether nothing is required but that the cases before do not apply"]
-    verdict: Annotated[Word, "what is proved then"]
+    verdict: Annotated[Word, "what is proved then", From("word")]
     theorems: Annotated[list[TheoremName], "the theorems that prove it"]
 
 
@@ -85,11 +85,14 @@ class StabilitySubsystem(Verdict, frozen=True):
 
     coordinates: Annotated[list[str], "its coordinates"]
     variable: Annotated[str, "the variable of its characteristic polynomial"]
-    characteristic_polynomial: Annotated[list[Formula], "coefficients, that of the zeroth power first", counted_from(0)]
+    characteristic_polynomial: Annotated[
+        list[Formula], "coefficients, that of the zeroth power first", counted_from(0), From("characteristic")
+    ]
     method: Annotated[
         str,
         words(Method),
         "even: all squares of roots real, negative, simple; hurwitz: all roots to the left (Lienard-Chipart); none",
+        From("theory.method"),
     ]
     conditions: Annotated[list[Condition], "conditions that are not known to hold", told_apart_by("label")]
     cases: Annotated[list[Case], "read in order, like if and elif"]
@@ -113,7 +116,9 @@ class Spectrum(Part, frozen=True):
 class Stability(Verdict, frozen=True):
     """problem 6"""
 
-    at_values: Annotated[Verdict | None, "the verdict at the description's values; null where it has none"]
+    at_values: Annotated[
+        Verdict | None, "the verdict at the description's values; null where it has none", From("numerical")
+    ]
     subsystems: Annotated[list[StabilitySubsystem], "decoupled parts", told_apart_by("coordinates")]
     eigenvalues_at_values: Annotated[
         list[Spectrum], "eigenvalues at the description's values, as doubles", told_apart_by("coordinates")
