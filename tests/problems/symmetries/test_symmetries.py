@@ -58,7 +58,11 @@ def found(text, **values):
 
 
 def told(result):
-    return [({name: str(xi) for name, xi in one.directions}, str(one.gauge), str(one.integral)) for one in result.new]
+    return list(map(in_words, result.new))
+
+
+def in_words(one):
+    return {name: str(xi) for name, xi in one.directions}, str(one.gauge), str(one.integral)
 
 
 def test_lagranges_top_in_odd_axes():
@@ -114,10 +118,16 @@ def test_a_cyclic_coordinate_in_others():
 
 
 def test_forces_without_a_force_function_take_part():
-    """m1 x'' = n y', m2 y'' = -n x': a charge in a field.  m1 x'' = -n x': a body in a viscous fluid."""
+    """m1 x'' = n y', m2 y'' = -n x': a charge in a field, known.  m1 x'' = -n x': a body in a viscous fluid."""
     result = found(TWO + "  - generalized force: {x: n*y_dot, y: -n*x_dot}\n")
-    assert told(result) == [({"x": "1"}, "n*y", "m1*x_dot - n*y"), ({"y": "1"}, "-n*x", "m2*y_dot + n*x")]
-    (rotation,) = [one for one in result.symmetries if one.name == DEPENDENT]
+    momenta = [({"x": "1"}, "n*y", "m1*x_dot - n*y"), ({"y": "1"}, "-n*x", "m2*y_dot + n*x")]
+    assert list(map(in_words, result.symmetries[:2])) == momenta
+    assert [one.name for one in result.symmetries[:2]] == [
+        f"momentum of {name} with the share of gyroscopic forces" for name in "xy"
+    ]
+    assert told(result) == []
+    *_, rotation = result.symmetries
+    assert rotation.name == "function of the integrals of problem 7"
     assert rotation.certainty is Certainty.VERIFIED
     damped = found(TWO + "  - damper: {coordinate: x, coefficient: n}\n  - spring: {coordinate: y, stiffness: k}\n")
     # (m1 x' + n x)^2/2 + m1 (m2 y'^2 + k y^2)/2: with the square of the first the energy of the other body.
