@@ -40,14 +40,14 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
     A name is that of a parameter, a coordinate (its initial position) or ``<coordinate>_dot`` (its initial velocity);
     an expression is made of numbers, pi and parameters.
     """
-    found: dict[str, Expression] = {}
+    expressions: dict[str, Expression] = {}
     given: dict[str, str] = {}
     for text in texts:
         text = " ".join(text.splitlines())
         complaints = Complaints()
-        _read(text, system, complaints, found, given)
+        _read(text, system, complaints, expressions, given)
         options.complaints += [render_option(one, text, "--set", options.say) for one in complaints.sorted()]
-    return Assigned(found, given)
+    return Assigned(expressions, given)
 
 
 def _read(
@@ -152,13 +152,13 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
     text, complaints = " ".join(text.splitlines()), Complaints()
     scaling = read_scaling(text, system, complaints)
-    options.complaints += [render_option(one, text, "--scale", options.say) for one in complaints.sorted()]
+    options.complaints += [render_option(complaint, text, "--scale", options.say) for complaint in complaints.sorted()]
     try:
         return None if scaling is None else described(system, scaling)
     except Failure as error:
-        told = Message("there is no description in these variables: [[why]]", why=error.reason)
+        message = Message("there is no description in these variables: [[why]]", why=error.reason)
         hint = error.remedy or "'mbsym show --scale' prints equations and integrals in them"
-        options.complain("--scale", "no-description", told, hint)
+        options.complain("--scale", "no-description", message, hint)
     return None
 
 
@@ -177,7 +177,7 @@ def _unread(system: System, assigned: Assigned) -> set[str]:
     """Names whose value was refused, and what follows from them through relations: these do not lack one."""
     found = assigned.texts.keys() - assigned.values.keys()
     for _ in system.relations:
-        found |= {one.name for one in system.relations if names(one.value) & found}
+        found |= {relation.name for relation in system.relations if names(relation.value) & found}
     return found
 
 
@@ -216,9 +216,9 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
         )
         return False
     if name in system.input_names:
-        given = Message("'mbsym simulate --input [[name]]=...' says what it is along a motion", name=name)
+        message = Message("'mbsym simulate --input [[name]]=...' says what it is along a motion", name=name)
         complaints.error(
-            "misplaced-name", Message("'[[name]]' is an input and has no value to set", name=name), span, given
+            "misplaced-name", Message("'[[name]]' is an input and has no value to set", name=name), span, message
         )
         return False
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))

@@ -114,7 +114,7 @@ def _size(system: System) -> str:
         title = Message("coordinates ([[count]]): [[names]]", count=count, names=names)
     told = [say(title)]
     if system.linear is not None:
-        given = ", ".join(one.key for one in system.linear.matrices)
+        given = ", ".join(matrix.key for matrix in system.linear.matrices)
         return "; ".join([*told, f"{say('given by its matrices')}: {given}"])
     if system.constraints:  # how many of the coordinates are free is another question
         told.append(say(Message("constraints: [[count]]", count=len(system.constraints))))

@@ -103,8 +103,8 @@ def _compare(
         worst = max(worst, Exit.FAILED if check else Exit.OK)
         if not as_json:
             say = Language(language).say if language else speaking(*([source.path] if source.description else []))
-            told = Message("[[name]]: only in [[side]]", name=name, side="A" if first_only else "B")
-            console().print(printable(say(told)))
+            message = Message("[[name]]: only in [[side]]", name=name, side="A" if first_only else "B")
+            console().print(printable(say(message)))
     if as_json:
         from mbsym.report.documents.base import written
 
@@ -182,10 +182,10 @@ def _side(path: Path) -> dict[str, Source]:
         return {file.parent.relative_to(path).as_posix(): Source(file, False) for file in trees}
     from mbsym_cli.batch.folders import found_in
 
-    found = {place.folder: Source(Path(place.file), True) for place in found_in([path], Path("build")).places}
-    if not found:
+    sources = {place.folder: Source(Path(place.file), True) for place in found_in([path], Path("build")).places}
+    if not sources:
         complain(path, "error[nothing]: there are neither results nor descriptions in this folder")
-    return found
+    return sources
 
 
 def _is_description(path: Path) -> bool:
@@ -328,9 +328,9 @@ def show(name: str, first: str, second: str, found: Diff, everything: bool, say:
         counts = Counted(len(found.changes), "change") if found.changes else Message("only names are others")
         sides = (printable(f"{first} -> {second}"), "dim")
         out.print(Text.assemble((printable(name), "bold"), f": {say(counts)}   ", sides))
-        for one in found.renamed:
+        for renaming in found.renamed:
             text = "[[kind]] [[before]] is called [[after]]"
-            renamed = Message(text, kind=worded(one.kind), before=one.before, after=one.after)
+            renamed = Message(text, kind=worded(renaming.kind), before=renaming.before, after=renaming.after)
             out.print(Text.assemble(("  ~ ", "cyan"), printable(say(renamed))))
         shown = found.changes if everything else found.changes[:MOST_CHANGES]
         for change in shown:

@@ -74,7 +74,7 @@ def explanations(word: str) -> list[str]:
 
 def _as_known(word: str) -> str:
     """The word as it is written, whatever its capitals; nothing where there is none."""
-    return next((one for one in known_words() if one.casefold() == word.casefold()), "")
+    return next((known_word for known_word in known_words() if known_word.casefold() == word.casefold()), "")
 
 
 def _near(word: str) -> list[str]:
@@ -90,8 +90,8 @@ def known_words() -> list[str]:
     from mbsym.source.topics import words
     from mbsym_cli.main import COMMANDS
 
-    theorems = [*(one.name for one in THEOREMS), *(one.value for one in HigherOrder if one)]
-    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(one.value for one in Word), *theorems, *words()]))
+    theorems = [*(theorem.name for theorem in THEOREMS), *(order.value for order in HigherOrder if order)]
+    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(word.value for word in Word), *theorems, *words()]))
 
 
 def _command(word: str) -> Iterator[str]:
@@ -148,16 +148,16 @@ def _theorem(word: str) -> Iterator[str]:
     """What a theorem needs and gives, each time it stands in the table of those of problem 6."""
     from mbsym.problems.stability.theorems import THEOREMS, Ground, HigherOrder
 
-    for one in THEOREMS:
-        if one.name.casefold() == word.casefold():
-            needs = "".join(f"\n    {fact.value}" for fact in type(next(iter(one.needs))) if fact in one.needs)
-            if one.name == "Routh":  # it is Lagrange-Dirichlet's theorem on what ignoring coordinates leaves
+    for theorem in THEOREMS:
+        if theorem.name.casefold() == word.casefold():
+            needs = "".join(f"\n    {fact.value}" for fact in type(next(iter(theorem.needs))) if fact in theorem.needs)
+            if theorem.name == "Routh":  # it is Lagrange-Dirichlet's theorem on what ignoring coordinates leaves
                 needs += "\n    cyclic coordinates left out, their momenta kept"
-            gives = "instability" if one.gives is None else "stability"
-            if one.gives is Ground.DECAYS:
+            gives = "instability" if theorem.gives is None else "stability"
+            if theorem.gives is Ground.DECAYS:
                 gives = "asymptotic stability (where a family is named: to a member of it)"
-            yield f"{one.name}, problem 6: {gives}, where{needs}"
-    if any(one and one.value.casefold() == word.casefold() for one in HigherOrder):
+            yield f"{theorem.name}, problem 6: {gives}, where{needs}"
+    if any(order and order.value.casefold() == word.casefold() for order in HigherOrder):
         yield "A theorem of problem 11: mbsym explain 11"
 
 

@@ -385,9 +385,9 @@ def safe_name(name: str) -> str:
     return data[:_LONGEST_NAME].decode(errors="ignore") + "-" + hashlib.sha256(data).hexdigest()[:8]
 
 
-def prevented(file: Path, folder: Path | None, read: bool, asked: Options) -> int:
+def prevented(file: Path, folder: Path | None, read: bool, options: Options) -> int:
     """The exit code where options are wrong (``read``: the description is not) or nothing can be written; else 0."""
-    if asked.refused(file if read else None) or not read:
+    if options.refused(file if read else None) or not read:
         return Exit.BAD_INPUT
     reason = "" if folder is None else obstacle(folder)
     if reason:

@@ -35,11 +35,11 @@ LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no in
 MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "")
 
 
-def read_formula(text: str, system: System, what: Kind, found: dict[str, Expression], asked: Options) -> None:
+def read_formula(text: str, system: System, what: Kind, found: dict[str, Expression], options: Options) -> None:
     """Puts a sound formula into ``found``; whatever is wrong with it joins the complaints of ``asked``."""
     text, complaints = " ".join(text.splitlines()), Complaints()
     _read(text, system, what, complaints, found)
-    asked.complaints += [render_option(one, text, what.option, asked.say) for one in complaints.sorted()]
+    options.complaints += [render_option(one, text, what.option, options.say) for one in complaints.sorted()]
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, found: dict[str, Expression]) -> None:
@@ -97,5 +97,5 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
     if value is not None and (why := out_of_range(value)):
         span = Span(1, 1, max(1, len(formula)))
         complaints.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
-    options.complaints += [render_option(one, formula, option, options.say) for one in complaints.sorted()]
+    options.complaints += [render_option(complaint, formula, option, options.say) for complaint in complaints.sorted()]
     return Quantity(text, None if complaints.errors else value)

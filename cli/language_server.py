@@ -125,13 +125,13 @@ def server() -> Server:
         seen = made.seen.get(uri)
         return [
             types.CompletionItem(
-                label=one.label,
-                kind=_KINDS[one.kind],
-                documentation=one.meaning or None,
-                insert_text=one.insert or one.label,
+                label=suggestion.label,
+                kind=_KINDS[suggestion.kind],
+                documentation=suggestion.meaning or None,
+                insert_text=suggestion.insert or suggestion.label,
                 sort_text=f"{number:05}",
             )
-            for number, one in enumerate(suggestions(text, line, column, seen.system if seen else None))
+            for number, suggestion in enumerate(suggestions(text, line, column, seen.system if seen else None))
         ]
 
     @made.feature(types.TEXT_DOCUMENT_HOVER)

@@ -29,7 +29,7 @@ def with_letters(command: Any) -> Any:
     return click.option("--in", "letters", metavar="LETTERS", help=_HELP)(command)
 
 
-def read_letters(text: str | None, system: System, asked: Options) -> tuple[str, ...] | None:
+def read_letters(text: str | None, system: System, options: Options) -> tuple[str, ...] | None:
     """The letters that were asked for, and parameters that are to stay; () for none, None where nothing was asked."""
     from mbsym.report.letters import NONE, letters_of
     from mbsym.source.scope import did_you_mean, listed
@@ -42,16 +42,16 @@ def read_letters(text: str | None, system: System, asked: Options) -> tuple[str,
         return ()
     if not known:
         hint = "declare them: abbreviations: {c1: mA + mB}"
-        asked.complain("--in", "missing-key", "the description has no letters of its own", hint)
+        options.complain("--in", "missing-key", "the description has no letters of its own", hint)
     elif not any(name in known for name in named):
-        asked.complain(
+        options.complain(
             "--in", "unknown-letter", "there is no letter of the description in it", listed("there are", known)
         )
     else:
         for name in named:
             if name not in known and name not in system.parameter_names:
                 near = did_you_mean(name, known) or listed("there are", known)
-                asked.complain(
+                options.complain(
                     "--in", "unknown-letter", Message("there is no letter [[name]]", name=ascii_safe(name)), near
                 )
     return tuple(named)

@@ -77,8 +77,8 @@ class Options:
         diagnose("\n".join(self.complaints))
         many = "[[count]] errors; nothing was written."
         count = len(self.complaints)
-        told = Message(many if count > 1 else "[[count]] error; nothing was written.", count=count)
-        print(f"{whose}: {self.say(told)}", file=sys.stderr)
+        message = Message(many if count > 1 else "[[count]] error; nothing was written.", count=count)
+        print(f"{whose}: {self.say(message)}", file=sys.stderr)
         return True
 
     def descriptions(self, files: Iterable[Path]) -> list[Path]:
@@ -203,11 +203,11 @@ class Options:
             return None
         value = int(short)
         if not least <= value <= most:
-            told = Message("[[value]] is out of bounds: at most [[most]]", value=value, most=most)
+            message = Message("[[value]] is out of bounds: at most [[most]]", value=value, most=most)
             if value < least:
                 bounds = "[[value]] is out of bounds: at least [[least]][[why]]"
-                told = Message(bounds, value=value, least=least, why=worded(why))
-            self.complain(option, "bad-number", told)
+                message = Message(bounds, value=value, least=least, why=worded(why))
+            self.complain(option, "bad-number", message)
             return None
         return value
 
@@ -252,8 +252,8 @@ class Options:
         if close:
             words = "did you mean '[[other]]'? There are [[names]]"
             hint = Message(words, other=close, names=", ".join(known))
-        told = Message("there is no [[what]] [[name]]", what=worded(what), name=ascii_safe(name))
-        self.complain(option, f"unknown-{what}", told, hint)
+        message = Message("there is no [[what]] [[name]]", what=worded(what), name=ascii_safe(name))
+        self.complain(option, f"unknown-{what}", message, hint)
 
 
 def _listed(choices: Iterable[str], every: str = "") -> Message:

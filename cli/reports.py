@@ -121,7 +121,7 @@ def _derive(path: Path, system: System, folder: Path, request: Request, letters:
     analysis.forms, analysis.letters = request.forms, letters
     analysis.detail, analysis.animate = request.detail, request.animate
     analysis.figures = _figures(folder, system) if "latex" in request.formats else ()
-    found = None
+    ledger = None
     with status(request.quiet) as say:
 
         def doing(text: str) -> None:
@@ -134,12 +134,12 @@ def _derive(path: Path, system: System, folder: Path, request: Request, letters:
         if request.ledger:
             say(f"{path.name}: ledger")
             try:
-                found = _ledger(analysis, texts, request.ledger)
+                ledger = _ledger(analysis, texts, request.ledger)
             except Exception as error:  # finished reports are not lost to it
                 analysis.defects.append(error)
     missing = [file.filename for file in files if file.text is None]
     written = deliver(folder, texts, "run", gone=missing)
-    _show(analysis, path, written, request, time.perf_counter() - started, found)
+    _show(analysis, path, written, request, time.perf_counter() - started, ledger)
     return Exit.FAILED if _complaints(analysis, path, files, request) else Exit.OK
 
 
@@ -199,8 +199,8 @@ def _show(
         writer = Writer(language, True, LONGEST, width, file, printable(path))
         lines = _documents(known, writer, request)
         with in_letters(analysis.system, analysis.letters or ()) as used:
-            told = finding(known)
-            show_finding(told, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
+            facts = finding(known)
+            show_finding(facts, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
         show(writer.document(with_meanings((), analysis.system, used)))
     if found is not None:
         from mbsym.report.runs.ledger import ledger_blocks

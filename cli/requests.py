@@ -87,7 +87,7 @@ def read_fields(
     What cannot be read is None, and joins the complaints.
     """
     values: dict[str, Any] = {}
-    given: Scenario | None = None
+    scenario: Scenario | None = None
     fields = fields_of(request)
     for field in (field for field in fields if isinstance(field.kind, Substitutions)):
         if system is not None and texts[field.name]:
@@ -100,10 +100,10 @@ def read_fields(
     for field in (*first, *(field for field in fields if field not in first)):
         if isinstance(field.kind, Settings):
             known = {name: law for name, law in values.get(field.kind.laws, {}).items() if law is not None}
-            given, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, known, options)
+            scenario, values[field.name] = _motion(file, system, texts[field.name], field.kind, texts, known, options)
         else:
-            values[field.name] = _read(field, texts[field.name], system, texts, options, given)
-    return values, given, system
+            values[field.name] = _read(field, texts[field.name], system, texts, options, scenario)
+    return values, scenario, system
 
 
 def _motion(
@@ -233,8 +233,8 @@ def _errors(option: str, kind: Errors, text: str, known: Sequence[str], options:
 def _share(option: str, text: str, options: Options) -> tuple[int, int] | None:
     first, slash, last = (part.strip() for part in text.partition("/"))
     if not slash:
-        told = Message("[[text]] is no share", text=ascii_safe(text[:40]))
-        options.complain(option, "bad-number", told, Message("for example [[example]]", example=f"{option} 3/16"))
+        message = Message("[[text]] is no share", text=ascii_safe(text[:40]))
+        options.complain(option, "bad-number", message, Message("for example [[example]]", example=f"{option} 3/16"))
         return None
     of = options.whole(option, last, 1, 10**6)
     number = options.whole(option, first, 1, of or 10**6)
@@ -243,16 +243,16 @@ def _share(option: str, text: str, options: Options) -> tuple[int, int] | None:
 
 def _whole_numbers(option: str, kind: Named, texts: tuple[str, ...], options: Options) -> dict[str, int]:
     """``NAME=N``, each name once."""
-    found: dict[str, int] = {}
+    whole_numbers: dict[str, int] = {}
     for text in texts:
         name, equals, right = (part.strip() for part in text.partition("="))
         if not equals or not name:
-            told = Message("[[text]] is no [[form]]", text=ascii_safe(text[:80]), form=kind.metavar)
+            message = Message("[[text]] is no [[form]]", text=ascii_safe(text[:80]), form=kind.metavar)
             hint = Message("for example [[example]]", example=f"{option} {kind.example}")
-            options.complain(option, "bad-assignment", told, hint)
+            options.complain(option, "bad-assignment", message, hint)
             continue
-        if name in found:
+        if name in whole_numbers:
             options.complain(option, "repeated-name", Message("[[name]] is given twice", name=ascii_safe(name)))
         value = options.whole(option, right, kind.least, kind.most)
-        found[name] = kind.least if value is None else value
-    return found
+        whole_numbers[name] = kind.least if value is None else value
+    return whole_numbers

@@ -206,16 +206,16 @@ def _folders(paths: list[Path], out: Path | None, base: Path | None) -> list[Pat
     return folders
 
 
-def _ledger(ledger: bool, accuracy: str | None, until: str | None, asked: Options) -> AccuracyGoal | bool:
+def _ledger(ledger: bool, accuracy: str | None, until: str | None, options: Options) -> AccuracyGoal | bool:
     """Whether there is a ledger, and the accuracy that it is held against, if any; complaints join ``asked``."""
     if accuracy is None and until is None:
         return ledger
     for name, value in (("--accuracy", accuracy), ("--until", until)):
         if value is None:
-            asked.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
+            options.complain(name, "missing-option", "an accuracy is one of a motion from 0 to a time: give both")
     if not ledger:
-        asked.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
-    error, time = asked.number("--accuracy", accuracy, LEAST_ERROR, MOST_ERROR), asked.number("--until", until)
+        options.complain("--accuracy", "conflicting-options", "only the ledger is held against it", "add --ledger")
+    error, time = options.number("--accuracy", accuracy, LEAST_ERROR, MOST_ERROR), options.number("--until", until)
     if error is None or time is None:
         return ledger
     from mbsym.numerics.ledger.work import AccuracyGoal

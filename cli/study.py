@@ -227,8 +227,8 @@ class _Run:
             complain(file, Message("the results cannot be written: [[why]]", why=reason_of(error)))
             return Exit.FAILED
         except NotFit as error:
-            for one in error.reasons:
-                self._unfit(one)
+            for reason in error.reasons:
+                self._unfit(reason)
             self.options.refused(file)
             return Exit.BAD_INPUT
         except Exception as error:

@@ -42,9 +42,9 @@ def read_variations(
         return None
     exact = partial(read_rational, options=options)
     read: Read = exact if kind.exact else partial(_number, motion=motion, options=options)
-    found = [_varied(" ".join(text.splitlines()), option, read, system, options) for text in texts]
-    known = tuple(one for one in found if one is not None)
-    return known if len(known) == len(found) else None
+    varieds = [_varied(" ".join(text.splitlines()), option, read, system, options) for text in texts]
+    known = tuple(varied for varied in varieds if varied is not None)
+    return known if len(known) == len(varieds) else None
 
 
 def _varied(text: str, option: str, read: Read, system: System | None, options: Options) -> Varied | None:
@@ -84,13 +84,13 @@ def _about(
         middle = read(tolerance["middle"], option)
     else:
         parameters = () if system is None else system.parameters
-        given = next((one.value for one in parameters if one.name == name), None)
-        middle = None if given is None else rational(given)
+        expression = next((parameter.value for parameter in parameters if parameter.name == name), None)
+        middle = None if expression is None else rational(expression)
         if middle is None:
             shown = ascii_safe(name)
-            told = Message("[[name]] has no rational number in the description to vary about", name=shown)
+            message = Message("[[name]] has no rational number in the description to vary about", name=shown)
             hint = Message("write [[example]]", example=f"{shown}=1 +- 5%")
-            options.complain(option, "missing-value", told, hint)
+            options.complain(option, "missing-value", message, hint)
     if middle is None or size is None:
         return None
     reach = abs(middle) * size / 100 if tolerance["percent"] else size
@@ -121,7 +121,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
                 found = float(exact(value, known))
             except Failure as reason:
                 complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
-    options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
+    options.complaints += [render_option(complaint, text, option, options.say) for complaint in complaints.sorted()]
     return found
 
 
@@ -141,8 +141,8 @@ def read_settings(
     for text in texts:
         name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
         if not equals or not name or len(text) > MAX_LENGTH:
-            told = Message("[[text]] gives no value", text=ascii_safe(text[:80]))
-            options.complain("--set", "bad-assignment", told, "write name=number, for example p1=2/5")
+            message = Message("[[text]] gives no value", text=ascii_safe(text[:80]))
+            options.complain("--set", "bad-assignment", message, "write name=number, for example p1=2/5")
             continue
         value = read_rational(right, f"--set {name if name.isidentifier() else ascii_safe(name)}", options)
         known(name, "--set", names, options)
@@ -165,9 +165,9 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
     name, equals, interval = (part.strip() for part in " ".join(text.splitlines()).partition("="))
     low, colon, high = interval.partition(":")
     if not equals or not colon or not name or ":" in high or len(text) > MAX_LENGTH:
-        told = Message("[[text]] gives no interval", text=ascii_safe(text[:80]))
+        message = Message("[[text]] gives no interval", text=ascii_safe(text[:80]))
         hint = Message("write name=low:high, for example [[option]] alpha=-1:1", option=option)
-        options.complain(option, "bad-interval", told, hint)
+        options.complain(option, "bad-interval", message, hint)
         return None
     exists = known(name, option, usable(system), options)
     ends = [
@@ -178,9 +178,9 @@ def read_axis(text: str | None, option: str, system: System, options: Options) -
     if start is None or stop is None:
         return None
     if start >= stop:
-        told = Message("the interval from [[low]] to [[high]] is empty", low=str(start), high=str(stop))
+        message = Message("the interval from [[low]] to [[high]] is empty", low=str(start), high=str(stop))
         hint = Message("it goes upwards: low:high with low < high, [[example]]", example=f"{stop}:{start}")
-        options.complain(option, "empty-interval", told, hint)
+        options.complain(option, "empty-interval", message, hint)
         return None
     return Axis(name, start, stop) if exists else None
 
@@ -192,12 +192,12 @@ def known(name: str, option: str, names: Sequence[str], options: Options) -> boo
     from difflib import get_close_matches
 
     shown, near = ascii_safe(name), get_close_matches(name, names, 1)
-    told = Message("there is no parameter called [[name]]; there are [[names]]", name=shown, names=", ".join(names))
+    message = Message("there is no parameter called [[name]]; there are [[names]]", name=shown, names=", ".join(names))
     if near or not names:
-        told = Message("there is no parameter called [[name]]", name=shown)
+        message = Message("there is no parameter called [[name]]", name=shown)
     if near:
-        told = Message("there is no parameter called [[name]]: did you mean '[[other]]'?", name=shown, other=near[0])
-    options.complain(option, "unknown-name", told)
+        message = Message("there is no parameter called [[name]]: did you mean '[[other]]'?", name=shown, other=near[0])
+    options.complain(option, "unknown-name", message)
     return False
 
 
@@ -215,5 +215,5 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
             if value is None:
                 hint = "write it as a fraction or a decimal, 2/5 or 0.4: what is found is exact"
                 complaints.error("bad-number", "a rational number is wanted", Span(1, 1, max(1, len(text))), hint)
-    options.complaints += [render_option(one, text, option, options.say) for one in complaints.sorted()]
+    options.complaints += [render_option(complaint, text, option, options.say) for complaint in complaints.sorted()]
     return value

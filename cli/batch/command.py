@@ -158,26 +158,26 @@ def _on_cluster(request: Request) -> int:
         return Exit.BAD_INPUT
 
 
-def _formats(asked: Options, text: str) -> tuple[str, ...]:
+def _formats(options: Options, text: str) -> tuple[str, ...]:
     from mbsym.report.targets import FORMATS, TARGETS
 
-    return asked.words("--format", text, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
+    return options.words("--format", text, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
 
 
-def _seconds(asked: Options, text: str) -> float | None:
+def _seconds(options: Options, text: str) -> float | None:
     """A positive number of seconds; 0 is no bound."""
     try:
         value = float(text)
     except ValueError:
         value = -1.0
     if not 0 <= value < 1e9:
-        asked.complain(
+        options.complain(
             "--timeout", "bad-number", Message("a number of seconds is wanted, not [[text]]", text=ascii_safe(text))
         )
     return value or None
 
 
-def _part(asked: Options, text: str | None) -> tuple[int, int] | None:
+def _part(options: Options, text: str | None) -> tuple[int, int] | None:
     """``3/8`` as the third of eight parts."""
     if text is None:
         return None
@@ -186,7 +186,7 @@ def _part(asked: Options, text: str | None) -> tuple[int, int] | None:
         part, parts = int(first), int(second)
         if 1 <= part <= parts:
             return part, parts
-    asked.complain(
+    options.complain(
         "--shard",
         "bad-shard",
         Message("a part like 3/8 is wanted, not [[text]]", text=ascii_safe(text)),

@@ -94,7 +94,7 @@ def _places(candidates: Iterable[tuple[Path, PurePosixPath]]) -> Iterable[Place]
     """Every file once, with a folder of its own: where two would share one, the second keeps its ending."""
     seen: set[str] = set()
     taken: set[str] = set()
-    found = []
+    places = []
     for file, inside in sorted(candidates, key=_order):
         identity = identity_of(file)
         if identity in seen:
@@ -109,8 +109,8 @@ def _places(candidates: Iterable[tuple[Path, PurePosixPath]]) -> Iterable[Place]
                 break
             count += 1
         taken.add(folder.casefold())
-        found.append(Place(_shown(file), folder))
-    return found
+        places.append(Place(_shown(file), folder))
+    return places
 
 
 def _order(candidate: tuple[Path, PurePosixPath]) -> tuple[tuple[str, ...], str, int, str]:

@@ -117,16 +117,16 @@ def _summed_up(request: Request, places: list[Place], found: Descriptions, start
     finally:
         told.close()
     rows = [*(batch.rows[place.file] for place in places), *refused]
-    asked = request.asked
+    options = request.asked
     summary = Summary(
         rows=tuple(sorted(rows, key=lambda row: row.file)),
         version=mbsym.__version__,
         derivation=version,
-        problems=asked.problems,
-        formats=asked.formats,
-        terms=asked.terms,
-        angles=asked.angles,
-        detail=asked.detail,
+        problems=options.problems,
+        formats=options.formats,
+        terms=options.terms,
+        angles=options.angles,
+        detail=options.detail,
         shard=None if request.shard is None else "{}/{}".format(*request.shard),
         timeout=request.budget.seconds,
         memory=request.budget.memory,

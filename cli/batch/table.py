@@ -164,7 +164,7 @@ def _said(row: Row, say: Callable[[str], str]) -> str:
     if row.message:
         return say(row.message)
     parts: list[str] = []
-    errors = sum(one.severity == "error" for one in row.complaints)
+    errors = sum(complaint.severity == "error" for complaint in row.complaints)
     if errors:
         parts.append(Message("errors: [[count]]", count=errors))
     for problem in row.problems:
@@ -188,10 +188,10 @@ def complaints(row: Row) -> list[str]:
     return [_complaint(name, one, say) for one in row.complaints] + [f"{name}: {printable(note)}" for note in row.notes]
 
 
-def _complaint(name: str, one: ComplaintRow, say: Callable[[str], str]) -> str:
-    place = name if one.line is None else f"{name}:{one.line}:{one.column}"
-    hint = "" if one.hint is None else "\n  " + say(Message("hint: [[hint]]", hint=printable(say(one.hint))))
-    return f"{place}: {one.severity}[{one.code}]: {printable(say(one.message))}{hint}"
+def _complaint(name: str, row: ComplaintRow, say: Callable[[str], str]) -> str:
+    place = name if row.line is None else f"{name}:{row.line}:{row.column}"
+    hint = "" if row.hint is None else "\n  " + say(Message("hint: [[hint]]", hint=printable(say(row.hint))))
+    return f"{place}: {row.severity}[{row.code}]: {printable(say(row.message))}{hint}"
 
 
 def totals(summary: Summary) -> Message:

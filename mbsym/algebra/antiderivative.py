@@ -58,7 +58,7 @@ def _found(ring: Ring, x: Polynomial, name: str) -> Polynomial | None:
     frontier = _exponents(x)
     for _ in range(ROUNDS):
         moving = {k for k in _used(ring, [x, *tried.values()]) if ring.depends_on(ring.context.gen(k), name)}
-        new = {one for monomial in frontier for one in _neighbours(monomial, {place} | moving)} - {*tried}
+        new = {neighbour for monomial in frontier for neighbour in _neighbours(monomial, {place} | moving)} - {*tried}
         if not new or len(tried) + len(new) > MOST_TRIED:
             return None
         for one in new:
@@ -66,7 +66,7 @@ def _found(ring: Ring, x: Polynomial, name: str) -> Polynomial | None:
         solved = _solved(ring, x, tried)
         if solved is not None:
             return solved
-        frontier = {one for slope in tried.values() for one in _exponents(slope)}
+        frontier = {exponent for slope in tried.values() for exponent in _exponents(slope)}
     return None
 
 

@@ -45,9 +45,9 @@ def leading_minors(matrix: Matrix, budget: int = BUDGET) -> tuple[Polynomial, ..
     if n == 0 or any(len(row) != n for row in matrix):
         raise ValueError("a square matrix with at least one row is needed")
     if n > MOST_EXPANDED and _generators(matrix) <= 1:
-        found = _eliminated(matrix, budget)
-        if found is not None:
-            return found
+        polynomials = _eliminated(matrix, budget)
+        if polynomials is not None:
+            return polynomials
     return _expanded(matrix, budget)
 
 

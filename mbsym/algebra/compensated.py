@@ -71,23 +71,23 @@ class _Pairs:
             case "negative", [(a, low)]:
                 return program.minus(a), None if low is None else program.minus(low)
             case "add", [a, b]:
-                found = self._sum(a, b, exact)
+                nodes = self._sum(a, b, exact)
             case "subtract", [a, (b, low)]:
-                found = self._sum(a, (program.minus(b), None if low is None else program.minus(low)), exact)
+                nodes = self._sum(a, (program.minus(b), None if low is None else program.minus(low)), exact)
             case "multiply", [a, b]:
-                found = self._product(a, b, exact)
+                nodes = self._product(a, b, exact)
             case "divide", [a, b]:
-                found = self._quotient(a, b, exact)
+                nodes = self._quotient(a, b, exact)
             case "sqrt", [a]:
-                found = self._root(a, exact)
+                nodes = self._root(a, exact)
             case ("sin" | "cos") as which, [a]:
-                found = self._turn(which, a, exact)
+                nodes = self._turn(which, a, exact)
             case name, [(a, _)]:
                 return program.again(name, [a]), None
             case _:
                 raise ValueError(f"no such operation: {operation}")
         # What is not sensitive itself takes in what it was handed, and hands on one number.
-        return found if exact else (self._joined(found), None)
+        return nodes if exact else (self._joined(nodes), None)
 
     def _split(self, number: int, value: Fraction) -> Pair:
         high = Fraction(float(value))
@@ -155,10 +155,10 @@ class _Pairs:
         """1 - s^2 - c^2, all digits of it."""
         program = self.program
         if s.number not in self.excess:
-            square, one = program.minus(program.product(s, s)), program.one
-            first = program.plus(one, square)
+            square, node = program.minus(program.product(s, s)), program.one
+            first = program.plus(node, square)
             rest = program.difference(first, program.product(c, c))
             roundings = program.plus(self._over(s, s), self._over(c, c))
-            taken = program.difference(self._rounding(SUM_ROUNDING, one, square), roundings)
+            taken = program.difference(self._rounding(SUM_ROUNDING, node, square), roundings)
             self.excess[s.number] = program.plus(rest, taken)
         return self.excess[s.number]

@@ -117,14 +117,14 @@ class Defect(Failure):
         if part := missing(error):
             return NotInstalled(Message("[[part]] is not installed", part=part))
         if isinstance(error, MemoryError):
-            found = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
+            defect = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
         else:
             said = str(error).strip()
             kind = type(error).__name__ + (f": {said}" if said else "")
-            found = cls(Message("internal error: [[kind]]", kind=kind))
-        found.__cause__ = error
-        LOG.error("%s", found, exc_info=error)
-        return found
+            defect = cls(Message("internal error: [[kind]]", kind=kind))
+        defect.__cause__ = error
+        LOG.error("%s", defect, exc_info=error)
+        return defect
 
 
 class Constrained(Failure):

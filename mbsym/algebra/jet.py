@@ -237,14 +237,14 @@ class Jets(Algebra[Jet]):
 
     def _powers(self, x: Polynomial) -> list[Polynomial]:
         """1, x, x^2, ... up to the order."""
-        found = [self.ring.one]
+        powers = [self.ring.one]
         for _ in range(self.order):
-            found.append(self.ring.reduce(self.ring.times(found[-1], x)))
-        return found
+            powers.append(self.ring.reduce(self.ring.times(powers[-1], x)))
+        return powers
 
     def reciprocal(self, x: Jet) -> Jet:
         inverse = self.ring.reciprocal(x.value)
-        return self._series(x, [self.ring.times(inverse, one) for one in self._powers(-inverse)])
+        return self._series(x, [self.ring.times(inverse, power) for power in self._powers(-inverse)])
 
     def square_root(self, x: Jet) -> Jet:
         """The root; that of a small form of second order is of the size of the deviations, as |u| is."""

@@ -108,14 +108,14 @@ def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:
                 common.append((factor, power))
             else:
                 common[place] = (factor, max(power, common[place][1]))
-    found = []
+    polynomials = []
     for top, factors in fractions:
         for factor, power in common:
             own = next((e for one, e in factors if one == factor), 0)
             for _ in range(power - own):
                 top = ring.times(top, factor)
-        found.append(ring.reduce(top))
-    return found
+        polynomials.append(ring.reduce(top))
+    return polynomials
 
 
 def _vector(ring: Ring, pivots: dict[int, dict[int, Polynomial]], free: int) -> dict[int, Polynomial]:

@@ -264,8 +264,8 @@ class _Solver:
             raise _TooLarge(Message("a polynomial of more than [[terms]] terms", terms=self.limits.terms))
         self.spend(20 * len(x))
         known = {_key(y) for y in nonzero}
-        kept = [y for y in _irreducible(x) if _key(y) not in known and self._can_vanish(y)]
-        return sorted(kept, key=lambda y: (y.total_degree(), len(y), str(y)))
+        polynomials = [y for y in _irreducible(x) if _key(y) not in known and self._can_vanish(y)]
+        return sorted(polynomials, key=lambda y: (y.total_degree(), len(y), str(y)))
 
     def _can_vanish(self, x: Polynomial) -> bool:
         """False only where x certainly has no real zero (in the range of bounded variables)."""
@@ -569,14 +569,14 @@ def _standard_monomials(basis: Sequence[Polynomial], nvars: int, most: int) -> l
     if any(not any(lead[k] == sum(lead) > 0 for lead in leads) for k in range(nvars)):
         return None
     layer: list[Monomial] = [(0,) * nvars]
-    found: list[Monomial] = []
+    monomials: list[Monomial] = []
     while layer:
-        found += layer
-        if len(found) > most:
+        monomials += layer
+        if len(monomials) > most:
             raise _TooLarge(Message("more than [[most]] solutions in one case", most=most))
         grown = {(*m[:k], m[k] + 1, *m[k + 1 :]) for m in layer for k in range(nvars)}
         layer = sorted(m for m in grown if not any(_divides(lead, m) for lead in leads))
-    return found
+    return monomials
 
 
 def _multiplication(basis: Sequence[Polynomial], standard: list[Monomial], nvars: int) -> list[Any]:

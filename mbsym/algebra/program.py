@@ -247,8 +247,8 @@ class Program(Algebra[Node]):
             if inner is None and difference.operation == "subtract" and difference.operands[0] > difference.operands[1]:
                 inner = self._node("subtract", difference.operands[::-1])
             if inner is not None:
-                found = self._node(name, (inner.number,))
-                return found if name == "abs" else self.minus(found)
+                node = self._node(name, (inner.number,))
+                return node if name == "abs" else self.minus(node)
         return self._node(name, (x.number,))
 
     def exceeds(self, a: Node, b: Node) -> Node:

@@ -126,8 +126,8 @@ class Series:
         total = dict(self.coefficients)
         for k, c in other.coefficients.items():
             total[k] = total[k] + c if k in total else c
-        found = Series(self.context, {k: c for k, c in total.items() if not c.is_zero})
-        return found.up_to(_least(self.known, other.known))
+        series = Series(self.context, {k: c for k, c in total.items() if not c.is_zero})
+        return series.up_to(_least(self.known, other.known))
 
     def __neg__(self) -> Series:
         return Series(self.context, {k: -c for k, c in self.coefficients.items()}, self.known)
@@ -146,8 +146,8 @@ class Series:
         return Series(self.context, {k: c for k, c in total.items() if not c.is_zero}, known)
 
     def __truediv__(self, number: int) -> Series:
-        found = {k: Quotient.of(c.top / number, c.bottom) for k, c in self.coefficients.items()}
-        return Series(self.context, found, self.known)
+        quotients = {k: Quotient.of(c.top / number, c.bottom) for k, c in self.coefficients.items()}
+        return Series(self.context, quotients, self.known)
 
     def derivative(self, place: int) -> Series:
         """The derivative by a generator."""
@@ -163,8 +163,8 @@ class Series:
         if first is None:
             raise ZeroDivisionError("a quotient of series with the denominator 0")
         if other.known is None and len(other.coefficients) == 1:
-            found = {k - first: c / other.coefficients[first] for k, c in self.coefficients.items()}
-            return Series(self.context, found, None if self.known is None else self.known - first).up_to(known)
+            quotients = {k - first: c / other.coefficients[first] for k, c in self.coefficients.items()}
+            return Series(self.context, quotients, None if self.known is None else self.known - first).up_to(known)
         if known is None:
             raise NoClosedForm("a quotient of series has no end: say up to which order it is wanted")
         start = self.lowest
@@ -174,16 +174,16 @@ class Series:
             None if other.known is None or start is None else start - first + other.known - first,
         )
         reach = known if reach is None else min(reach, known)
-        found = {}
+        quotients = {}
         for k in range(start - first if start is not None else reach, reach):
             c = self.coefficients.get(k + first, Quotient.of(self.context.constant(0)))
-            for n, b in found.items():
+            for n, b in quotients.items():
                 further = other.coefficients.get(k + first - n)
                 if further is not None:
                     c = c - b * further
             if not c.is_zero:
-                found[k] = c / lead
-        return Series(self.context, found, reach)
+                quotients[k] = c / lead
+        return Series(self.context, quotients, reach)
 
 
 class Composition:
@@ -197,7 +197,7 @@ class Composition:
         """sum_k p_k(s, functions) eps^k up to eps^known."""
         total = Series(self.context, {}, known)
         if known is not None and p:  # coefficients beyond are not needed: they would be long
-            functions = [one.up_to(known - min(0, *p)) for one in functions]
+            functions = [function.up_to(known - min(0, *p)) for function in functions]
         powers: dict[tuple[int, int], Series] = {}
         for exponents, factor in self._parts(p).items():
             term = factor

@@ -492,14 +492,14 @@ class Ring(Algebra[Polynomial]):
 
     def _arc_tangents(self, angle: Polynomial) -> list[tuple[int, int]]:
         """(generator of atan x, n) for every n atan x, n a whole number, that an angle is a sum of."""
-        found = []
+        arc_tangents = []
         for monomial, coefficient in angle.terms():
             present = [k for k, exponent in enumerate(monomial) if exponent]
             if len(present) == 1 and monomial[present[0]] == 1 and int(coefficient.q) == 1:
                 g = self.generators[present[0]]
                 if g.kind == "function" and g.name == "atan":
-                    found.append((present[0], int(coefficient.p)))
-        return found
+                    arc_tangents.append((present[0], int(coefficient.p)))
+        return arc_tangents
 
     def _with_arc_tangents(self, angle: Polynomial, parts: Sequence[tuple[int, int]]) -> tuple[Polynomial, Polynomial]:
         """sin and cos by the addition theorems and  cos(atan x) = 1/sqrt(1 + x^2),  sin(atan x) = x/sqrt(1 + x^2)."""
@@ -1179,7 +1179,7 @@ def _square_part(value: Fraction) -> tuple[Fraction, int]:
 
 def _primes(n: int, distinct: bool = True) -> list[int]:
     """The prime factors of n.  Raises NoClosedForm where they are out of reach."""
-    found: list[int] = []
+    primes: list[int] = []
     for factor, exponent in fmpz(n).factor(trial_limit=_SMALL_PRIMES):
         parts = [(factor, 1)]
         if not factor.is_probable_prime():
@@ -1194,5 +1194,5 @@ def _primes(n: int, distinct: bool = True) -> list[int]:
                 )
             else:
                 parts = [(p, int(e)) for p, e in factor.factor()]
-        found += [int(p) for p, e in parts for _ in range(1 if distinct else e * int(exponent))]
-    return found
+        primes += [int(p) for p, e in parts for _ in range(1 if distinct else e * int(exponent))]
+    return primes

@@ -124,8 +124,8 @@ def enclosures(coefficients: Sequence[Rational], bits: int = 80) -> tuple[Root, 
     """
     p = univariate(coefficients)
     with ctx.workprec(bits):
-        found = [Root(ball, int(multiplicity)) for ball, multiplicity in p.complex_roots()]
-    return tuple(sorted(found, key=lambda root: (float(root.ball.real.mid()), float(root.ball.imag.mid()))))
+        roots = [Root(ball, int(multiplicity)) for ball, multiplicity in p.complex_roots()]
+    return tuple(sorted(roots, key=lambda root: (float(root.ball.real.mid()), float(root.ball.imag.mid()))))
 
 
 def _spread(even: Univariate, odd: Univariate) -> Univariate:

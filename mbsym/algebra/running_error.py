@@ -101,15 +101,15 @@ class RunningErrors(Algebra[Approximate]):
         program = self.program
         if self.vanishes(a) or self.vanishes(b):
             return self.zero
-        for one, other in ((a, b), (b, a)):
-            if one.error is None and one.value == program.one:
+        for approximate, other in ((a, b), (b, a)):
+            if approximate.error is None and approximate.value == program.one:
                 return other
-            if one.error is None and one.value == program.minus(program.one):
+            if approximate.error is None and approximate.value == program.minus(program.one):
                 return -other
         error = None
-        for one, other in ((a, b), (b, a)):
+        for approximate, other in ((a, b), (b, a)):
             if other.error is not None:
-                size = program.function("abs", one.value)
+                size = program.function("abs", approximate.value)
                 error = _sum(program, error, program.product(size, other.error))
         if a.error is not None and b.error is not None:
             error = _sum(program, error, program.product(a.error, b.error))

@@ -91,13 +91,13 @@ class ParameterSet:
         return _of((*self.pieces, *other.pieces))
 
     def __and__(self, other: ParameterSet) -> ParameterSet:
-        return _of((*one, *two) for one in self.pieces for two in other.pieces)
+        return _of((*piece, *two) for piece in self.pieces for two in other.pieces)
 
     def complement(self) -> ParameterSet:
-        found = EVERYTHING
+        parameter_set = EVERYTHING
         for piece in self.pieces:
-            found = found & ParameterSet(tuple((one.negated(),) for one in piece))
-        return found
+            parameter_set = parameter_set & ParameterSet(tuple((one.negated(),) for one in piece))
+        return parameter_set
 
     def inner(self) -> ParameterSet:
         """A set that has inner points where this one has, and that is empty where it has none."""
@@ -121,10 +121,10 @@ class ParameterSet:
                 return Emptiness.INHABITED, dict(enumerate(point))
         answer = Emptiness.EMPTY
         for piece in self.pieces:
-            found, at = _decided(piece, signs)
-            if found is Emptiness.INHABITED:
-                return found, at
-            answer = found if found is Emptiness.OPEN else answer
+            emptiness, at = _decided(piece, signs)
+            if emptiness is Emptiness.INHABITED:
+                return emptiness, at
+            answer = emptiness if emptiness is Emptiness.OPEN else answer
         return answer, None
 
     def is_empty(self, signs: Signs) -> bool:
@@ -139,7 +139,7 @@ class ParameterSet:
 
 
 def _of(pieces: Iterable[Piece]) -> ParameterSet:
-    kept: dict[frozenset[tuple[str, str]], Piece] = {}
+    kept_pieces: dict[frozenset[tuple[str, str]], Piece] = {}
     for piece in pieces:
         plain: dict[tuple[str, str], Atom] = {}
         for one in piece:
@@ -148,10 +148,10 @@ def _of(pieces: Iterable[Piece]) -> ParameterSet:
             elif not _holds(_number(one.polynomial), one.relation):
                 break
         else:
-            kept.setdefault(frozenset(plain), tuple(plain.values()))
-        if len(kept) > MOST_PIECES:
+            kept_pieces.setdefault(frozenset(plain), tuple(plain.values()))
+        if len(kept_pieces) > MOST_PIECES:
             raise TooLargeError("a set of parameters in too many pieces", limit=Limit.WORK)
-    return ParameterSet(tuple(kept.values()))
+    return ParameterSet(tuple(kept_pieces.values()))
 
 
 EVERYTHING, NOTHING = ParameterSet(((),)), ParameterSet(())
@@ -290,16 +290,16 @@ class _Search:
         self.branches -= 1
         if self.branches < 0:
             raise _OutOfBudget
-        kept: dict[tuple[str, str], Atom] = {}
+        kept_atoms: dict[tuple[str, str], Atom] = {}
         for one in atoms:
             if one.polynomial.is_constant():
                 if not _holds(_number(one.polynomial), one.relation):
                     return None
             else:
-                kept[str(one.polynomial), one.relation] = one
+                kept_atoms[str(one.polynomial), one.relation] = one
         found: dict[int, Any] = {}
         open_ones = False
-        for part in sorted(_components(list(kept.values())), key=lambda part: len(_variables(part))):
+        for part in sorted(_components(list(kept_atoms.values())), key=lambda part: len(_variables(part))):
             try:
                 there = self._component(part)
             except _OutOfBudget:
@@ -369,18 +369,18 @@ class _Search:
             there.append(Atom(b, "!="))
         left_open = False
         try:
-            found = self.solve(there)
+            on_zeros = self.solve(there)
         except _OutOfBudget:
-            found, left_open = None, True
-        if found is not None:
-            found = {k: fmpq(1) for k in occurring([c, b])} | found
-            value = _value(-c, found, self.context) / _value(b, found, self.context)
-            return found | {x: value}
+            on_zeros, left_open = None, True
+        if on_zeros is not None:
+            on_zeros = {k: fmpq(1) for k in occurring([c, b])} | on_zeros
+            value = _value(-c, on_zeros, self.context) / _value(b, on_zeros, self.context)
+            return on_zeros | {x: value}
         if not b.is_constant():
-            found = self.solve([Atom(b, "="), Atom(c, "="), *rest])
-        if found is None and left_open:
+            on_zeros = self.solve([Atom(b, "="), Atom(c, "="), *rest])
+        if on_zeros is None and left_open:
             raise _OutOfBudget
-        return found
+        return on_zeros
 
     def _on_irrational_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
         """Nowhere, where no parameters keep the rest, or the factor has one parameter and no zeros; else left open."""
@@ -399,13 +399,13 @@ class _Search:
         if len(variables) > MOST_PARAMETERS:
             raise _OutOfBudget
         strict = [one for one in atoms if one.relation == ">"]
-        found = self._cells(strict, _ordered(strict, variables))
-        if found is None:
+        in_cells = self._cells(strict, _ordered(strict, variables))
+        if in_cells is None:
             return None
         apart = [one.polynomial for one in atoms if one.relation == "!="]
-        if any(_value(p, found, self.context) == 0 for p in apart):
-            return self._moved(found, strict, apart)
-        return found
+        if any(_value(p, in_cells, self.context) == 0 for p in apart):
+            return self._moved(in_cells, strict, apart)
+        return in_cells
 
     def _moved(self, found: dict[int, Any], strict: Sequence[Atom], apart: Sequence[Polynomial]) -> dict[int, Any]:
         """A point near by that is on no surface f = 0."""

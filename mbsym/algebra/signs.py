@@ -185,7 +185,7 @@ class Signs:
             return self._decided(False)
         unit, powers = _factored(p)
         direction = _sign(unit)
-        kept: list[Polynomial] = []
+        polynomials: list[Polynomial] = []
         nonzero: list[Polynomial] = []
         for factor, exponent in powers:
             signs = self._possible(factor, -1)
@@ -200,22 +200,22 @@ class Signs:
             else:
                 normal, flip = _normal(factor)
                 direction *= flip
-                kept.append(normal)
+                polynomials.append(normal)
         nonzero = self.apart(nonzero)
-        if not kept:
+        if not polynomials:
             return self._decided(direction > 0, tuple(nonzero))
         if direction < 0:
-            kept[-1] = -kept[-1]
+            polynomials[-1] = -polynomials[-1]
         product = self.context.constant(1)
-        for factor in kept:
+        for factor in polynomials:
             product *= factor
-        if len(kept) > 1:  # an assumption may be about the product
+        if len(polynomials) > 1:  # an assumption may be about the product
             overall = self._as_a_whole(product, ANY, -1)
             if 1 not in overall:
                 return self._decided(False)
             if overall == POSITIVE:
                 return self._decided(True, tuple(nonzero))
-        return Condition("inequality", product, tuple(kept), tuple(nonzero))
+        return Condition("inequality", product, tuple(polynomials), tuple(nonzero))
 
     def nonzero_condition(self, p: Polynomial) -> Condition:
         """The requirement p != 0, reduced to the factors that may vanish."""
@@ -230,16 +230,16 @@ class Signs:
 
         A sum of squares such as (p - 2 A c w)^2 + A^2 w^2 (1 - c^2) is positive where 1 - c^2 is.
         """
-        kept = list(nonzero)
+        polynomials = list(nonzero)
         for factor in sorted(nonzero, key=len, reverse=True):
-            others = [x for x in kept if x is not factor and len(x) <= MOST_TERMS]
+            others = [x for x in polynomials if x is not factor and len(x) <= MOST_TERMS]
             facts = [(x, ">") if -1 not in self._possible(x, -1) else (-x, ">") for x in others if self._one_sided(x)]
             try:
                 if facts and len(factor) <= MOST_TERMS and self.assuming(facts).never_zero(factor):
-                    kept = [x for x in kept if x is not factor]
+                    polynomials = [x for x in polynomials if x is not factor]
             except ContradictionError:  # the others cannot all differ from zero: that is for them to say
                 continue
-        return kept
+        return polynomials
 
     def _one_sided(self, p: Polynomial) -> bool:
         signs = self._possible(p, -1)
@@ -695,20 +695,22 @@ def conditions(requirements: Iterable[Condition]) -> tuple[Condition, ...]:
     A product is implied when each of its factors is required to be positive by itself; a side condition f != 0, when
     f > 0 or f < 0 is required.  One ``never`` makes the whole list ``never``.
     """
-    kept: list[Condition] = []
+    kept_conditions: list[Condition] = []
     for requirement in requirements:
         if requirement.kind == "never":
             return (requirement,)
-        if requirement.kind != "always" and not any(_same(requirement, other) for other in kept):
-            kept.append(requirement)
-    single = [c.polynomial for c in kept if len(c.factors) == 1]
+        if requirement.kind != "always" and not any(_same(requirement, other) for other in kept_conditions):
+            kept_conditions.append(requirement)
+    single = [c.polynomial for c in kept_conditions if len(c.factors) == 1]
     result: list[Condition] = []
-    for requirement in kept:
+    for requirement in kept_conditions:
         factors = requirement.factors
         if len(factors) > 1 and all(any(f == s for s in single) for f in factors):
             factors = ()
         nonzero = tuple(
-            f for f in requirement.nonzero if not any(f in (g, -g) for c in kept for g in c.factors if c.factors)
+            f
+            for f in requirement.nonzero
+            if not any(f in (g, -g) for c in kept_conditions for g in c.factors if c.factors)
         )
         if not factors and not nonzero:
             continue

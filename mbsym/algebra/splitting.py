@@ -274,10 +274,10 @@ def _best(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> tuple
 
 def _substituted(branch: Branch, solution: Solved) -> Branch | None:
     """The branch with one more unknown solved for; None where something that does not vanish would."""
-    one = (solution,)
+    solveds = (solution,)
     nonzero: list[Polynomial] = []
     for q in branch.nonzero:
-        cleared = _cleared(q, one)
+        cleared = _cleared(q, solveds)
         if cleared == 0:
             return None
         for f, _ in irreducible_factors(cleared)[1]:

@@ -34,13 +34,13 @@ class Space:
 
     def of(self, terms: Mapping[tuple[int, ...], Any]) -> Truncated:
         """From coefficients by the variables in a product, (0, 0, 3) for x_0^2 x_3, as jets have them."""
-        found: Coefficients = {}
+        coefficients: Coefficients = {}
         for key, value in terms.items():
             exponents = [0] * self.variables
             for index in key:
                 exponents[index] += 1
-            found[tuple(exponents)] = value
-        return Truncated(self, found)
+            coefficients[tuple(exponents)] = value
+        return Truncated(self, coefficients)
 
     def linear(self, row: Iterable[Any]) -> Truncated:
         """sum row_k x_k."""

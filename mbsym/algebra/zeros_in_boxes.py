@@ -100,11 +100,11 @@ class Several:
             return self._values([(a + b) / 2 for (a, _), (b, _) in zip(above, below, strict=True)])
 
     def _values(self, point: Sequence[Fraction]) -> dict[str, Any]:
-        found = {}
+        values = {}
         for name, x in zip(self.names, point, strict=True):
             ball = rationals.ball(x)
-            found[name] = 2 * arb.pi() * self.half.angles[name] * ball if name in self.half.angles else ball
-        return found
+            values[name] = 2 * arb.pi() * self.half.angles[name] * ball if name in self.half.angles else ball
+        return values
 
     def _critical(self) -> ZeroSet | None:
         """Where a factor that changes no sign touches 0: its gradient vanishes there, too.
@@ -227,7 +227,7 @@ class Zeros:
     @property
     def complete(self) -> bool:
         """Whether it is proved that there are no others (coordinates within their ranges)."""
-        return all(one.known != UNDECIDED for one in self.sets)
+        return all(zero_set.known != UNDECIDED for zero_set in self.sets)
 
 
 # Where a polynomial in angles and coordinates vanishes on the reals: set by set, each with how that is known.
@@ -265,14 +265,14 @@ def zero_sets(ring: Ring, polynomials: Sequence[Polynomial], ranges: Mapping[str
                 if key in seen:
                     continue
                 seen.add(key)
-                found = half.zeros(factor, plain, ranges)
+                zero_set = half.zeros(factor, plain, ranges)
                 several = [name for name in half.names_of(factor) if name not in half.angles]
                 if len(half.names_of(factor)) > 1:
                     bounded.update(several)
-                if found is None:
+                if zero_set is None:
                     nowhere.append(plain)
                 else:
-                    sets.append(found)
+                    sets.append(zero_set)
     return Zeros(tuple(sets), tuple(nowhere), tuple(sorted(bounded)))
 
 
@@ -307,13 +307,13 @@ def _slope(ring: Ring, x: Polynomial, name: str) -> Polynomial:
     return (x.derivative(s) * gens[c] - x.derivative(c) * gens[s]) / ring.angles[name]
 
 
-def _turned_back(ring: Ring, plain: Polynomial, one: ZeroSet, at_zero: Sequence[str]) -> ZeroSet:
+def _turned_back(ring: Ring, plain: Polynomial, zero_set: ZeroSet, at_zero: Sequence[str]) -> ZeroSet:
     """A set of a straightened polynomial as one of the polynomial itself: it is nowhere isolated."""
-    points = one.points or tuple({one.names[0]: zero.ball} for zero in one.zeros)
+    points = zero_set.points or tuple({zero_set.names[0]: zero.ball} for zero in zero_set.zeros)
     used = {ring.generators[k].name for k in occurring([plain])}
     rest = [name for name in at_zero if name in used]
     placed = tuple({**point, **{name: arb(0) for name in rest}} for point in points)
-    return ZeroSet(plain, (*one.names, *rest), one.known, (), placed)
+    return ZeroSet(plain, (*zero_set.names, *rest), zero_set.known, (), placed)
 
 
 class HalfAngles:

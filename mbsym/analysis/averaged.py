@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def fast_phases(system: System) -> tuple[str, ...]:
     """The prescribed quantities whose rate is a parameter."""
-    declared = {one.name for one in system.parameters}
+    declared = {parameter.name for parameter in system.parameters}
     return tuple(item.name for item in system.prescribed if isinstance(item.rate, Name) and item.rate.name in declared)
 
 
@@ -44,8 +44,8 @@ def averaging_of(
     if system.time_scale is not None:
         raise NoClosedForm("averaging is in physical time: leave the description's own time out")
     chosen = (phases,) if isinstance(phases, str) else tuple(phases)
-    given = {item.name: item.rate for item in system.prescribed}
-    rates = {phase: rate.name for phase in chosen if isinstance(rate := given[phase], Name)}
+    expressions = {item.name: item.rate for item in system.prescribed}
+    rates = {phase: rate.name for phase in chosen if isinstance(rate := expressions[phase], Name)}
     told = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
     for phase, speed in rates.items():
         _refuse_company(system, phase, speed)
@@ -55,11 +55,11 @@ def averaging_of(
             )
     orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, rates)
     _refuse_ties(system, chosen, (*rates.values(), *orders))
-    found = averaging.averaged(analysis.scene, analysis.energy, rates, orders)
-    values = {one.name: one.value for one in system.parameters}
+    averaged = averaging.averaged(analysis.scene, analysis.energy, rates, orders)
+    values = {parameter.name: parameter.value for parameter in system.parameters}
     numbers = {name: rational(values[name]) for name in rates.values()}
     known = {name: x for name, x in numbers.items() if x is not None}
-    for combination in found.apart:
+    for combination in averaged.apart:
         if len(known) == len(numbers) and combination.subs(known).is_zero:
             raise NoClosedForm(
                 Message(
@@ -68,7 +68,7 @@ def averaging_of(
                 ),
                 remedy="write both by one phase, as phi and 2*phi",
             )
-    return found
+    return averaged
 
 
 def _refuse_company(system: System, phase: str, rate: str) -> None:
@@ -115,7 +115,7 @@ def averaged_system(system: System, found: Averaged) -> System:
     at_rest = {name: number(0) for name, _ in found.orders}
     base = replace(system, parameters=(), initial=(), claims=(), abbreviations=(), prescribed=())
     still: System = put(base, at_rest, folded)
-    kept = tuple(item for item in system.prescribed if item.name not in found.phases)
+    prescribeds = tuple(item for item in system.prescribed if item.name not in found.phases)
     loads, fast = still.loads, ", ".join(found.phases)
     if not found.vibrational.is_zero:
         loads = (*loads, ForceFunction(_expression(str(found.vibrational)), "potential"))
@@ -126,7 +126,7 @@ def averaged_system(system: System, found: Averaged) -> System:
         f"({found.scaling}).  {system.description}",
         parameters=system.parameters,
         initial=system.initial,
-        prescribed=kept,
+        prescribed=prescribeds,
         loads=loads,
     )
 
@@ -134,6 +134,6 @@ def averaged_system(system: System, found: Averaged) -> System:
 def _expression(text: str) -> Expression:
     """The tree of a formula's own text."""
     complaints = Complaints()
-    found = parse_expression(text, complaints, lambda start, end: Span(1, start + 1))
-    assert found is not None, complaints.sorted()
-    return found
+    expression = parse_expression(text, complaints, lambda start, end: Span(1, start + 1))
+    assert expression is not None, complaints.sorted()
+    return expression

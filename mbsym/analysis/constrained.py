@@ -54,17 +54,17 @@ def equations_of(analysis: Analysis) -> Equations:
     from mbsym.problems.constraints import embedded_equations
     from mbsym.problems.in_speeds import speeds
 
-    found, form = analysis.constraints, analysis.form
-    rows = [x.polynomial for x in (*found.velocity, *(f for f in found.position if f is not None))]
+    constraints, form = analysis.constraints, analysis.form
+    rows = [x.polynomial for x in (*constraints.velocity, *(f for f in constraints.position if f is not None))]
     if analysis.system.speeds:
         tree: Equations = speeds.equations(form, analysis.scene, rows)
     else:
         tree = equations.equations(analysis.scene, analysis.energy)
     try:
-        embedded = embedded_equations(form, tree, found)
+        embedded = embedded_equations(form, tree, constraints)
     except NoClosedForm:
         embedded = None
-    return replace(tree, constraints=found, embedded=embedded)
+    return replace(tree, constraints=constraints, embedded=embedded)
 
 
 def programs_of(analysis: Analysis) -> ConstrainedPrograms:

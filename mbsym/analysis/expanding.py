@@ -145,14 +145,14 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     found: list[tuple[Expansion, Root]] = []
     reasons: list[Failure] = []
     for start in known.known:
-        one = _expanded(analysis, there, fast, order, start, root)
-        plain = Expansion(one, transfer, names, "", velocities=velocities)
-        divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, one.functions, start))
+        manifold = _expanded(analysis, there, fast, order, start, root)
+        plain = Expansion(manifold, transfer, names, "", velocities=velocities)
+        divided = (plain.formula(Quotient.of(p)) for p in slow.divisors(there, fast, manifold.functions, start))
         provided = {str(x): x for x in _open(analysis, divided)}
         if root is not None:
             square = plain.moved(root.square)
             provided.pop(str(Formula(analysis.ring, analysis.ring.square_root(square))), None)
-            if _holds(one, root):
+            if _holds(manifold, root):
                 plain = replace(plain, real=sharpest([_unscaled(analysis).condition(square)]))
         plain = replace(plain, provided=tuple(provided.values()))
         try:
@@ -166,16 +166,16 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
 
 def _holds(found: SlowManifold, root: Adjoined) -> bool:
     """Whether the square root stands in the expansion."""
-    flow = [one for name, one in zip(found.slow, found.flow, strict=True) if name != root.label]
-    quotients = [c for one in (*found.functions, *flow) for c in one.coefficients.values()]
+    flow = [series for name, series in zip(found.slow, found.flow, strict=True) if name != root.label]
+    quotients = [c for series in (*found.functions, *flow) for c in series.coefficients.values()]
     return any(not _rationalised(c, root)[1].is_zero() for c in quotients)
 
 
 def _real_roots(analysis: Analysis, there: ScaledField, fast: tuple[str, ...]) -> Roots:
     """The roots of the lowest order, without square roots that are nowhere real."""
-    found, signs = slow.roots_of(there, fast), _declared_signs(analysis, there.field.context)
-    found = replace(found, squares=tuple(x for x in found.squares if signs.condition(x).kind != "never"))
-    if not found.any:
+    real_roots, signs = slow.roots_of(there, fast), _declared_signs(analysis, there.field.context)
+    real_roots = replace(real_roots, squares=tuple(x for x in real_roots.squares if signs.condition(x).kind != "never"))
+    if not real_roots.any:
         raise NoClosedForm(
             Message(
                 "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
@@ -184,12 +184,12 @@ def _real_roots(analysis: Analysis, there: ScaledField, fast: tuple[str, ...]) -
                 fast=", ".join(fast),
             )
         )
-    return found
+    return real_roots
 
 
 def _declared_signs(analysis: Analysis, context: Any, root: Adjoined | None = None) -> Signs:
     """Of the parameters; a square root is positive."""
-    known, assumed = {one.name: one.sign for one in analysis.system.parameters}, []
+    known, assumed = {parameter.name: parameter.sign for parameter in analysis.system.parameters}, []
     if root is not None:
         if known.get(root.instead) == "positive":
             assumed.append((root.value.top * root.value.bottom, ">"))
@@ -225,10 +225,12 @@ def _expanded(
     functions = slow.manifold(there, fast, order, start)
     moving = slow.flow(there, fast, functions, order)
     left = residual_orders(there, fast, functions)
-    found = SlowManifold(there, order, fast, tuple(moving), tuple(functions), tuple(moving.values()), left, root=root)
-    if not found.verified:
+    manifold = SlowManifold(
+        there, order, fast, tuple(moving), tuple(functions), tuple(moving.values()), left, root=root
+    )
+    if not manifold.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
-    return found
+    return manifold
 
 
 def _about(
@@ -238,19 +240,19 @@ def _about(
 
     Raises NoClosedForm where a root that should be fast is slow.
     """
-    found = plain.manifold
-    flow = dict(zip(found.slow, found.flow, strict=True))
-    if found.root is not None:
-        told = slow.without_root(flow, found.root, plain.names)
-        plain = replace(plain, manifold=replace(found, slow=tuple(told), flow=tuple(told.values())))
+    manifold = plain.manifold
+    flow = dict(zip(manifold.slow, manifold.flow, strict=True))
+    if manifold.root is not None:
+        told = slow.without_root(flow, manifold.root, plain.names)
+        plain = replace(plain, manifold=replace(manifold, slow=tuple(told), flow=tuple(told.values())))
     if isinstance(motion, str):
         return replace(plain, missing=motion)
     try:
         at = _steady_values(analysis, plain, motion, numbers)
-        functions = dict(zip(found.fast, found.functions, strict=True))
-        steady = steady_states(found.field, flow, functions, at, found.order)
-        if found.root is not None:
-            steady = replace(steady, free=slow.free_without_root(steady.free, found.root, plain.names))
+        functions = dict(zip(manifold.fast, manifold.functions, strict=True))
+        steady = steady_states(manifold.field, flow, functions, at, manifold.order)
+        if manifold.root is not None:
+            steady = replace(steady, free=slow.free_without_root(steady.free, manifold.root, plain.names))
     except Failure as reason:
         return replace(plain, missing=message_of(reason))
     except ZeroDivisionError:
@@ -260,8 +262,8 @@ def _about(
             Message(
                 "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
                 "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
-                fast=", ".join(found.fast),
-                small=found.field.small,
+                fast=", ".join(manifold.fast),
+                small=manifold.field.small,
             ),
             remedy=slow.DECLARE,
         )
@@ -280,7 +282,7 @@ def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: 
     )
     listed, choice = (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (found, Choice.FIRST)
     taken, start = listed[0]
-    others = [tuple(map(taken.formula, one.values)) for one in known.known if one is not start]
+    others = [tuple(map(taken.formula, root.values)) for root in known.known if root is not start]
     return replace(taken, choice=choice, others=tuple(others), unknown=unknown)
 
 
@@ -318,7 +320,7 @@ def _refuse(
     for name in values:
         if name in related:
             raise NoClosedForm(Message("[[name]] is given by a relation: it cannot be another number", name=name))
-    signs = {one.name: one.sign for one in analysis.system.parameters}
+    signs = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
     if signs.get(small.name) in ("negative", "nonpositive", "zero"):
         raise NoClosedForm(
             Message(
@@ -331,10 +333,10 @@ def _refuse(
 
 def _open(analysis: Analysis, divided: Iterable[Formula]) -> Iterator[Formula]:
     """The factors of formulas that may be zero."""
-    for one in divided:
-        for factor, _ in one.polynomial.factor()[1]:
+    for formula in divided:
+        for factor, _ in formula.polynomial.factor()[1]:
             if analysis.signs.sign(factor) not in ("positive", "negative"):
-                yield Formula(one.ring, factor)
+                yield Formula(formula.ring, factor)
 
 
 def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...]:
@@ -357,24 +359,24 @@ def _motion(analysis: Analysis) -> Mapping[Any, Any] | str:
             if equilibrium.impossible:
                 return Message("the given motion does not exist")
             return unperturbed_with(scene, equilibrium.determined(scene))
-        found = analysis.first_order
+        first_order = analysis.first_order
     except Unavailable as unavailable:
         return unavailable.reason
     except Failure as reason:
         return message_of(reason)
-    return {name: value.polynomial for name, value in zip(found.names, found.values, strict=True)}
+    return {name: value.polynomial for name, value in zip(first_order.names, first_order.values, strict=True)}
 
 
 def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -> Mapping[str, Any]:
     """The variables on it.  Raises NoClosedForm where one of them varies."""
     if analysis.system.speeds:
         return motion
-    found = {}
+    values = {}
     for name, k in zip(transfer.variables, transfer.places[len(transfer.parameters) :], strict=True):
         if k not in motion:
             raise NoClosedForm(Message("[[name]] is not constant on the motion", name=name))
-        found[name] = motion[k]
-    return found
+        values[name] = motion[k]
+    return values
 
 
 def _steady_values(
@@ -455,5 +457,5 @@ def _unscaled(analysis: Analysis) -> Signs:
         generators = [ring.generators[k] for k in occurring([p])]
         return any(g.name in scales or (g.argument is not None and held(g.argument)) for g in generators)
 
-    kept = tuple(one for one in analysis.signs.assumptions if not held(one[0]))
+    kept = tuple(assumption for assumption in analysis.signs.assumptions if not held(assumption[0]))
     return replace(analysis.signs, assumptions=kept)

@@ -53,7 +53,7 @@ def _write(analysis: Analysis, ring: Ring) -> None:
     if analysis.system.symbols:
         from mbsym.formulas.latex import write_as
 
-        write_as(ring, {one.name: one.latex for one in analysis.system.symbols})
+        write_as(ring, {symbol.name: symbol.latex for symbol in analysis.system.symbols})
 
 
 def requested_forms(analysis: Analysis) -> tuple[str, ...]:

@@ -33,14 +33,14 @@ def found_integrals(analysis: Analysis, values: Mapping[str, Fraction]) -> tuple
     system = analysis.system
     if system.constraints or system.linear is not None or len(system.coordinates) > MOST_COORDINATES:
         return ()
-    numbers = {one.name: values[one.name] for one in system.parameters if one.name in values}
-    found: list[Integral] = []
+    numbers = {parameter.name: values[parameter.name] for parameter in system.parameters if parameter.name in values}
+    integrals: list[Integral] = []
     with suppress(Failure):
-        found += _of_symmetries(symmetries_of(analysis, numbers))
+        integrals += _of_symmetries(symmetries_of(analysis, numbers))
     with suppress(Failure, ZeroDivisionError):
-        there = with_known(setting(analysis, numbers, driven=True), found)
-        found += _polynomials(there, integrals_of(there, DEGREE))
-    return tuple(found)
+        there = with_known(setting(analysis, numbers, driven=True), integrals)
+        integrals += _polynomials(there, integrals_of(there, DEGREE))
+    return tuple(integrals)
 
 
 def beyond(analysis: Analysis) -> tuple[Integral, ...]:
@@ -49,30 +49,30 @@ def beyond(analysis: Analysis) -> tuple[Integral, ...]:
     Raises Unavailable where problem 9 has no result, or stands on a check that has failed.
     """
     result = analysis.polynomial_integrals
-    found = [] if result.symmetries is None else _of_symmetries(result.symmetries)
+    integrals = [] if result.symmetries is None else _of_symmetries(result.symmetries)
     there = setting(analysis, driven=True)
-    if not found:
+    if not integrals:
         return tuple(_polynomials(there, result.found))
     try:
-        return (*found, *_polynomials(there, integrals_of(with_known(there, found), DEGREE)))
+        return (*integrals, *_polynomials(there, integrals_of(with_known(there, integrals), DEGREE)))
     except Failure:
-        return tuple(found)
+        return tuple(integrals)
 
 
 def _of_symmetries(symmetries: Symmetries) -> list[Integral]:
-    found = []
-    for one in symmetries.new:
-        along = ", ".join(name for name, _ in one.directions) or "time"
-        found.append(
+    of_symmetries = []
+    for symmetry in symmetries.new:
+        along = ", ".join(name for name, _ in symmetry.directions) or "time"
+        of_symmetries.append(
             Integral(
                 Message("integral of a symmetry ([[along]])", along=along),
                 SYMMETRY,
                 along,
-                one.integral,
+                symmetry.integral,
                 Certainty.PROVED,
             )
         )
-    return found
+    return of_symmetries
 
 
 def _polynomials(there: Setting, found: PolynomialIntegrals) -> list[Integral]:

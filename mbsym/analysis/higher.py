@@ -38,19 +38,19 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     from mbsym.problems.normal_forms import InSymbols, Judged, Outcome, Theorem, Why, problem  # few ask for it
     from mbsym.problems.stabilisation.problem import on_motion
 
-    found, scene = analysis.equilibrium, analysis.parameters_scene
+    equilibrium, scene = analysis.equilibrium, analysis.parameters_scene
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
-    if len(found.conditions) > len(found.solved):
+    if len(equilibrium.conditions) > len(equilibrium.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
-    values = stability.parameter_values(scene, found)
+    values = stability.parameter_values(scene, equilibrium)
     nothing = Why.NONE
     if values is not None:
         divides = pole(analysis, values) is not None
-        nothing = Why.POLE if divides else Why.NONE if on_motion(scene, found, values) else Why.NO_MOTION
+        nothing = Why.POLE if divides else Why.NONE if on_motion(scene, equilibrium, values) else Why.NO_MOTION
     values = values if nothing is Why.NONE else None
     conservative, cyclic = ignorable(analysis)
-    result = problem.normal_forms(scene, analysis.system, found, values, conservative, cyclic)
+    result = problem.normal_forms(scene, analysis.system, equilibrium, values, conservative, cyclic)
     judged = analysis.optional("stability")
     before = None if judged is None else judged.before_higher_order or judged.numerical
     first = None if before is None else before.word
@@ -184,29 +184,29 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     from mbsym.problems.normal_forms.expansion import NotExpanded
 
     system, scene, tied = analysis.system, analysis.parameters_scene, analysis.constraints
-    found, about = analysis.reduced.expansion, analysis.reduced.about
-    at_rest = not found.base.turning and all(x.is_zero() for x in found.base.rates)
+    expansion, about = analysis.reduced.expansion, analysis.reduced.about
+    at_rest = not expansion.base.turning and all(x.is_zero() for x in expansion.base.rates)
     if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
         raise NotExpanded("under constraints only rests of systems that do not know the time are expanded")
     if (
         not (about.holonomic or kept_by_velocities(analysis))
-        or len(system.coordinates) - len(found.speeds) != tied.velocity_rank
+        or len(system.coordinates) - len(expansion.speeds) != tied.velocity_rank
     ):
         raise NotExpanded("the constraints leave no manifold that is known")
-    return lambda order: on_manifold(scene, analysis.signs, found, order)
+    return lambda order: on_manifold(scene, analysis.signs, expansion, order)
 
 
 def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
     from mbsym.problems.normal_forms import Vanishing
 
-    def left(one: Formula) -> Formula:
-        product = one.ring.one
-        if not one.is_zero:
-            for factor, _ in one.polynomial.factor()[1]:
+    def left(formula: Formula) -> Formula:
+        product = formula.ring.one
+        if not formula.is_zero:
+            for factor, _ in formula.polynomial.factor()[1]:
                 if not signs.never_zero(factor):
-                    product = one.ring.times(product, factor)
-        return one if one.is_zero else Formula(one.ring, one.ring.reduce(product))
+                    product = formula.ring.times(product, factor)
+        return formula if formula.is_zero else Formula(formula.ring, formula.ring.reduce(product))
 
     resonances = tuple((vector, left(x)) for vector, x in found.resonances)
     return replace(found, vanishing=Vanishing(left(found.zero), resonances))

@@ -45,13 +45,13 @@ def product(powers: Powers) -> Expression:
             halves.append((name, exponent.numerator))
         else:
             others.append((name, exponent))
-    found = _quotient([(_whole(name, abs(k)), k > 0) for name, k in wholes])
+    expression = _quotient([(_whole(name, abs(k)), k > 0) for name, k in wholes])
     if halves:
         root = Call("sqrt", _quotient([(_whole(name, abs(k)), k > 0) for name, k in halves]))
-        found = root if is_number(found, 1) else multiply(found, root)
+        expression = root if is_number(expression, 1) else multiply(expression, root)
     for name, exponent in others:
-        found = multiply(found, power(Name(name), number(exponent)))
-    return found
+        expression = multiply(expression, power(Name(name), number(exponent)))
+    return expression
 
 
 def _quotient(factors: Iterable[tuple[Expression, bool]]) -> Expression:
@@ -76,17 +76,17 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
     """The description in groups, with ``values`` if these are wanted; claims, units of measurement, limits left out."""
     units = {name: number(1) for name in found.units}
     known: Mapping[str, Expression] = {x.name: x.value for x in system.parameters if x.value is not None and values}
-    stands = {one.parameter: group_of(one.parameter, one.powers) for one in found.groups}
+    stands = {group.parameter: group_of(group.parameter, group.powers) for group in found.groups}
     related = {relation.name for relation in system.relations}
     parameters = []
-    for one in system.parameters:
-        if one.name in units:
+    for parameter in system.parameters:
+        if parameter.name in units:
             continue
-        if one.name in stands:
-            parameters.append(_group(one, stands[one.name], known))
+        if parameter.name in stands:
+            parameters.append(_group(parameter, stands[parameter.name], known))
         else:  # one that does not matter, or follows from others
-            kept = values and one.name not in related
-            parameters.append(one if kept else replace(one, value=None))
+            kept = values and parameter.name not in related
+            parameters.append(parameter if kept else replace(parameter, value=None))
     base = replace(system, parameters=(), initial=(), claims=(), units=Units(), limits=(), abbreviations=())
     changed: System = put(base, units, folded)
     scale = changed.time_scale
@@ -97,7 +97,7 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
         description=f"In units in which {told}.  {system.description}".strip() if told else system.description,
         bodies=tuple(map(_accepted, changed.bodies)),
         parameters=tuple(parameters),
-        symbols=tuple(one for one in changed.symbols if one.name not in units),
+        symbols=tuple(symbol for symbol in changed.symbols if symbol.name not in units),
         initial=tuple(_initial(system.initial, found, known)),
         start=tuple(_initial(system.start, found, known)),
         time_scale=scale if scale is not None and names(scale) else None,
@@ -120,36 +120,38 @@ def _accepted(body: Body) -> Body:
     return body if body.inertia is None else replace(body, inertia=replace(body.inertia, accepted=True))
 
 
-def _group(one: Parameter, stands: Expression, values: Mapping[str, Expression]) -> Parameter:
-    meaning = f"{text(stands)}; {one.name}: {one.meaning}" if one.meaning else text(stands)
-    if stands == Name(one.name):
-        meaning = one.meaning
-    return replace(one, meaning=meaning, value=_valued(stands, values))
+def _group(parameter: Parameter, stands: Expression, values: Mapping[str, Expression]) -> Parameter:
+    meaning = f"{text(stands)}; {parameter.name}: {parameter.meaning}" if parameter.meaning else text(stands)
+    if stands == Name(parameter.name):
+        meaning = parameter.meaning
+    return replace(parameter, meaning=meaning, value=_valued(stands, values))
 
 
 def _valued(x: Expression, values: Mapping[str, Expression]) -> Expression | None:
     """With numbers for all names; None where one has none."""
     if not names(x) <= values.keys():
         return None
-    found = substitute(x, dict(values))
-    exact = rational(found)
-    return found if exact is None else number(exact)
+    expression = substitute(x, dict(values))
+    exact = rational(expression)
+    return expression if exact is None else number(exact)
 
 
-def _initial(given: Sequence[InitialValue], found: Groups, values: Mapping[str, Expression]) -> Iterable[InitialValue]:
+def _initial(
+    given_values: Sequence[InitialValue], found: Groups, values: Mapping[str, Expression]
+) -> Iterable[InitialValue]:
     """Positions by their lengths, velocities by lengths times the rate; left out where a unit has no value."""
-    lengths = {one.parameter: one.powers for one in found.lengths}
+    lengths = {group.parameter: group.powers for group in found.lengths}
     if found.rate is None:
         return
-    for one in given:
-        length = _valued(product(lengths.get(one.coordinate, ())), values)
-        rate = _valued(product([*lengths.get(one.coordinate, ()), *found.rate]), values)
+    for value in given_values:
+        length = _valued(product(lengths.get(value.coordinate, ())), values)
+        rate = _valued(product([*lengths.get(value.coordinate, ()), *found.rate]), values)
         if length is None or rate is None:
             continue
-        position = one.position if one.position is None else _divided(one.position, length, values)
-        velocity = one.velocity if one.velocity is None else _divided(one.velocity, rate, values)
-        if (one.position is None) == (position is None):
-            yield replace(one, position=position, velocity=velocity)
+        position = value.position if value.position is None else _divided(value.position, length, values)
+        velocity = value.velocity if value.velocity is None else _divided(value.velocity, rate, values)
+        if (value.position is None) == (position is None):
+            yield replace(value, position=position, velocity=velocity)
 
 
 def _divided(x: Expression, unit: Expression, values: Mapping[str, Expression]) -> Expression | None:

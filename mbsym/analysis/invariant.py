@@ -85,7 +85,7 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     chosen, left = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
     if not chosen:
         raise NoClosedForm("no polynomial integrals are known but those of geometry")
-    signs = {one.name: one.sign for one in analysis.system.parameters}
+    signs = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
     floating = len(field.relations) if lagrangian else 0
     place = arena(field, chosen, signs, _assumptions(analysis, there.transfer), floating)
     from mbsym.problems.invariant_sets.branches import identifiers
@@ -122,7 +122,7 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
     from mbsym.analysis import polynomial
 
     field = there.whole
-    energies = {one.name for one in analysis.integrals if one.kind == ENERGY}
+    energies = {integral.name for integral in analysis.integrals if integral.kind == ENERGY}
     energies |= {Message(polynomial.MULTIPLE, name=name) for name in energies}
     known = [(name, p) for name, p in there.known if field.reduced(_without_constants(field, p)) != 0]
     # Claimed integrals are looked at here once more: ``analysis.claims`` asks for every result, this one among them.
@@ -213,13 +213,13 @@ def _gradient(field: PolynomialField, p: Any, point: dict[int, int]) -> list[int
 
 def _assumptions(analysis: Analysis, transfer: Transfer) -> list[tuple[Any, str]]:
     """Those in parameters that occur in the field."""
-    found = []
+    assumptions = []
     for p, relation in analysis.signs.assumptions:
         try:
-            found.append((transfer(p), relation))
+            assumptions.append((transfer(p), relation))
         except Failure:
             continue
-    return found
+    return assumptions
 
 
 def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
@@ -228,7 +228,7 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
     The identifiers that stand for something else, with that in Python syntax; the description's own symbols are kept.
     """
     system = analysis.system
-    symbols = {one.name: one.latex for one in system.symbols}
+    symbols = {symbol.name: symbol.latex for symbol in system.symbols}
     in_tex, in_page = latex.LatexNames(list(system.coordinates), symbols), mathml.MathNames(system.coordinates)
     told: dict[str, str] = {}
     page: dict[str, mathml.Symbol] = {}

@@ -147,7 +147,7 @@ class Judge:
         of = self.analysis
         if not of.system.constraints:
             system = self._displaced
-        elif not any(isinstance(one, Relation) for one in of.system.constraints):
+        elif not any(isinstance(constraint, Relation) for constraint in of.system.constraints):
             return None
         else:
             system = without_explicit_relations(of.system)
@@ -173,7 +173,7 @@ class Judge:
                 return None
             shares = {one: fraction(x.leading_coefficient()) for one, x in zip(names, direction, strict=True) if x != 0}
             name = next((one for one in reversed(names) if one in shares and one not in taken), None)
-            if name is None or any(one in taken for one in shares):
+            if name is None or any(share in taken for share in shares):
                 return None
             if len(shares) > 1:
                 taken.add(name)
@@ -194,8 +194,8 @@ class Judge:
         uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)
         if further.word.open or uneven:
             return verdict
-        told = (one for one in verdict.reasons if one.code is Because.DISPLACEMENTS and one not in further.reasons)
-        return replace(further, reasons=tuple(sorted((*further.reasons, *told), key=lambda one: one.rank)))
+        reasons = (one for one in verdict.reasons if one.code is Because.DISPLACEMENTS and one not in further.reasons)
+        return replace(further, reasons=tuple(sorted((*further.reasons, *reasons), key=lambda one: one.rank)))
 
     @cached_property
     def _of_higher_order(self) -> Any:
@@ -243,19 +243,21 @@ def exceptional(
         reason = "it has constraints, or is given by its matrices: normal forms are of neither"
         raise Unavailable("system", NoResult(reason, "", "not supported", "not-supported"))
     with analysis.strictly():
-        found = analysis.equilibrium
+        equilibrium = analysis.equilibrium
         analysis.judgeable  # noqa: B018  raises where no theorem applies
-    if len(found.conditions) > len(found.solved):
+    if len(equilibrium.conditions) > len(equilibrium.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
-    solved = {one for one, _ in found.solved}
+    solved = {one for one, _ in equilibrium.solved}
     if name in solved:
         reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
     conservative, cyclic = ignorable(analysis)
     numbers = {key: value for key, value in values.items() if key != name and key not in solved}
-    listed = along(analysis.parameters_scene, analysis.system, found, name, interval, numbers, conservative, cyclic)
-    return replace(listed, specials=tuple(_judged(analysis, numbers, name, one) for one in listed.specials))
+    listed = along(
+        analysis.parameters_scene, analysis.system, equilibrium, name, interval, numbers, conservative, cyclic
+    )
+    return replace(listed, specials=tuple(_judged(analysis, numbers, name, special) for special in listed.specials))
 
 
 def _judged(analysis: Analysis, values: Mapping[str, Fraction], name: str, special: Special) -> Special:

@@ -55,16 +55,16 @@ def judged_claims(analysis: Analysis) -> tuple[ClaimResult, ...]:
     further = {key: some for key, some in arguments.items() if some and angle_denominators(system, some) != own}
     source = analysis
     if further:
-        angles = [one for some in further.values() for one in some]
+        angles = [expression for some in further.values() for expression in some]
         source = type(analysis)(system, analysis.problems, analysis.terms, angles=angles)
         source.defects = analysis.defects
     allowance = analysis.ring.work_budget // CLAIMS_SHARE
-    found = []
+    results = []
     for claim in system.claims:
         result, spent = _judged(source if id(claim) in further else analysis, claim, allowance)
         allowance -= spent
-        found.append(result)
-    return tuple(found)
+        results.append(result)
+    return tuple(results)
 
 
 def _judged(source: Analysis, claim: Claim, allowance: int) -> tuple[ClaimResult, int]:

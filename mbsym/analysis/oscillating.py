@@ -88,8 +88,8 @@ class Oscillating:
     def denominators(self) -> tuple[tuple[Any, str], ...]:
         """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
         found = self.found
-        waves = [one for series in found.series for one in series] + [x for one in found.drifts for x in one.waves]
-        values = [x for one in waves for pair in one.waves.values() for x in pair if not x.is_zero()]
+        waves = [one for series in found.series for one in series] + [x for drift in found.drifts for x in drift.waves]
+        values = [x for wave in waves for pair in wave.waves.values() for x in pair if not x.is_zero()]
         factors: list[Any] = []
         often: list[int] = []
         for x in [*values, *found.corrections]:
@@ -114,23 +114,23 @@ class Oscillating:
             (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
         )
 
-    def wave(self, one: Harmonics, told: Ring | None = None) -> Formula:
+    def wave(self, harmonics: Harmonics, told: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phase."""
         ring = self.ring if told is None else told
         total = ring.zero
         s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
-        for k, (a, b) in one.waves.items():
+        for k, (a, b) in harmonics.waves.items():
             sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
             total = total + ring.times(self.formula(a, told).polynomial, cosine)
             total = total + ring.times(self.formula(b, told).polynomial, sine)
         return Formula(ring, total if told is not None else ring.reduce(total))
 
-    def shortest(self, one: Harmonics) -> Formula:
+    def shortest(self, harmonics: Harmonics) -> Formula:
         """The same with letters for common denominators, in the form that takes least to be written."""
-        whole = self.wave(one)
+        whole = self.wave(harmonics)
         if not self.denominators:
             return whole
-        plain = self.wave(one, self.told_ring)
+        plain = self.wave(harmonics, self.told_ring)
         reduced = Formula(plain.ring, plain.ring.reduce(plain.polynomial))
         with letters_as(None):  # to write each in letters would take long
             named = min((plain, reduced), key=lambda x: len(x.text()))
@@ -140,10 +140,10 @@ class Oscillating:
             return whole  # the author's letters make it shorter than ours
         return min((named, whole), key=lambda x: len(x.text()))
 
-    def written(self, one: Harmonics) -> str:
+    def written(self, harmonics: Harmonics) -> str:
         """The same, harmonic by harmonic, in Python syntax."""
         text = ""
-        for k, pair in sorted(one.waves.items()):
+        for k, pair in sorted(harmonics.waves.items()):
             for x, wave in zip(pair, ("cos", "sin"), strict=True):
                 if x.is_zero():
                     continue
@@ -187,7 +187,7 @@ def small_parameter(system: System) -> SmallParameter:
         )
     taken = {*system.parameter_names, *system.coordinates}
     name = next(one for one in ("eps", "epsilon", "eps_", "epsilon_") if one not in taken)
-    return SmallParameter(name, tuple((one, 1) for one in system.coordinates))
+    return SmallParameter(name, tuple((coordinate, 1) for coordinate in system.coordinates))
 
 
 def oscillating(
@@ -267,9 +267,9 @@ def oscillating(
         taylor,
         sign == "positive",
         tuple(
-            one
-            for one in found.divisors
-            if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in one.parts)
+            divisor
+            for divisor in found.divisors
+            if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in divisor.parts)
         ),
         found.kind is Amplitude.FREE or size == "positive",
         None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
@@ -358,8 +358,8 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
     own = {name: tower.parameter(shown.get(name, name)) for name in (*kept, *shown)}
     lower = Lowering(tower, own)
     images = {**own, **{name: lower(value) for name, value in scaling.parameters}}
-    factors = {one.name: lower(one.factor) for one in scaling.variables}
-    new = {one.name: one.new for one in scaling.variables}
+    factors = {variable.name: lower(variable.factor) for variable in scaling.variables}
+    new = {variable.name: variable.new for variable in scaling.variables}
     slow = tower.one if scaling.time is None else lower(scaling.time.factor)
     for name in told.velocities:
         plain = without_velocity(name)
@@ -400,18 +400,18 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
     def put(x: Element) -> Element:
         return whole(x.top) / whole(x.bottom)
 
-    def wave(name: str, one: Harmonics) -> Harmonics:
+    def wave(name: str, harmonics: Harmonics) -> Harmonics:
         factor = tower.reciprocal(factors.get(name, tower.one))
-        return Harmonics(tower, {k: (put(c) * factor, put(s) * factor) for k, (c, s) in one.waves.items()})
+        return Harmonics(tower, {k: (put(c) * factor, put(s) * factor) for k, (c, s) in harmonics.waves.items()})
 
     moved = {
-        id(one): replace(
-            one,
-            variables=called(one.variables),
-            value=put(one.value),
-            damping=None if one.damping is None else put(one.damping),
+        id(divisor): replace(
+            divisor,
+            variables=called(divisor.variables),
+            value=put(divisor.value),
+            damping=None if divisor.damping is None else put(divisor.damping),
         )
-        for one in found.divisors
+        for divisor in found.divisors
     }
     changed = replace(
         found,
@@ -428,12 +428,12 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
         ),
         drifts=tuple(
             replace(
-                one,
-                variable=new.get(one.variable, one.variable),
-                rates=tuple(put(x) * slow / factors.get(one.variable, tower.one) for x in one.rates),
-                waves=tuple(wave(one.variable, x) for x in one.waves),
+                drift,
+                variable=new.get(drift.variable, drift.variable),
+                rates=tuple(put(x) * slow / factors.get(drift.variable, tower.one) for x in drift.rates),
+                waves=tuple(wave(drift.variable, x) for x in drift.waves),
             )
-            for one in found.drifts
+            for drift in found.drifts
         ),
         divisors=tuple(moved.values()),
         others=tuple((called(names), put(x) * slow * slow) for names, x in found.others),
@@ -448,7 +448,7 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
         found=changed,
         ring=_letters(base, kept, told.phase, told.symbols),
         real=told.real or tower.rational(changed.frequency) is not None,
-        resonances=tuple(moved[id(one)] for one in told.resonances),
+        resonances=tuple(moved[id(resonance)] for resonance in told.resonances),
         velocities=called(told.velocities),
     )
 
@@ -496,7 +496,7 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
         return taylor_field(jets, order + 1), True
     field = vector_field(analysis.form, equations, (), images)[0]
     for name in names:
-        if weights.get(name) and any(f"({name}" in one for one in field.variables):
+        if weights.get(name) and any(f"({name}" in variable for variable in field.variables):
             raise NoClosedForm(
                 Message(
                     "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
@@ -510,8 +510,8 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
 
 def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str]]:
     """What the phase is called, and the symbols of the tower by their own names."""
-    found = oscillation_names(field.variables, names_in(system))
-    return found.phase, {AMPLITUDE: found.amplitude} | {f"#{name}": start for name, start in found.starts.items()}
+    names = oscillation_names(field.variables, names_in(system))
+    return names.phase, {AMPLITUDE: names.amplitude} | {f"#{name}": start for name, start in names.starts.items()}
 
 
 def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:

@@ -200,7 +200,7 @@ class Analysis(Stages):
         if self.system.symbols:
             from mbsym.formulas.latex import write_as
 
-            write_as(ring, {one.name: one.latex for one in self.system.symbols})
+            write_as(ring, {symbol.name: symbol.latex for symbol in self.system.symbols})
         return ring
 
     scene = Derived["Analysis", Scene](lambda a: a.over_ring(), knows=OF_ALL)

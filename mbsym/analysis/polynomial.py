@@ -103,8 +103,8 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     form, declared = analysis.form, analysis.system.speeds
     equations: Any = analysis.equations
     listed = analysis.integrals
-    listed = tuple(_without_aside(form, equations.aside, one) for one in listed) if declared else listed
-    also = [one.formula.polynomial for one in listed]
+    listed = tuple(_without_aside(form, equations.aside, integral) for integral in listed) if declared else listed
+    also = [integral.formula.polynomial for integral in listed]
     images = relations(analysis.parameters_scene)
     whole, transfer = vector_field(form, equations, also, images, driven=driven)
     angles = [name.removeprefix("sin") for name in whole.variables if name.startswith("sin(")]
@@ -143,8 +143,8 @@ def _following(
     """
     blocks = blocks_of(analysis, values)
     gradients = Gradients(analysis.system, blocks)
-    for one in analysis.integrals:
-        gradients.add(put_in(blocks.ring, put_in(blocks.ring, one.formula.polynomial, dependent), blocks.images))
+    for integral in analysis.integrals:
+        gradients.add(put_in(blocks.ring, put_in(blocks.ring, integral.formula.polynomial, dependent), blocks.images))
     return lambda formula: gradients.grows(put_in(blocks.ring, formula.polynomial, blocks.images)) is False
 
 
@@ -170,16 +170,16 @@ def _asked(one: UnitVector | Quaternion) -> bool:
     return isinstance(one, Quaternion) or one.asked
 
 
-def _without_aside(form: SpeedForm, aside: Sequence[str], one: Integral) -> Integral:
+def _without_aside(form: SpeedForm, aside: Sequence[str], integral: Integral) -> Integral:
     """The integral with 1 for the squares of unit vectors on which the equations do not depend."""
-    ring, p = form.ring, one.formula.polynomial
+    ring, p = form.ring, integral.formula.polynomial
     for vector in (vector for body in form.oriented for vector in body.orientation):
         if set(vector.components) <= set(aside):
             norm = -ring.one
             for name in vector.components:
                 norm = norm + ring.generator("coordinate", name) ** 2
             p = divmod(p, norm)[1]
-    return replace(one, formula=Formula(ring, ring.reduce(p)))
+    return replace(integral, formula=Formula(ring, ring.reduce(p)))
 
 
 def with_known(there: Setting, listed: Sequence[Integral]) -> Setting:
@@ -205,16 +205,16 @@ def _known(
     Then the names of those that are quotients with variables below.
     """
     known, rational = [], []
-    for one in listed:
+    for integral in listed:
         try:
-            top, bottom = transfer.fraction(one.formula.polynomial)
+            top, bottom = transfer.fraction(integral.formula.polynomial)
         except Failure:
             continue  # it holds the time, or positions on which the equations do not depend
         if not any(bottom.degrees()[k] for k in whole.places):
-            name = one.name if bottom.is_constant() else Message(MULTIPLE, name=one.name)
+            name = integral.name if bottom.is_constant() else Message(MULTIPLE, name=integral.name)
             known.append((name, _at(whole, field, numbers, top)))
         else:
-            rational.append(one.name)
+            rational.append(integral.name)
     return known, tuple(rational)
 
 
@@ -236,15 +236,15 @@ def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], 
     for p, relation in analysis.signs.assumptions:
         with suppress(Failure):  # it holds other parameters than the equations
             assumed.append((_at(there.whole, there.field, numbers, there.transfer(p)), relation))
-    declared = {one.name: one.sign for one in analysis.system.parameters}
+    declared = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
     words = tuple(declared.get(name, "real") for name in there.field.context.names())
     signs = Signs(there.field.context, words, tuple(assumed))
-    kept = tuple(
+    cases = tuple(
         one
         for one in found.cases
         if not any(signs.sign(p) in ("positive", "negative", "nonzero") for p in one.conditions)
     )
-    return replace(found, cases=kept)
+    return replace(found, cases=cases)
 
 
 def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grading:
@@ -264,12 +264,12 @@ def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grad
 
 def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
     """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
-    found = polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
+    integrals = polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
     named = (
         replace(one, name=FUNCTION) if not one.name and there.follows(there.formula(one.polynomial)) else one
-        for one in found.generators
+        for one in integrals.generators
     )
-    return replace(found, aside=there.aside, rational=there.rational, generators=tuple(named))
+    return replace(integrals, aside=there.aside, rational=there.rational, generators=tuple(named))
 
 
 #: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.
@@ -279,15 +279,15 @@ DEGREE = 4
 def polynomials_of(analysis: Analysis) -> Polynomials:
     """Problem 9 for the symbols of the description."""
     there = setting(analysis, driven=True)
-    found = integrals_of(there, DEGREE)
-    on = [one for one in (on_level(found, level) for level in levels(found)) if one.integrals]
+    integrals = integrals_of(there, DEGREE)
+    on = [one for one in (on_level(integrals, level) for level in levels(integrals)) if one.integrals]
     symmetries = None
     with suppress(Failure):  # the integrals stand without them
         symmetries = symmetries_of(analysis)
     return Polynomials(
-        found,
+        integrals,
         tuple(there.formula(there.field.generator(name)) for name in there.field.variables),
-        tuple(there.formula(one.polynomial) for one in found.generators),
+        tuple(there.formula(generator.polynomial) for generator in integrals.generators),
         tuple(on),
         tuple(tuple(there.formula(f) for _, f in one.integrals) for one in on),
         symmetries,
@@ -301,7 +301,7 @@ def check(analysis: Analysis) -> Check | None:
     """
     truth = analysis.oracles
     if analysis.system.relations:
-        if any(one.name in analysis.ring.angles for one in analysis.system.relations):
+        if any(relation.name in analysis.ring.angles for relation in analysis.system.relations):
             return None
         truth = _Related(analysis.system, analysis.ring, truth.count)
     found = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
@@ -316,9 +316,9 @@ def check(analysis: Analysis) -> Check | None:
     ]
     if found.symmetries is not None:
         new += [
-            Integral(Message("integral of symmetry [[k]]", k=k), "symmetry", "", one.integral, Certainty.PROVED)
-            for k, one in enumerate(found.symmetries.symmetries, start=1)
-            if not one.name
+            Integral(Message("integral of symmetry [[k]]", k=k), "symmetry", "", symmetry.integral, Certainty.PROVED)
+            for k, symmetry in enumerate(found.symmetries.symmetries, start=1)
+            if not symmetry.name
         ]
     if not new:
         return None

@@ -81,34 +81,36 @@ class Reduced:
 
 
 def reduced(
-    analysis: Analysis, asked: Reducing, formulas: Formulas | None = None, claims: Iterable[Claim] = ()
+    analysis: Analysis, reducing: Reducing, formulas: Formulas | None = None, claims: Iterable[Claim] = ()
 ) -> Reduced:
     """The equations of motion, in the variables of ``formulas`` if any, reduced.  Raises NoClosedForm.
 
     ``claims``: integrals among them are tried before those of problem 7, if they are any.
     """
-    start = _Start(analysis, asked, formulas, claims)
-    found = Reduction(start.rows, start.small, ()).then(How.SORTED, {}, start.flow())
-    for step in asked.steps:
+    start = _Start(analysis, reducing, formulas, claims)
+    reduction = Reduction(start.rows, start.small, ()).then(How.SORTED, {}, start.flow())
+    for step in reducing.steps:
         if not step.by:
             put = {start.place(name): start.whole(x) for name, x in step.given.items() if name in start.moving}
             new = dict.fromkeys(node.name for x in put.values() for node in walk(x) if isinstance(node, Name))
             places = [start.place(name) for name in new if name in start.fresh]
             if put:
                 old = {place: start.series(x) for place, x in put.items()}
-                found = changes.by_change(found, old, places, asked.known)
+                reduction = changes.by_change(reduction, old, places, reducing.known)
             continue
         unknown = [start.place(name) for name in step.names]
         if step.by == (INTEGRALS,):
-            first = start.initial(found.flow.rates)
+            first = start.initial(reduction.flow.rates)
             first |= {start.place(name): start.series(x) for name, x in step.given.items()}
-            found = changes.by_integrals(found, unknown, first, start.constants(len(unknown)), asked.known)
+            reduction = changes.by_integrals(reduction, unknown, first, start.constants(len(unknown)), reducing.known)
         else:
-            found = changes.by_equations(found, unknown, [start.place(name) for name in step.by], asked.known)
-    kept = (one for one in start.system.abbreviations if one.name not in start.letters)
-    letters = (*kept, *(Abbreviation(name, value) for name, value in start.letters.items()))
+            reduction = changes.by_equations(
+                reduction, unknown, [start.place(name) for name in step.by], reducing.known
+            )
+    abbreviations = (one for one in start.system.abbreviations if one.name not in start.letters)
+    letters = (*abbreviations, *(Abbreviation(name, value) for name, value in start.letters.items()))
     system = replace(start.system, abbreviations=letters)
-    return Reduced(found, start.transfer, system, asked)
+    return Reduced(reduction, start.transfer, system, reducing)
 
 
 class _Start:
@@ -120,14 +122,14 @@ class _Start:
         indices = there.places[len(there.parameters) :]
         self.system = analysis.system if formulas is None else formulas.system
         bases = dict.fromkeys(own.generators[k].name for k in indices)
-        parameters = [*self.system.parameter_names, *(one.name for one in self.system.notation)]
-        given = {name: x for step in asked.steps if not step.by for name, x in step.given.items()}
+        parameters = [*self.system.parameter_names, *(notation.name for notation in self.system.notation)]
+        expressions = {name: x for step in asked.steps if not step.by for name, x in step.given.items()}
         self.moving = {own.generators[k].name for k in indices if own.generators[k].kind == "coordinate"}
         self.moving |= {velocity_name(n) for n in bases}
-        self.letters = {name: x for name, x in given.items() if name not in self.moving}
+        self.letters = {name: x for name, x in expressions.items() if name not in self.moving}
         for name in sorted({*self.letters} & {*parameters, "pi"}):
             raise NoClosedForm(Message("[[name]] is a parameter: a letter needs a name of its own", name=name))
-        seen = [name for x in given.values() for name in sorted(names(x))]
+        seen = [name for x in expressions.values() for name in sorted(names(x))]
         known = {*parameters, *self.letters, *self.moving, "pi"}
         self.fresh = [name for name in dict.fromkeys(seen) if name not in known]
         self.moving |= {*self.fresh, *map(velocity_name, self.fresh)}
@@ -139,7 +141,7 @@ class _Start:
         if asked.small and asked.small not in parameters:
             raise NoClosedForm(Message("[[name]] is no parameter of the equations", name=asked.small))
         fixed = dict.fromkeys((*parameters, *added))
-        positive = [one.name for one in self.system.parameters if one.sign == "positive"]
+        positive = [parameter.name for parameter in self.system.parameters if parameter.sign == "positive"]
         self.ring = ring = Ring([*bases, *self.fresh], [], [*fixed], own.angles, positive, spare=64)
         self.environment = {name: ring.generator("parameter", name) for name in (*fixed, "pi")}
         for name in (*bases, *self.fresh):
@@ -168,7 +170,7 @@ class _Start:
         self.integrals: list[Polynomial] = []
         for p in (
             *self._claimed(analysis, claims, formulas),
-            *sorted((one.formula.polynomial for one in analysis.integrals), key=len),
+            *sorted((integral.formula.polynomial for integral in analysis.integrals), key=len),
         ):
             try:
                 found = self.transfer.fraction(carry(p))[0]
@@ -180,9 +182,9 @@ class _Start:
     def _claimed(self, analysis: Analysis, claims: Iterable[Claim], formulas: Formulas | None) -> Iterator[Polynomial]:
         """What an author says are first integrals, in the ring of the equations."""
         system, ring = analysis.system, analysis.ring
-        new = {} if formulas is None else {one.name: Name(one.new) for one in formulas.scaling.variables}
+        new = {} if formulas is None else {variable.name: Name(variable.new) for variable in formulas.scaling.variables}
         lower = Lowering(ring, ring_environment(system, ring))
-        letters = {one.name: one.value for one in self.system.abbreviations}
+        letters = {abbreviation.name: abbreviation.value for abbreviation in self.system.abbreviations}
         for claim in claims:
             if claim.kind == "first integral":
                 x = claim.equals
@@ -235,8 +237,8 @@ class _Start:
 
     def series(self, x: Expression) -> Series:
         """Raises NoClosedForm for what is no rational function of names that are known."""
-        found = self._quotient(self.whole(x))
-        return self._graded(found.top, found.bottom)
+        quotient = self._quotient(self.whole(x))
+        return self._graded(quotient.top, quotient.bottom)
 
     def _quotient(self, x: Expression) -> Quotient:
         match x:
@@ -247,8 +249,8 @@ class _Start:
             case Negative(operand):
                 return -self._quotient(operand)
             case Operation("**", base, Number(power)) if power.denominator == 1 and 0 < power < 100:
-                found = self._quotient(base)
-                return Quotient.of(found.top ** int(power), found.bottom ** int(power))
+                quotient = self._quotient(base)
+                return Quotient.of(quotient.top ** int(power), quotient.bottom ** int(power))
             case Operation("+" | "-" | "*" | "/" as operator, left, right):
                 act: Any = {"+": add, "-": sub, "*": mul, "/": truediv}[operator]
                 return cast("Quotient", act(self._quotient(left), self._quotient(right)))

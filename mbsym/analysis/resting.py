@@ -59,8 +59,8 @@ def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
     analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
         if one.verdict.because(Because.NO_EQUATIONS):  # of velocities: the whole of problem 6 knows more than the list
-            found = None if enclosed else analysis.stability
-            return one if found is None else replace(one, verdict=found.numerical or found.verdict)
+            stability = None if enclosed else analysis.stability
+            return one if stability is None else replace(one, verdict=stability.numerical or stability.verdict)
         if (bare.constraints and one.free) or not {*one.free} <= higher.ignorable(analysis)[1]:
             return one
         return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))

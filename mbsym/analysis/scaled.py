@@ -85,7 +85,7 @@ def in_variables(system: System, scaling: Scaling) -> System:
     if scaling.time is not None and lower(folded(scaling.time.factor, units)) != ring.one:
         left = text(folded(scaling.time.factor, units))
         raise NoDescription(Message("with what can be set to 1 the unit of time is [[left]], not 1", left=left))
-    found = renamed(in_groups(base, groups), {one.name: one.new for one in scaling.variables})
+    found = renamed(in_groups(base, groups), {variable.name: variable.new for variable in scaling.variables})
     for one in scaling.variables:
         factor = folded(one.factor, units)
         if lower(factor) != ring.one:
@@ -99,12 +99,12 @@ def in_variables(system: System, scaling: Scaling) -> System:
 def with_parameters(system: System, scaling: Scaling) -> System:
     """The description with the new parameters in it, its variables as they are."""
     images = scaling.images
-    signs = {one.name: one.sign for one in system.parameters} | dict.fromkeys(
+    signs = {parameter.name: parameter.sign for parameter in system.parameters} | dict.fromkeys(
         (name for name in scaling.units if name in scaling.new), "positive"
     )
-    known = {one.name: one.value for one in system.parameters if one.value is not None}
+    known = {parameter.name: parameter.value for parameter in system.parameters if parameter.value is not None}
     signs |= _signs(scaling, signs)
-    kept = tuple(one for one in system.parameters if one.name not in images)
+    parameters = tuple(parameter for parameter in system.parameters if parameter.name not in images)
     solved = _solved(scaling)
     new = tuple(
         Parameter(name, signs.get(name, "real"), _valued(solved[name], known), text(solved[name]))
@@ -123,10 +123,10 @@ def with_parameters(system: System, scaling: Scaling) -> System:
     changed: System = put(base, images)
     return replace(
         changed,
-        parameters=(*kept, *new),
-        symbols=tuple(one for one in system.symbols if one.name not in images),
+        parameters=(*parameters, *new),
+        symbols=tuple(symbol for symbol in system.symbols if symbol.name not in images),
         assumptions=(*changed.assumptions, *assumed),
-        small=small if not needed & (images.keys() | {one.name for one in scaling.variables}) else None,
+        small=small if not needed & (images.keys() | {variable.name for variable in scaling.variables}) else None,
     )
 
 
@@ -166,18 +166,18 @@ def _signs(scaling: Scaling, signs: Mapping[str, str]) -> dict[str, str]:
 
 def _solved(scaling: Scaling) -> dict[str, Expression]:
     """The new names in terms of the old ones, each from an equation in which it alone is unknown and a factor."""
-    found: dict[str, Expression] = {}
+    expressions: dict[str, Expression] = {}
     for _ in scaling.new:
         for old, value in scaling.parameters:
-            unknown = [name for name in scaling.new if name in names(value) and name not in found]
+            unknown = [name for name in scaling.new if name in names(value) and name not in expressions]
             for degree in (1, 2, 3, 4) if len(unknown) == 1 else ():
                 stand = f"{unknown[0]}#"
                 shape = _powers(value, unknown[0], degree, stand)
                 factor = None if shape is None else factor_of(shape, stand)
                 if factor is not None:
-                    found[unknown[0]] = _root(divide(Name(old), substitute(factor, found)), degree)
+                    expressions[unknown[0]] = _root(divide(Name(old), substitute(factor, expressions)), degree)
                     break
-    return found
+    return expressions
 
 
 def _root(x: Expression, degree: int) -> Expression:
@@ -197,8 +197,8 @@ def _powers(x: Expression, name: str, degree: int, stand: str) -> Expression | N
                 return Operation(operator, changed(left), changed(right))
         return node
 
-    found = changed(x)
-    return None if name in names(found) else found
+    expression = changed(x)
+    return None if name in names(expression) else expression
 
 
 def _valued(x: Expression, known: Mapping[str, Expression]) -> Expression | None:
@@ -214,8 +214,8 @@ def _valued(x: Expression, known: Mapping[str, Expression]) -> Expression | None
 
 def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Groups:
     """What is set to 1, by dimensions: names of factors first, then others that are positive, as they are declared."""
-    signs = {one.name: one.sign for one in base.parameters}
-    related = {one.name for one in base.relations}
+    signs = {parameter.name: parameter.sign for parameter in base.parameters}
+    related = {relation.name for relation in base.relations}
     free = [name for name in signs if name not in related]
     bases = sorted({one for weights in scaling.weights.values() for one in weights if not one.startswith("[")} | {"s"})
 
@@ -241,7 +241,7 @@ def proposed(system: System, dimensions: Scaling, preferred: Sequence[str]) -> s
     ``dimensions`` are those of a scaling that changes nothing.
     """
     try:
-        found = _groups(system, dimensions, preferred)
+        groups = _groups(system, dimensions, preferred)
     except NoDescription:
         return ""
     known = {*system.parameter_names, *system.coordinates, *system.variables}
@@ -253,18 +253,18 @@ def proposed(system: System, dimensions: Scaling, preferred: Sequence[str]) -> s
         known.add(fresh)
         return fresh
 
-    for one in found.lengths:
-        if one.parameter in system.coordinates and one.powers:
-            items.append(f"{one.parameter}={text(multiply(product(one.powers), Name(new(one.parameter))))}")
-    powers = [found.rate or (), *(one.powers for one in (*found.lengths, *found.groups))]
+    for length in groups.lengths:
+        if length.parameter in system.coordinates and length.powers:
+            items.append(f"{length.parameter}={text(multiply(product(length.powers), Name(new(length.parameter))))}")
+    powers = [groups.rate or (), *(one.powers for one in (*groups.lengths, *groups.groups))]
     if any(power.denominator > 2 for one in powers for _, power in one):
         return ""  # nobody would choose these units
-    if found.rate:
-        items.append(f"t={text(divide(Name('tau'), product(found.rate)))}")
-    for one in found.groups:
-        if one.powers:
-            scale = product([(unit, -power) for unit, power in one.powers])
-            items.append(f"{one.parameter}={text(multiply(scale, Name(new(one.parameter))))}")
+    if groups.rate:
+        items.append(f"t={text(divide(Name('tau'), product(groups.rate)))}")
+    for group in groups.groups:
+        if group.powers:
+            scale = product([(unit, -power) for unit, power in group.powers])
+            items.append(f"{group.parameter}={text(multiply(scale, Name(new(group.parameter))))}")
     return ",".join(items).replace(" ", "")
 
 
@@ -283,10 +283,10 @@ def _renamed(part: Any, every: Mapping[str, str], vectors: Mapping[str, str]) ->
         wanted = tuple(every.get(name, name) for name in part.components)
         vector = replace(part, name=to)
         if vector.components != wanted:
-            told = Message(
+            message = Message(
                 "components of one vector have the names of one vector: [[names]]", names=", ".join(part.components)
             )
-            raise NoDescription(told)
+            raise NoDescription(message)
         return vector
     if not is_dataclass(part) or isinstance(part, type):
         return part
@@ -311,18 +311,18 @@ def _in_names(value: Any, every: Mapping[str, str]) -> Any:
 def _original(system: System, scaling: Scaling) -> System:
     """The system as it was described, its variables by their new names."""
     bare = replace(system, claims=(), abbreviations=(), units=type(system.units)(), limits=())
-    return cast("System", renamed(bare, {one.name: one.new for one in scaling.variables}))
+    return cast("System", renamed(bare, {variable.name: variable.new for variable in scaling.variables}))
 
 
 def _multiplied(system: System, name: str, factor: Expression) -> System:
     """A description in which a variable is a factor times what it was; ``name`` stays."""
     images = {name + end: multiply(factor, Name(name + end)) for end in ("", *ENDINGS.values())}
-    speeds = {one.name for one in system.speeds}
+    speeds = {speed.name for speed in system.speeds}
     if name in speeds:
         images = dict.fromkeys((), ONE) | {name + "_dot": images[name + "_dot"], name: images[name]}
     if name in system.dependent:
         raise NoDescription(Message("'[[name]]' is a dependent variable", name=name))
-    loads = tuple(_load(one, name, factor) for one in system.loads)
+    loads = tuple(_load(load, name, factor) for load in system.loads)
     kept = {one: getattr(system, one) for one in ("motion", "initial", "start")}
     base = replace(system, loads=loads, motion=(), initial=(), start=())
     bodies = tuple(
@@ -335,7 +335,7 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
         for body in base.bodies
     )
     changed: System = put(replace(base, bodies=bodies), images)
-    values = {one.name: one.value for one in system.parameters if one.value is not None}
+    values = {parameter.name: parameter.value for parameter in system.parameters if parameter.value is not None}
     valued = _valued(factor, values)
 
     def divided(x: Expression | None) -> Expression | None:
@@ -468,7 +468,7 @@ def _terms(ring: Ring, x: Polynomial) -> Iterator[Polynomial]:
 
 def _ring(system: System, original: System, scaling: Scaling) -> Ring:
     """The ring of the new variables, with room for what factors, and reciprocals of what is put in, bring."""
-    factors = [one.factor for one in (*scaling.variables, scaling.time) if one is not None]
+    factors = [scaled.factor for scaled in (*scaling.variables, scaling.time) if scaled is not None]
     room = tuple(Assumption(x, "!=", number(0)) for x in (*factors, *(divide(ONE, x) for x in scaling.images.values())))
     return ring_of(
         replace(system, assumptions=(*system.assumptions, *room, *room)), arguments=tuple(angles_of(original))
@@ -481,17 +481,17 @@ def _environment(
     """What the names of the original, by their new names, are in the ring of the new variables."""
     lower = Lowering(ring, own)
     found = dict(own)
-    lengths = {} if groups is None else {one.parameter: product(one.powers) for one in groups.lengths}
-    factors = {one.new: one.factor for one in scaling.variables}
+    lengths = {} if groups is None else {length.parameter: product(length.powers) for length in groups.lengths}
+    factors = {variable.new: variable.factor for variable in scaling.variables}
     slow = ONE if scaling.time is None else scaling.time.factor
     if scaling.time is None and groups is not None and groups.rate is not None:
         slow = divide(ONE, product(groups.rate))
     time = lower(slow)
     found["t"] = ring.times(time, own["t"])
     rate = ring.reciprocal(time)
-    old = {one.new: one.name for one in scaling.variables}
+    old = {variable.new: variable.name for variable in scaling.variables}
     scaled = []
-    driven = (*(one.name for one in original.prescribed), *original.input_names)
+    driven = (*(prescribed.name for prescribed in original.prescribed), *original.input_names)
     for name in (*original.coordinates, *original.variables, *driven):
         factor = lower(factors.get(name) or lengths.get(old.get(name, name), ONE))
         if factor != ring.one:
@@ -545,26 +545,26 @@ def _rows(analysis: Analysis) -> Iterator[list[Formula]]:
 
     What the unperturbed motion is, where prescribed motions begin, and inputs that are held, too.
     """
-    found = analysis.equations
-    ring = found.forcing[0].ring
+    equations = analysis.equations
+    ring = equations.forcing[0].ring
     lower, system = analysis.scene.lower, analysis.system
     known = ring_environment(system, ring)
-    given = [(one.coordinate, one.value) for one in system.motion]
-    given += [(velocity_name(one.coordinate), one.rate) for one in system.motion]
+    given = [(entry.coordinate, entry.value) for entry in system.motion]
+    given += [(velocity_name(entry.coordinate), entry.rate) for entry in system.motion]
     given += [(one.name, one.initial) for one in system.prescribed if one.initial is not None]
     given += [(one.name, one.held) for one in system.inputs]
     for name, value in given:
         yield [Formula(ring, known[name]), Formula(ring, lower(value))]
-    speeds = cast("SpeedEquations", found).speeds if found.in_speeds else ()
+    speeds = cast("SpeedEquations", equations).speeds if equations.in_speeds else ()
     rates = [_rate(ring, name) for name in speeds] or [
         Formula(ring, ring.generator("acceleration", name)) for name in analysis.system.coordinates
     ]
-    for row, force in zip(found.mass_matrix, found.forcing, strict=True):
+    for row, force in zip(equations.mass_matrix, equations.forcing, strict=True):
         yield [*(x * rate for x, rate in zip(row, rates, strict=True)), force]
-    if found.constraints is not None:
-        yield from ([x] for x in found.constraints.velocity)
-    if found.in_speeds:
-        own = cast("SpeedEquations", found)
+    if equations.constraints is not None:
+        yield from ([x] for x in equations.constraints.velocity)
+    if equations.in_speeds:
+        own = cast("SpeedEquations", equations)
         yield from ([_rate(ring, name), x] for name, x in zip(own.positions, own.rates, strict=True))
 
 

@@ -130,10 +130,10 @@ class Stages(GuessesNames):
 
     def contained(self, error: Exception) -> Failure:
         """What to say of an exception that nobody foresaw; ``defects`` has it then."""
-        found = Defect.of(error)
-        if found.severity is Severity.DEFECT:
+        failure = Defect.of(error)
+        if failure.severity is Severity.DEFECT:
             self.defects.append(error)
-        return found
+        return failure
 
     def forget(self, stage: Stage) -> None:
         """As if the stage had not been asked for."""

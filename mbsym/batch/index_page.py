@@ -84,9 +84,9 @@ def _reasons(row: Row) -> Iterator[str]:
     if row.message:
         yield row.message
     yield from row.notes
-    for one in row.complaints:
-        place = f"{one.line}:{one.column}: " if one.line else ""
-        yield f"{place}{one.severity}: {one.message}" + (f" ({one.hint})" if one.hint else "")
+    for complaint in row.complaints:
+        place = f"{complaint.line}:{complaint.column}: " if complaint.line else ""
+        yield f"{place}{complaint.severity}: {complaint.message}" + (f" ({complaint.hint})" if complaint.hint else "")
 
 
 def _verdicts(row: Row) -> Iterator[str]:

@@ -97,13 +97,13 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
 
 
 def _reading(row: Row) -> Case:
-    errors = [one for one in row.complaints if one.severity == "error"]
+    errors = [complaint for complaint in row.complaints if complaint.severity == "error"]
     if not errors:
         return Case("description")
-    places = [f"{row.file}:{one.line}:{one.column}: " if one.line else f"{row.file}: " for one in errors]
+    places = [f"{row.file}:{error.line}:{error.column}: " if error.line else f"{row.file}: " for error in errors]
     lines = [
-        f"{place}{one.code}: {one.message}" + (f" (hint: {one.hint})" if one.hint else "")
-        for place, one in zip(places, errors, strict=True)
+        f"{place}{error.code}: {error.message}" + (f" (hint: {error.hint})" if error.hint else "")
+        for place, error in zip(places, errors, strict=True)
     ]
     return Case("description", "failure", lines[0], "\n".join(lines))
 

@@ -39,7 +39,7 @@ def finished_text(finished: Finished) -> str:
     said = [one for row in finished.row.complaints for one in (row.message, row.hint) if isinstance(one, Message)]
     return json.dumps(
         {
-            "sentences": {one: _sentence_data(one) for one in said},
+            "sentences": {message: _sentence_data(message) for message in said},
             "row": row_data(finished.row),
             "files": {name: _content_data(content) for name, content in finished.files.items()},
             "meaning": finished.meaning,

@@ -36,17 +36,17 @@ def work(task: Task) -> Finished:
 
         complain_of(system, complaints)
         system = None if complaints.errors else system
-    told = tuple(map(complaint_row, complaints.sorted()))
+    rows = tuple(map(complaint_row, complaints.sorted()))
     if system is None:
-        return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=told))
+        return Finished(Row(task.file, task.folder, Outcome.ERRORS, complaints=rows))
     from mbsym.batch import digests
 
     meaning = digests.of_meaning(text, task.file)
     if meaning and meaning == task.known:
-        row = Row(task.file, task.folder, Outcome.DERIVED, name=system.name, complaints=told)
+        row = Row(task.file, task.folder, Outcome.DERIVED, name=system.name, complaints=rows)
         return Finished(row, meaning=meaning, same=True)
     row, files = _derived(task, system)
-    return Finished(replace(row, complaints=told), files, meaning)
+    return Finished(replace(row, complaints=rows), files, meaning)
 
 
 def complaint_row(complaint: Complaint) -> ComplaintRow:
@@ -63,13 +63,13 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
-    asked = task.asked
-    problems = own_problems(system, shown_by(asked.formats)) if asked.problems is None else asked.problems
-    analysis = Analysis(system, problems, asked.terms)
-    analysis.detail = asked.detail
-    derive_all(analysis, asked.formats, _silent)
-    with angles_as(cast("Angles | None", asked.angles)):
-        rendered = rendered_all(analysis, asked.formats, _silent)
+    options = task.asked
+    problems = own_problems(system, shown_by(options.formats)) if options.problems is None else options.problems
+    analysis = Analysis(system, problems, options.terms)
+    analysis.detail = options.detail
+    derive_all(analysis, options.formats, _silent)
+    with angles_as(cast("Angles | None", options.angles)):
+        rendered = rendered_all(analysis, options.formats, _silent)
     files = {file.filename: file.text for file in rendered if file.text is not None}
     defects = lost(analysis, rendered)
     outcome = _outcome(analysis, defects)
@@ -85,7 +85,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
         ),
         files=tuple(FileRow(name, _digest(content)) for name, content in sorted(files.items())),
         message=Message("there was not enough memory for a part of it") if outcome is Outcome.MEMORY else "",
-        notes=tuple(_notes(analysis, defects, asked.formats, files)),
+        notes=tuple(_notes(analysis, defects, options.formats, files)),
     )
     return row, files
 

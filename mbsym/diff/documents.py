@@ -88,14 +88,14 @@ def diff(a: Mapping[str, Any], b: Mapping[str, Any]) -> Diff:
             memory[first, second] = compared(first, second, known)
         return memory[first, second]
 
-    found: tuple[Renaming, ...] = ()
+    renamings: tuple[Renaming, ...] = ()
     old: Mapping[str, Any] = a
     for proposal in candidates(a, b):
         replaced = renamed(a, proposal)
         known = _known(replaced, b)
         memory.clear()
         if _used(b, proposal) and not any(_contradicts(item, proposal, compare) for item in pairs(whole, replaced, b)):
-            found, old = proposal, replaced
+            renamings, old = proposal, replaced
             break
     known = _known(old, b)
     memory.clear()
@@ -108,7 +108,7 @@ def diff(a: Mapping[str, Any], b: Mapping[str, Any]) -> Diff:
         else:
             changes.append(change)
     versions = str(a.get("version", "")), str(b.get("version", ""))
-    return Diff(found, tuple(changes), tuple(restated), versions)
+    return Diff(renamings, tuple(changes), tuple(restated), versions)
 
 
 def _change(item: Difference, compare: Callable[[str, str], Comparison]) -> Change | None:
@@ -118,13 +118,13 @@ def _change(item: Difference, compare: Callable[[str, str], Comparison]) -> Chan
         return Change(item.path, Kind(item.kind), before, after, word=item.word)
     if not isinstance(before, str) or not isinstance(after, str):  # at least one is counted only
         return Change(item.path, Kind.UNDECIDED, before, after)
-    found = compare(before, after)
-    if found.equal:
+    comparison = compare(before, after)
+    if comparison.equal:
         return None
-    if found.equal is None:
-        return Change(item.path, Kind.UNDECIDED, before, after, points=found.points)
-    kind = Kind.FORMULA if found.terms else Kind.CHANGED
-    return Change(item.path, kind, before, after, found.difference, found.terms, found.first)
+    if comparison.equal is None:
+        return Change(item.path, Kind.UNDECIDED, before, after, points=comparison.points)
+    kind = Kind.FORMULA if comparison.terms else Kind.CHANGED
+    return Change(item.path, kind, before, after, comparison.difference, comparison.terms, comparison.first)
 
 
 def _contradicts(item: Difference, proposal: tuple[Renaming, ...], compare: Callable[[str, str], Comparison]) -> bool:
@@ -132,14 +132,14 @@ def _contradicts(item: Difference, proposal: tuple[Renaming, ...], compare: Call
     change = _change(item, compare)
     if change is None:
         return False
-    for one in proposal:
-        if one.kind == "body":
-            if one.after in item.path:
+    for renaming in proposal:
+        if renaming.kind == "body":
+            if renaming.after in item.path:
                 return True
             continue
-        if one.after in item.path and item.kind in ("added", "removed"):
+        if renaming.after in item.path and item.kind in ("added", "removed"):
             return True
-        name = re.compile(rf"\b{re.escape(one.after)}(_dot|_ddot)?\b")
+        name = re.compile(rf"\b{re.escape(renaming.after)}(_dot|_ddot)?\b")
         if item.formula and any(isinstance(x, str) and name.search(x) for x in (item.before, item.after)):
             if item.path[:1] == ("parameters",):
                 continue  # its value may be another one
@@ -169,15 +169,15 @@ def _known(a: Mapping[str, Any], b: Mapping[str, Any]) -> Known:
 
 def _tables(one: Mapping[str, Any]) -> dict[str, Table]:
     """What formulas call: of a table that jumps, what keeps its end values outside."""
-    found: dict[str, Table] = {}
+    tables: dict[str, Table] = {}
     for item in one.get("tables") or ():
         points = tuple((Fraction(x), Fraction(y)) for x, y in item["points"])
         held = item.get("held")
         name, outside = (held, HOLD) if held else (item["name"], item["outside"])
-        found[name] = Table(name, points, item["between"], outside)
+        tables[name] = Table(name, points, item["between"], outside)
         if held:  # its slopes go by its own name
-            found[item["name"]] = Table(item["name"], points, item["between"], outside)
-    return found
+            tables[item["name"]] = Table(item["name"], points, item["between"], outside)
+    return tables
 
 
 def _signs(one: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -212,7 +212,7 @@ def candidates(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[Ren
     if not ways:
         return
     for chosen in product(*ways):
-        yield tuple(one for part in chosen for one in part)
+        yield tuple(renaming for part in chosen for renaming in part)
     if len(ways) > 1:
         for way in ways:
             yield from way
@@ -221,10 +221,10 @@ def candidates(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[tuple[Ren
 def renamed(a: Mapping[str, Any], proposal: tuple[Renaming, ...]) -> dict[str, Any]:
     """The document with the names replaced wherever they stand as words."""
     names: dict[str, str] = {}
-    for one in proposal:
-        names[one.before] = one.after
-        if one.kind == "coordinate":
-            names |= {one.before + rate: one.after + rate for rate in (VELOCITY_ENDING, ACCELERATION_ENDING)}
+    for renaming in proposal:
+        names[renaming.before] = renaming.after
+        if renaming.kind == "coordinate":
+            names |= {renaming.before + rate: renaming.after + rate for rate in (VELOCITY_ENDING, ACCELERATION_ENDING)}
     longest = sorted(names, key=len, reverse=True)
     pattern = re.compile(r"(?<![A-Za-z0-9_])(" + "|".join(map(re.escape, longest)) + r")(?![A-Za-z0-9_])")
 
@@ -384,19 +384,19 @@ def _walk_names(whole: Schema, schema: Schema, items: list[Any], labels: Sequenc
     """A name for each item, all different: what tells it apart, itself if it is a word, or its number."""
     apart = schema.get("x-tell-apart")
     if apart and all(isinstance(item, Mapping) for item in items):
-        found = [", ".join(_words(item.get(key)) for key in apart) for item in items]
+        walk_names = [", ".join(_words(item.get(key)) for key in apart) for item in items]
     elif _are_words(whole, schema, items) and len(set(items)) == len(items):
-        found = list(map(str, items))
+        walk_names = list(map(str, items))
     elif schema.get("x-indices") and len(labels) == len(items):
-        found = list(map(str, labels))
+        walk_names = list(map(str, labels))
     else:
         first = int(schema.get("x-first", 1))
         return [str(k) for k in range(first, first + len(items))]
     count: Counter[str] = Counter()
-    for k, name in enumerate(found):
+    for k, name in enumerate(walk_names):
         count[name] += 1
-        found[k] = name if count[name] == 1 else f"{name} ({count[name]})"
-    return found
+        walk_names[k] = name if count[name] == 1 else f"{name} ({count[name]})"
+    return walk_names
 
 
 def _are_words(whole: Schema, schema: Schema, items: list[Any]) -> bool:

@@ -109,7 +109,7 @@ def _with_slopes(tree: Expression, orders: Mapping[str, int]) -> Expression:
         case Operation(operator, left, right):
             return Operation(operator, _with_slopes(left, orders), _with_slopes(right, orders))
         case Call(function, argument, more=more, table=table):
-            inside = (_with_slopes(one, orders) for one in (argument, *more))
+            inside = (_with_slopes(expression, orders) for expression in (argument, *more))
             first, *others = inside
             return Call(function, first, None, tuple(others), table, orders.get(function, 0))
     return tree
@@ -200,11 +200,11 @@ def _nodes(trees: Sequence[Expression]) -> Iterator[Expression]:
 
 def _angles(trees: Sequence[Expression]) -> dict[str, int]:
     """The names under sines and cosines, each with the common denominator of its coefficients there."""
-    found: dict[str, int] = {}
+    angles: dict[str, int] = {}
     for node in _nodes(trees):
         if isinstance(node, Call) and node.function in ("sin", "cos", "tan"):
             form = linear_form(node.argument)
             for name, coefficient in form.coefficients if form is not None else ():
                 if not name.endswith(_RATES):
-                    found[name] = lcm(found.get(name, 1), coefficient.denominator)
-    return found
+                    angles[name] = lcm(angles.get(name, 1), coefficient.denominator)
+    return angles

@@ -96,8 +96,8 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
             yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
         yield from (Suggestion(one.name, "name", one.meaning or "prescribed", one.name) for one in system.prescribed)
         yield from (Suggestion(one.name, "name", one.meaning or "an input", one.name) for one in system.inputs)
-        yield from (Suggestion(one.name, "name", "a notation", one.name) for one in system.notation)
-        yield from (Suggestion(one.name, "function", "a table", f"{one.name}(") for one in system.tables)
+        yield from (Suggestion(notation.name, "name", "a notation", notation.name) for notation in system.notation)
+        yield from (Suggestion(table.name, "function", "a table", f"{table.name}(") for table in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
     yield Suggestion("pi", "word", "3.14159...", "pi")
 
@@ -116,10 +116,10 @@ def types_at(path: tuple[str, ...]) -> list[Type]:
 
 
 def _types(path: tuple[str, ...]) -> list[Type]:
-    found: list[Type] = [DESCRIPTION]
+    types: list[Type] = [DESCRIPTION]
     for key in path:
-        found = [inner for one in found for inner in _inside(one, ALIASES.get(key, key))]
-    return found
+        types = [inner for one in types for inner in _inside(one, ALIASES.get(key, key))]
+    return types
 
 
 def _keys(one: Type) -> Mapping[str, Key]:

@@ -99,7 +99,7 @@ def _above(lines: list[str], line: int, indent: int) -> tuple[str, ...]:
 
 def _siblings(lines: list[str], line: int, indent: int) -> tuple[str, ...]:
     """The keys of the same mapping."""
-    found: list[str] = []
+    siblings: list[str] = []
     for step in (-1, 1):
         number = line + step
         while 0 <= number < len(lines) and abs(number - line) < _MOST:
@@ -112,11 +112,11 @@ def _siblings(lines: list[str], line: int, indent: int) -> tuple[str, ...]:
                     break
                 key = _KEY.match(match["rest"])
                 if inside == indent and key is not None:
-                    found.append(key["key"])
+                    siblings.append(key["key"])
                 if step == -1 and match["dash"] and inside == indent:
                     break
             number += step
-    return tuple(found)
+    return tuple(siblings)
 
 
 def word_at(text: str, column: int) -> tuple[str, int, int]:

@@ -116,8 +116,8 @@ def _expression(
 
     before = complaints.error_count
     piece = text[start:end]
-    found = parse_expression(piece, complaints, place)
-    for node in walk(found) if found is not None else names_apart(piece, place, complaints.items):
+    expression = parse_expression(piece, complaints, place)
+    for node in walk(expression) if expression is not None else names_apart(piece, place, complaints.items):
         if isinstance(node, Name) and node.name not in (*known, *CONSTANTS) and node.span is not None:
             close = get_close_matches(node.name[:MAX_TITLE], sorted(known)[:200], n=1)
             listed = ", ".join(sorted(known)[:20])
@@ -127,7 +127,7 @@ def _expression(
                 else Message("there are [[listed]]", listed=listed)
             )
             complaints.error("unknown-name", Message("unknown name [[name]]", name=quoted(node.name)), node.span, hint)
-    return found if complaints.error_count == before else None
+    return expression if complaints.error_count == before else None
 
 
 def _commas(text: str) -> Iterator[int]:
@@ -146,7 +146,7 @@ AxisText = tuple[str, Expression, Expression | None]
 
 def parse_axes(text: str, known: Collection[str], complaints: Complaints, span_of: SpanOf) -> tuple[AxisText, ...]:
     """``q2, q2_dot`` or ``theta mod 2*pi, energy``: expressions, two at least, each perhaps modulo a period."""
-    found: list[AxisText] = []
+    axis_texts: list[AxisText] = []
     start = 0
     for end in _commas(text[:MAX_LENGTH]):
         piece = text[start:end]
@@ -155,8 +155,8 @@ def parse_axes(text: str, known: Collection[str], complaints: Complaints, span_o
         value = _expression(text, start, middle, known, complaints, span_of)
         period = _expression(text, start + word.end(), end, known, complaints, span_of) if word else None
         if value is not None:
-            found.append((piece.strip(), value, period))
+            axis_texts.append((piece.strip(), value, period))
         start = end + 1
-    if len(text) > MAX_LENGTH or (len(found) < 2 and not complaints.errors):
+    if len(text) > MAX_LENGTH or (len(axis_texts) < 2 and not complaints.errors):
         complaints.error("bad-axes", "a section has two axes at least", span_of(0, max(1, len(text))), "q2, q2_dot")
-    return tuple(found)
+    return tuple(axis_texts)

@@ -501,12 +501,12 @@ class _Parser:
     def inside(self, opening: _Token, wanted: int = 1, usage: str = "") -> list[Expression]:
         """What stands between an opening parenthesis, already read, and its closing one: so many arguments."""
         self.nest(opening)
-        found = [self.sum(0)]
-        while self.next.text == "," and len(found) < wanted:
+        expressions = [self.sum(0)]
+        while self.next.text == "," and len(expressions) < wanted:
             self.advance()
-            found.append(self.sum(0))
+            expressions.append(self.sum(0))
         self.nesting -= 1
-        if self.next.text == ")" and len(found) < wanted:
+        if self.next.text == ")" and len(expressions) < wanted:
             raise self.refusal(
                 "bad-expression",
                 Message("[[wanted]] arguments are wanted", wanted=wanted),
@@ -515,13 +515,13 @@ class _Parser:
             )
         if self.next.text == ")":
             self.advance()
-            return found
+            return expressions
         if self.next.text == ",":
             message = "one argument only" if wanted == 1 else Message("[[wanted]] arguments only", wanted=wanted)
             hint = decimal_comma(self.text) or (Message("write [[usage]]", usage=usage) if usage else None)
             raise self.refusal("bad-expression", message, self.next, hint)
         if self.next.kind == "end":
-            hint = "within {...} or [...] quote what holds commas" if wanted > len(found) else None
+            hint = "within {...} or [...] quote what holds commas" if wanted > len(expressions) else None
             raise self.refusal("bad-expression", "this parenthesis is never closed", opening, hint)
         raise self.trailing(self.next)
 

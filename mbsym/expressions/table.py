@@ -187,9 +187,9 @@ class Tabulated(str):
     curve: Curve
 
     def __new__(cls, curve: Curve) -> Tabulated:
-        found = super().__new__(cls, f"table {curve.table.name}{chr(39) * curve.order}")
-        found.curve = curve
-        return found
+        tabulated = super().__new__(cls, f"table {curve.table.name}{chr(39) * curve.order}")
+        tabulated.curve = curve
+        return tabulated
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _called, (self.curve.table, self.curve.order)
@@ -210,10 +210,10 @@ class Tabulated(str):
 
 
 def _called(table: Table, order: int) -> Tabulated:
-    found = table.called
+    tabulated = table.called
     for _ in range(order):
-        found = found.slope
-    return found
+        tabulated = tabulated.slope
+    return tabulated
 
 
 def _moved(polynomial: tuple[Fraction, ...], by: Fraction) -> tuple[Fraction, ...]:

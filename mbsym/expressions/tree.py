@@ -125,10 +125,10 @@ def curve_of(table: Table, order: int = 0) -> Curve:
 
 def curve_name(table: Table, order: int = 0) -> Tabulated:
     """Its name in algebras."""
-    found = table.called
+    tabulated = table.called
     for _ in range(order):
-        found = found.slope
-    return found
+        tabulated = tabulated.slope
+    return tabulated
 
 
 #: A table with more points is not written out by moduli.
@@ -327,7 +327,7 @@ class Derivation:
                     raise ValueError(f"{function} has a jump, and no derivative")
                 return multiply(Call(function + "'", argument, table=table, order=order + 1), inner)
             case Call(function, argument) if function in JUMPS:
-                if all(is_number(self(one), 0) for one in children(expression)):
+                if all(is_number(self(child), 0) for child in children(expression)):
                     return ZERO
                 raise ValueError(f"{function} has a jump, and no derivative")
             case Call(function, argument):
@@ -433,7 +433,7 @@ def _text(expression: Expression, outer: int) -> str:
         case Name(name):
             written, own = name, 5
         case Call(function):
-            written, own = f"{function}({', '.join(_text(one, 0) for one in children(expression))})", 5
+            written, own = f"{function}({', '.join(_text(child, 0) for child in children(expression))})", 5
         case Negative(operand):
             written, own = "-" + _text(operand, 3), 3
         case Operation("**", base, exponent):

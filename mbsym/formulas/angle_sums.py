@@ -253,29 +253,29 @@ def _waves(inner: Mapping[Code, int], block: tuple[int, ...], scale: int) -> lis
                 target[key] = target.get(key, 0) + 2 * factor * value
             elif not key and not odd & 1:
                 target[0] = target.get(0, 0) + factor * value
-    found = _folded(cosines)
-    found += [_wave(True, key, weight) for key, weight in sines.items() if weight]
-    return found
+    waves = _folded(cosines)
+    waves += [_wave(True, key, weight) for key, weight in sines.items() if weight]
+    return waves
 
 
 def _folded(cosines: dict[int, int]) -> list[Part]:
     """1 + cos(2 u) is 2 cos(u)**2, 1 - cos(2 u) is 2 sin(u)**2."""
     constant = cosines.pop(0, 0)
-    found: list[Part] = []
+    parts: list[Part] = []
     for key in sorted(cosines):
         weight = cosines[key]
         if constant and abs(weight) == abs(constant):
             double = _multiples(key)
             if all(n % 2 == 0 for _, n in double):
                 wave, _ = _oriented(weight != constant, tuple([(angle, n // 2) for angle, n in double]))
-                found.append(Part(2 * constant, (wave._replace(power=2),), 0))
+                parts.append(Part(2 * constant, (wave._replace(power=2),), 0))
                 constant = 0
                 continue
         if weight:
-            found.append(_wave(False, key, weight))
+            parts.append(_wave(False, key, weight))
     if constant:
-        found.append(Part(constant, (), 0))
-    return found
+        parts.append(Part(constant, (), 0))
+    return parts
 
 
 def _wave(sine: bool, key: int, weight: int) -> Part:
@@ -286,14 +286,14 @@ def _wave(sine: bool, key: int, weight: int) -> Part:
 @lru_cache(maxsize=1 << 12)
 def _multiples(key: int) -> Combination:
     """(angle, multiple) from the sum of multiple * 256**angle."""
-    found, angle = [], 0
+    multiples, angle = [], 0
     while key:
         n = ((key + 128) & _BYTE) - 128
         if n:
-            found.append((angle, n))
+            multiples.append((angle, n))
         key = (key - n) >> _BITS
         angle += 1
-    return tuple(found)
+    return tuple(multiples)
 
 
 def _oriented(sine: bool, combination: Combination) -> tuple[Wave, int]:

@@ -224,12 +224,12 @@ class Rewriter:
     @staticmethod
     def _expanded(letters: Letters, held: set[str], ring: Ring) -> dict[str, Expression]:
         """The letters that can be said in the ring's names, by the declared names alone."""
-        found: dict[str, Expression] = {}
+        expressions: dict[str, Expression] = {}
         for name, value in letters.given:
-            whole = substitute(value, found)
+            whole = substitute(value, expressions)
             if names(whole) <= held and (name not in held or ring.has("parameter", name)):
-                found[name] = whole
-        return found
+                expressions[name] = whole
+        return expressions
 
     def _read_so(self, ring: Ring, moving: Sequence[str]) -> None:
         """Formulas are collected by p, q and G = p^2 + q^2; r and lambda = (s - 1) r + eta are read like parameters."""
@@ -252,9 +252,9 @@ class Rewriter:
 
     def _steps_of(self, name: str) -> Iterator[_Step]:
         """What the definition of a letter allows to write differently, with earlier letters in it and without."""
-        given = dict(self.letters.given)[name]
+        expression = dict(self.letters.given)[name]
         seen: list[Polynomial] = []
-        for value in (given, self.values[name]):
+        for value in (expression, self.values[name]):
             try:
                 relations = self._relations(name, value)
             except (Failure, ZeroDivisionError):
@@ -262,7 +262,7 @@ class Rewriter:
             for relation in relations:
                 if relation not in seen:
                     seen.append(relation)
-                    yield from self._solved(name, relation, value is given)
+                    yield from self._solved(name, relation, value is expression)
 
     def _relations(self, name: str, value: Expression) -> list[Polynomial]:
         """letter * Q - P for a quotient P/Q, letter^2 * Q - P for its square root."""
@@ -272,15 +272,15 @@ class Rewriter:
             # in a field of their own: products in the ring take as many exponents as it has generators
             field = Tower(held)
             try:
-                found = Lowering(field, {x: field.parameter(x) for x in held})(value)
+                element = Lowering(field, {x: field.parameter(x) for x in held})(value)
             except Failure as failure:
                 if failure.limit is not None:
                     raise
             else:
-                if max((*found.top.degrees(), *found.bottom.degrees())) > MOST_DEGREE:
+                if max((*element.top.degrees(), *element.bottom.degrees())) > MOST_DEGREE:
                     return []
                 if not field.squares:
-                    relation = field.parameter(name).top * found.bottom - found.top
+                    relation = field.parameter(name).top * element.bottom - element.top
                     images = [ring.zero] * MOST_ROOTS + [self.named[x] for x in held]
                     return [relation.compose(*images, ctx=ring.context)]
         with ring.budget(WORK):
@@ -377,15 +377,15 @@ class Rewriter:
     def _as_one(self, polynomial: Polynomial) -> Polynomial | None:
         """Over one denominator, by steps that each leave less to read, from the start or from the end of a chain."""
         ring = self.ring
-        found: _Fraction = ring.fraction(polynomial)
-        if len(found[0]) > MOST_TERMS or not self._applicable(found, self.steps, True):
+        fraction: _Fraction = ring.fraction(polynomial)
+        if len(fraction[0]) > MOST_TERMS or not self._applicable(fraction, self.steps, True):
             return None  # over one denominator it may be long
-        routes = [self._improved(found)]
+        routes = [self._improved(fraction)]
         with suppress(Failure, ZeroDivisionError), ring.budget(self.work):
-            chain = self._chain(found)
-            if chain is not None and not (self._long(found) and _terms(chain) > _terms(found) * SHORTER):
+            chain = self._chain(fraction)
+            if chain is not None and not (self._long(fraction) and _terms(chain) > _terms(fraction) * SHORTER):
                 routes.append(self._improved(chain))
-        routes = [x for x in routes if x is not found]
+        routes = [x for x in routes if x is not fraction]
         return self._joined(min(routes, key=self._read)) if routes else None
 
     def _improved(self, found: _Fraction) -> _Fraction:

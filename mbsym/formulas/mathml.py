@@ -192,10 +192,10 @@ class MathNames:
 _NAMES: WeakKeyDictionary[Ring, MathNames] = WeakKeyDictionary()
 
 
-def write_as(ring: Ring, given: Mapping[str, Symbol]) -> None:
+def write_as(ring: Ring, symbols: Mapping[str, Symbol]) -> None:
     """From now on names of the ring are written in MathML as ``given``, in every formula."""
     kinds = ("coordinate", "prescribed", "parameter")
-    _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], given)
+    _NAMES[ring] = MathNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], symbols)
 
 
 def mathml_names(ring: Ring) -> MathNames:

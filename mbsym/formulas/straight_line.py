@@ -68,10 +68,10 @@ def listing(
     With ``inline`` there are no assignments: what is used twice is written twice.  Raises NoClosedForm for a table that
     the language cannot have.
     """
-    wanted = list(outputs)
+    nodes = list(outputs)
     if not dialect.tables:
-        program, wanted = unfolded(program, wanted)
-    return _Writer(program, wanted, names, dialect, {*taken, *names.values()}).listing(inline)
+        program, nodes = unfolded(program, nodes)
+    return _Writer(program, nodes, names, dialect, {*taken, *names.values()}).listing(inline)
 
 
 def short_listing(

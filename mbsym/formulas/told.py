@@ -67,10 +67,10 @@ class Told(Generic[M]):
         pending = [self.ring.held([x.polynomial for x in formulas])]
         while pending:
             for index in pending.pop():
-                found = by_index.get(index)
-                if found is not None and found.name not in needed:
-                    needed.add(found.name)
-                    pending.append(self.held_by[found.name])
+                definition = by_index.get(index)
+                if definition is not None and definition.name not in needed:
+                    needed.add(definition.name)
+                    pending.append(self.held_by[definition.name])
         skipped = set(known)
         return tuple(x for x in self.definitions if x.name in needed and x.name not in skipped)
 
@@ -172,23 +172,23 @@ def _opposites(program: Program, live: Sequence[int], named: Collection[int]) ->
     Programs move signs outwards, so that a node with a meaning may be needed as its opposite only.
     """
     differences: dict[tuple[int, ...], int] = {}
-    found: dict[int, int] = {}
+    opposites: dict[int, int] = {}
     for number in sorted(named):
         operation, operands, _ = program.instructions[number]
         if operation == "subtract":
             if operands[::-1] not in differences:
                 differences[operands] = number
         elif operation == "negative" and operands[0] not in named:
-            found.setdefault(operands[0], number)
+            opposites.setdefault(operands[0], number)
     for number in live:
         operation, operands, _ = program.instructions[number]
-        if operation == "subtract" and number not in named and number not in found:
+        if operation == "subtract" and number not in named and number not in opposites:
             other = differences.get(operands[::-1])
             if other is None:
                 differences.setdefault(operands, number)
             else:
-                found[number] = other
-    return found
+                opposites[number] = other
+    return opposites
 
 
 def _common(program: Program, live: Sequence[int], named: Collection[int], opposite: Mapping[int, int]) -> set[int]:

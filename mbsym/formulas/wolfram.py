@@ -180,7 +180,7 @@ def wolfram_expression(expression: Expression, names: WolframNames) -> str:
         case Call(_, argument, table=Table() as table):
             return f"{wolfram_table(table.name)}[{wolfram_expression(argument, names)}]"
         case Call(function):
-            arguments = [wolfram_expression(one, names) for one in children(expression)]
+            arguments = [wolfram_expression(child, names) for child in children(expression)]
             if function == "step":
                 return f"((1 + Sign[{arguments[0]}])/2)"
             if function == "pulse":

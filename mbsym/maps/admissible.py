@@ -55,22 +55,22 @@ class Admissibility:
     @property
     def known(self) -> tuple[tuple[Polynomial, str], ...]:
         """(polynomial, relation to 0) of what holds wherever a verdict is given."""
-        return tuple((one.condition.polynomial, one.relation) for one in self.demands)
+        return tuple((demand.condition.polynomial, demand.relation) for demand in self.demands)
 
 
 def admissibility(analysis: Analysis, section: Section) -> Admissibility:
     """Everything that points of the section have to keep."""
-    found: list[Demand] = []
+    demands: list[Demand] = []
     left_out: list[str] = []
-    _signs(analysis, section, found)
-    _assumptions(analysis, section.images, found, left_out)
+    _signs(analysis, section, demands)
+    _assumptions(analysis, section.images, demands, left_out)
     for body in analysis.system.bodies:
-        _triangles(analysis, body, section.images, found, left_out)
+        _triangles(analysis, body, section.images, demands, left_out)
     told: list[Demand] = []
-    for one in found:
-        same = (x.condition.polynomial == one.condition.polynomial and x.relation == one.relation for x in told)
+    for demand in demands:
+        same = (x.condition.polynomial == demand.condition.polynomial and x.relation == demand.relation for x in told)
         if not any(same):
-            told.append(one)
+            told.append(demand)
     plain = [one for one in told if not one.condition.polynomial.is_constant()]
     broken = [
         one

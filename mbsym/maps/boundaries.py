@@ -114,13 +114,13 @@ def boundaries(
     ``known``: (polynomial, relation to 0) of what holds wherever a verdict is given.
     Raises TooLargeError where a determinant is beyond its budget.
     """
-    found = list(further)
-    found += [Condition(Origin.UNDEFINED, x) for x in section.undefined]
+    conditions = list(further)
+    conditions += [Condition(Origin.UNDEFINED, x) for x in section.undefined]
     for number, part in enumerate(section.parts):
-        found += conditions_of(part, number, section=section, known=known)
+        conditions += conditions_of(part, number, section=section, known=known)
     if section.constant is not None:
-        found = [replace(x, polynomial=norm_of_factors(section, x.polynomial)) for x in found]
-    return factored(found)
+        conditions = [replace(x, polynomial=norm_of_factors(section, x.polynomial)) for x in conditions]
+    return factored(conditions)
 
 
 def factored(found: Sequence[Condition]) -> Boundaries:
@@ -315,7 +315,7 @@ def _common(entries: Sequence[Polynomial], section: Section | None) -> Polynomia
     With a constant it is that of the norms, which vanishes there and perhaps elsewhere: x - sqrt(2) and x^2 - 2 have no
     common factor with rational coefficients.
     """
-    found = entries[0] * 0
+    polynomial = entries[0] * 0
     for x in entries:
-        found = found.gcd(x if section is None else section.norm(section.reduced(x)))
-    return found
+        polynomial = polynomial.gcd(x if section is None else section.norm(section.reduced(x)))
+    return polynomial

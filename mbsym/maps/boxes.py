@@ -96,22 +96,22 @@ def box_map(
             raise
         functions, because = IrrationalSection(analysis, axes, settings, unfit.complaints), because or unfit_text(unfit)
         there = functions.plain
-    kept = kept_in(analysis, there)
+    admissibility = kept_in(analysis, there)
     watch("boundaries", 0, 1)
     prove: Any
-    found, method = Boundaries((), (), ()), Method.ENCLOSURES
+    boundaries, method = Boundaries((), (), ()), Method.ENCLOSURES
     try:
         if functions is None:
-            found = bounded(there, kept)
+            boundaries = bounded(there, admissibility)
             method = Method.BOUNDARIES
     except TooLargeError as error:
         if there.constant is not None or of is not Of.STABILITY:
             raise
         because = because or str(error)
     if method is Method.BOUNDARIES:
-        prove = _bounded(there, kept, found)
+        prove = _bounded(there, admissibility, boundaries)
     else:
-        prove = _Enclosed(there, kept, functions or ByEnclosures(there))
+        prove = _Enclosed(there, admissibility, functions or ByEnclosures(there))
     made = subdivide(box_of(there.axes), prove, depth, most, watch)
     cells = [_cell(k, tile.proved, centre(tile.box)) for k, tile in enumerate(made.tiles)]
     checked = None
@@ -122,10 +122,10 @@ def box_map(
         except KeyboardInterrupt:
             checked = None
     if checked is not None and not checked.holds:  # a route that is wrong in one box is trusted in none
-        cells = [one if one.said is None else one.withdrawn for one in cells]
+        cells = [cell if cell.said is None else cell.withdrawn for cell in cells]
     return BoxMap(
-        of, there.axes, there.told, made, found, tuple(cells),
-        areas=tuple((float(tile.box.area), 0.0) for tile in made.tiles), section=there, admissibility=kept,
+        of, there.axes, there.told, made, boundaries, tuple(cells),
+        areas=tuple((float(tile.box.area), 0.0) for tile in made.tiles), section=there, admissibility=admissibility,
         interrupted=checked is None, check=checked, method=method, because=because,
     )  # fmt: skip
 
@@ -140,7 +140,7 @@ def _cell(number: int, proved: Cell | None, sample: tuple[Rational, Rational]) -
 def _tried(made: Subdivision[Cell], cells: Sequence[Cell]) -> list[tuple[int, Judged, tuple[Rational, Rational]]]:
     """(number, verdict, a random point) of some proved boxes, those of the largest area first."""
     source = Random(20261123)
-    judged = [(one.number, one.judged, made.tiles[one.number].box) for one in cells if one.judged is not None]
+    judged = [(cell.number, cell.judged, made.tiles[cell.number].box) for cell in cells if cell.judged is not None]
     judged.sort(key=lambda one: -one[2].area)
     found = []
     chosen = [*judged[: TRIED // 2], *source.sample(judged, min(TRIED // 2, len(judged)))]
@@ -152,13 +152,13 @@ def _tried(made: Subdivision[Cell], cells: Sequence[Cell]) -> list[tuple[int, Ju
     return found
 
 
-def _bounded(there: Section, kept: Admissibility, found: Boundaries) -> ByBoundaries[Cell]:
+def _bounded(there: Section, admissibility: Admissibility, found: Boundaries) -> ByBoundaries[Cell]:
     """Judged at the centre, exactly."""
-    judge = Judge(there, kept)
+    judge = Judge(there, admissibility)
 
     def at(x: Rational, y: Rational) -> Any:
-        found = judge(Shape.BOX, 0, Point(x, y))
-        return None if found.lack is Lack.TOO_LARGE else found
+        cell = judge(Shape.BOX, 0, Point(x, y))
+        return None if cell.lack is Lack.TOO_LARGE else cell
 
     return ByBoundaries(without_constant(there, found).factors, at)
 
@@ -243,8 +243,8 @@ class IrrationalSection:
     def _judged(self, part: LinearSystem, box: Box, bounded: bool) -> Verdict:
         matrices = self._matrices(part, box)
         cyclic = () if part.driven else part.cyclic
-        found = displaced(enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS, part.exact), part.basis)
-        return off_the_leaf(found) if part.leaf else found
+        verdict = displaced(enclosed_verdict_with_cyclic(matrices, bounded, cyclic, BITS, part.exact), part.basis)
+        return off_the_leaf(verdict) if part.leaf else verdict
 
     def _matrices(self, part: LinearSystem, box: Box) -> list[list[list[Any]]]:
         """M, D, G, K, N of a part in balls over a box."""
@@ -295,11 +295,11 @@ class _Values(dict[str, Any]):
 
 def irrational(error: Failure) -> bool:
     """Whether nothing else is wrong than that matrices are not rational in the axes."""
-    return isinstance(error, Unfit) and {one.fault for one in error.complaints} == {Fault.IRRATIONAL}
+    return isinstance(error, Unfit) and {complaint.fault for complaint in error.complaints} == {Fault.IRRATIONAL}
 
 
 def unfit_text(error: Unfit) -> str:
     """``the matrices hold what is no rational number there: sin(a)``."""
     return "the matrices hold what is no fraction of polynomials: " + ", ".join(
-        dict.fromkeys(one.name for one in error.complaints)
+        dict.fromkeys(complaint.name for complaint in error.complaints)
     )

@@ -71,20 +71,20 @@ def branches(
     watch("critical values", 0, 1)
     rank = _rank(system, axis, values)
     parts, lost = curves(system, axis.name, values, axis.low, axis.high, bounds, rank)
-    bifurcating = joined([one.where([one.singular]) for one in parts])
-    leaving = joined([*(one.borders() for one in parts), lost])
-    changing = joined([stability_changes(one) for one in parts])
+    bifurcating = joined([part.where([part.singular]) for part in parts])
+    leaving = joined([*(part.borders() for part in parts), lost])
+    changing = joined([stability_changes(part) for part in parts])
     remarks = _doubts(bifurcating, leaving, changing)
     if any(one.in_angles for one in parts):  # where something happens is not found: all of the curve seems to be there
         text = Message("[[name]] stands in a root or a function", name=axis.name)
         remarks = [Remark(Doubt.UNFINISHED, text) if x.doubt is Doubt.THROUGHOUT else x for x in remarks]
     of_all = (bifurcating, leaving, changing)
-    numbers = _distinct([x for one in of_all for x in (*(y.number for y in one.points), *one.continua)])
-    count_proved = not any(one.unfinished or one.throughout for one in (bifurcating, leaving))
+    numbers = _distinct([x for points in of_all for x in (*(y.number for y in points.points), *points.continua)])
+    count_proved = not any(points.unfinished or points.throughout for points in (bifurcating, leaving))
     line = divided(*ends(axis), [(x, ()) for x in numbers])
     regions = [Cell(Shape.INTERVAL, one.id, one.sample, lack=Lack.NOT_REACHED) for one in line.intervals]
-    corners = [Cell(Shape.ZERO, one.id, one.number, lack=Lack.NOT_REACHED) for one in line.zeros]
-    names = tuple(dict.fromkeys(name for one in parts for name in one.names))
+    corners = [Cell(Shape.ZERO, zero.id, zero.number, lack=Lack.NOT_REACHED) for zero in line.zeros]
+    names = tuple(dict.fromkeys(name for part in parts for name in part.names))
     related = {item.name for item in system.relations}
     given = {name: value for name, value in values.items() if name != axis.name and name not in related}
 
@@ -120,13 +120,13 @@ def branches(
             corners[k] = Cell(Shape.ZERO, k, number, there, Certainty.PROVED)
         watch("branches", 0, 1)
         without = made()
-        for one in without.criticals:
-            there = _balanced(without, one)
-            corners[one.number] = replace(one, said=there)
+        for critical in without.criticals:
+            there = _balanced(without, critical)
+            corners[critical.number] = replace(critical, said=there)
             if there.balance is False:
-                remarks.append(Remark(Doubt.MISMATCH, short(one.sample)))
+                remarks.append(Remark(Doubt.MISMATCH, short(critical.sample)))
         solved = not (changing.unfinished or changing.throughout)
-        undamped = all(is_undamped(one.search) for one in parts)
+        undamped = all(is_undamped(part.search) for part in parts)
         pieces = [
             replace(piece, throughout=decided_throughout(regions[piece.interval], piece.number, solved, undamped))
             for piece in linked(parts, made())
@@ -149,28 +149,28 @@ def _rank(system: System, axis: Axis, values: Mapping[str, Fraction]) -> int | N
 
 
 def _doubts(bifurcating: CurvePoints, leaving: CurvePoints, changing: CurvePoints) -> list[Remark]:
-    found = [Remark(Doubt.UNFINISHED, x) for one in (bifurcating, leaving) for x in one.unfinished]
+    doubts = [Remark(Doubt.UNFINISHED, x) for points in (bifurcating, leaving) for x in points.unfinished]
     if bifurcating.throughout:
-        found.append(Remark(Doubt.THROUGHOUT))
-    found += [Remark(Doubt.STABILITY, x) for x in changing.unfinished]
-    return found
+        doubts.append(Remark(Doubt.THROUGHOUT))
+    doubts += [Remark(Doubt.STABILITY, x) for x in changing.unfinished]
+    return doubts
 
 
 def _of_sample(found: Equilibria, sample: Fraction) -> list[Remark]:
-    told = []
+    remarks = []
     if not found.complete:
-        told.append(Remark(Doubt.INCOMPLETE, str(sample)))
+        remarks.append(Remark(Doubt.INCOMPLETE, str(sample)))
     if found.families:
-        told.append(Remark(Doubt.FAMILIES, str(sample)))
-    return told
+        remarks.append(Remark(Doubt.FAMILIES, str(sample)))
+    return remarks
 
 
 def _distinct(numbers: Sequence[Number]) -> list[Number]:
-    kept: list[Number] = []
+    kept_numbers: list[Number] = []
     for x in numbers:
-        if not _among(x, kept):
-            kept.append(x)
-    return ascending(kept)
+        if not _among(x, kept_numbers):
+            kept_numbers.append(x)
+    return ascending(kept_numbers)
 
 
 def _among(x: Number, others: Sequence[Number]) -> bool:
@@ -193,23 +193,23 @@ def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ..
     points: list[CurvePoint] = []
     for part in parts:
         try:
-            found = part.where([], number)
+            curve_points = part.where([], number)
         except Failure as reason:
             return None, str(reason), False
-        if found.unfinished:
-            return None, "; ".join(found.unfinished), False
-        for x in found.points:
+        if curve_points.unfinished:
+            return None, "; ".join(curve_points.unfinished), False
+        for x in curve_points.points:
             if not x.beyond and not any(x.same(y) for y in points):
                 points.append(x)
-    told = []
+    meetings = []
     singular = False
     for x in points:
         verdict = x.curve.search.verdict(x.place)
         if verdict.coordinates_singular:
             singular = True
         else:
-            told.append(Meeting(x.curve.search._values(x.place), x.curve.label, named(x), verdict))
-    return tuple(told), "", singular
+            meetings.append(Meeting(x.curve.search._values(x.place), x.curve.label, named(x), verdict))
+    return tuple(meetings), "", singular
 
 
 def _judged(meetings: Sequence[Meeting], found: Equilibria) -> tuple[Meeting, ...]:
@@ -229,19 +229,19 @@ def _close(a: Sequence[CoordinateValue], b: Sequence[CoordinateValue]) -> bool:
 
 def _balanced(found: Branches, at: Cell) -> Critical:
     """Whether the events account for the counts on both sides."""
-    one = found.critical(at)
-    if one.meetings is None or one.continuum or one.border:
-        return one
-    named_ = [x.named for x in one.meetings]
+    critical = found.critical(at)
+    if critical.meetings is None or critical.continuum or critical.border:
+        return critical
+    named_ = [x.named for x in critical.meetings]
     if any(x.below is None for x in named_):
-        return one
+        return critical
     below, above = found.sides(at)
     holds: list[bool] = []
     if below is not None:
         holds.append(sum(x.below or 0 for x in named_) == len(found.equilibria(below)))
     if above is not None:
         holds.append(sum(x.above or 0 for x in named_) == len(found.equilibria(above)))
-    return replace(one, balance=all(holds)) if holds else one
+    return replace(critical, balance=all(holds)) if holds else critical
 
 
 def short(x: Any) -> str:
@@ -259,14 +259,14 @@ _ZERO = 1e-9
 
 def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
     """The branches over all intervals, with the meetings they start from and end in."""
-    usable = [one for one in parts if uses_only_known(one.ring, [*one.forcing, *chain(*one.slopes)])]
+    usable = [part for part in parts if uses_only_known(part.ring, [*part.forcing, *chain(*part.slopes)])]
     pieces: list[Piece] = []
     for interval in found.intervals:
         made: list[Piece] = []
         arrivals: list[tuple[tuple[float, ...] | None, tuple[float, ...] | None]] = []
-        for number, one in enumerate(found.equilibria(interval)):
-            curve = _curve_of(usable, one, float_of(interval.sample))
-            piece, where = _followed(curve, one, found, interval, number)
+        for number, equilibrium in enumerate(found.equilibria(interval)):
+            curve = _curve_of(usable, equilibrium, float_of(interval.sample))
+            piece, where = _followed(curve, equilibrium, found, interval, number)
             made.append(piece)
             arrivals.append(where)
         starts, stops = (
@@ -291,12 +291,12 @@ def _curve_of(usable: Sequence[Curve], one: RelativeEquilibrium | Meeting, p: fl
 
 
 def _followed(
-    curve: Curve | None, one: RelativeEquilibrium, found: Branches, interval: Cell, number: int
+    curve: Curve | None, equilibrium: RelativeEquilibrium, found: Branches, interval: Cell, number: int
 ) -> tuple[Piece, tuple[tuple[float, ...] | None, tuple[float, ...] | None]]:
     sample, k = float_of(interval.sample), interval.number
-    values = {x.name: x.value for x in one.values}
+    values = {x.name: x.value for x in equilibrium.values}
     if curve is None:
-        start = tuple(x.value for x in one.values)
+        start = tuple(x.value for x in equilibrium.values)
         return Piece(k, number, False, None, None, (sample,), (start,)), (None, None)
     low, high = (float(enclosure(x).mid()) for x in found.ends(interval))
     start = tuple(values[name] for name in curve.names)
@@ -331,7 +331,7 @@ def _assigned(
     if at is None or meetings is None:
         return nobody
     p = float(enclosure(at.sample).mid())
-    places = [_features_at(one, usable, p) for one in meetings]
+    places = [_features_at(meeting, usable, p) for meeting in meetings]
     chosen: list[int | None] = []
     for where in arrivals:
         distances = [
@@ -340,17 +340,17 @@ def _assigned(
         ]  # fmt: skip
         nearest = min(distances, default=(math.inf, -1))
         chosen.append(nearest[1] if nearest[0] < FAR else None)
-    wanted = [one.named.below if below else one.named.above for one in meetings]
+    wanted = [meeting.named.below if below else meeting.named.above for meeting in meetings]
     return [
         k if k is not None and (wanted[k] is None or chosen.count(k) == wanted[k]) else None for k in chosen
     ]  # fmt: skip
 
 
-def _features_at(one: Meeting, usable: Sequence[Curve], p: float) -> tuple[float, ...] | None:
-    curve = _curve_of(usable, one, p)
+def _features_at(meeting: Meeting, usable: Sequence[Curve], p: float) -> tuple[float, ...] | None:
+    curve = _curve_of(usable, meeting, p)
     if curve is None:
         return None
-    values = {x.name: x.value for x in one.values}
+    values = {x.name: x.value for x in meeting.values}
     return _features(curve, p, [values[name] for name in curve.names])
 
 

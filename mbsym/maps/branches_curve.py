@@ -112,9 +112,9 @@ class Varied:
         """det df/dq."""
         return self.ring.reduce(determinant(self.slopes)) if self.names else self.ring.one
 
-    def table(self, given: Sequence[Polynomial] = ()) -> Unknowns:
+    def table(self, polynomials: Sequence[Polynomial] = ()) -> Unknowns:
         """The unknowns of the equations and of further polynomials."""
-        return Unknowns(self.ring, [*self.search.equations, *given, *self.search.singular_where, *self.unknown])
+        return Unknowns(self.ring, [*self.search.equations, *polynomials, *self.search.singular_where, *self.unknown])
 
     # --- where solutions leave ---
 
@@ -171,9 +171,9 @@ def searches_over(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    kept = tuple(replace(one, value=None) for one in system.parameters if one.name in parameters)
+    kept_parameters = tuple(replace(one, value=None) for one in system.parameters if one.name in parameters)
     numbers = {key: value for key, value in values.items() if key not in parameters}
-    first = rest(replace(at_numbers(system, numbers), parameters=kept))
+    first = rest(replace(at_numbers(system, numbers), parameters=kept_parameters))
     if first.rows and not limits.reduction:
         limits = replace(limits, reduction=REDUCTION)
     for chart in charts(first):
@@ -288,9 +288,9 @@ class Curve(Varied):
         usable = [] if limits_too else [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         result = solve(equations, usable, table.bounded(), self.limits)
         points = []
-        for one in result.points:
-            if table.roots_agree(one) and (p := self._number(table, one, at)) is not None:
-                points.append(self._point(table, one, p))
+        for point in result.points:
+            if table.roots_agree(point) and (p := self._number(table, point, at)) is not None:
+                points.append(self._point(table, point, p))
         continua: list[Number] = []
         throughout, unfinished = False, list(result.unfinished)
         for family in result.families:
@@ -316,20 +316,20 @@ class Curve(Varied):
         gens = table.context.gens()
         for value in _TRIED:
             fixed = [gens[i] * int(value.q) - int(value.p) for i in family.free]
-            for one in [family.sample, *solve([*family.equations, *fixed], (), table.bounded(), self.limits).points]:
-                if table.roots_agree(one) and self._number(table, one, p) is not None:
+            for point in [family.sample, *solve([*family.equations, *fixed], (), table.bounded(), self.limits).points]:
+                if table.roots_agree(point) and self._number(table, point, p) is not None:
                     return True
         return False
 
-    def _number(self, table: Unknowns, one: AlgebraicPoint, at: Number | None) -> Number | None:
+    def _number(self, table: Unknowns, point: AlgebraicPoint, at: Number | None) -> Number | None:
         """p there, if it lies in the range (and is ``at``)."""
-        value = one.values[table.indices.index(self.index)]
-        found = _algebraic(value, one, self.low, self.high)
+        value = point.values[table.indices.index(self.index)]
+        found = _algebraic(value, point, self.low, self.high)
         return None if found is None or (at is not None and compare(found, at) != 0) else found
 
-    def _point(self, table: Unknowns, one: AlgebraicPoint, p: Number) -> CurvePoint:
-        place = self.search._place(table, one)
-        place.balls[self.parameter] = one.enclosure(one.values[table.indices.index(self.index)], PRECISION)
+    def _point(self, table: Unknowns, point: AlgebraicPoint, p: Number) -> CurvePoint:
+        place = self.search._place(table, point)
+        place.balls[self.parameter] = point.enclosure(point.values[table.indices.index(self.index)], PRECISION)
         candidate = self.search._candidate(place, EXACT)
         return CurvePoint(place, p, candidate.features, self, bool(candidate.beyond))
 
@@ -372,7 +372,7 @@ class Curve(Varied):
     def _gone(self, table: Unknowns, equations: Sequence[Any]) -> CurvePoints:
         """The values of p at which a length may go to infinity."""
         result = solve(equations, (), table.bounded(), self.limits)
-        numbers = [self._number(table, one, None) for one in result.points]
+        numbers = [self._number(table, point, None) for point in result.points]
         unfinished = list(result.unfinished)
         for family in result.families:
             if self._constant_on(table, family):
@@ -385,10 +385,10 @@ class Curve(Varied):
 def joined(parts: Sequence[CurvePoints]) -> CurvePoints:
     """What several searches found, together."""
     return CurvePoints(
-        tuple(x for one in parts for x in one.points),
-        tuple(x for one in parts for x in one.continua),
-        any(one.throughout for one in parts),
-        tuple(dict.fromkeys(x for one in parts for x in one.unfinished)),
+        tuple(x for part in parts for x in part.points),
+        tuple(x for part in parts for x in part.continua),
+        any(part.throughout for part in parts),
+        tuple(dict.fromkeys(x for part in parts for x in part.unfinished)),
     )
 
 
@@ -408,15 +408,15 @@ def curves(
     """  # fmt: skip
     found, singular = [], []
     for searches in searches_over(system, (parameter,), values, limits, rank):
-        cases = [Curve(one, low, high) for one in searches]
-        regular = [one for one in cases if one.regular and not one.empty]
+        cases = [Curve(search, low, high) for search in searches]
+        regular = [curve for curve in cases if curve.regular and not curve.empty]
         for other in cases:
             if not other.regular:
-                singular += [one.where_on_components(other.search.case.zero, limits_too=True) for one in regular]
+                singular += [curve.where_on_components(other.search.case.zero, limits_too=True) for curve in regular]
                 singular += [] if other.empty else [other.where([])]
-        singular += [replace(one.where([]), continua=(), throughout=False) for one in regular if one.redundant]
+        singular += [replace(curve.where([]), continua=(), throughout=False) for curve in regular if curve.redundant]
         found += regular
-        if any(not one.search.equations for one in regular):
+        if any(not curve.search.equations for curve in regular):
             break
     return tuple(found), joined(singular)
 
@@ -434,16 +434,16 @@ def _minimal(value: Any, modulus: Any) -> Any:
     return primitive(table.minpoly())
 
 
-def _algebraic(value: Any, one: AlgebraicPoint, low: Any, high: Any) -> Number | None:
+def _algebraic(value: Any, point: AlgebraicPoint, low: Any, high: Any) -> Number | None:
     """An element of the number field as a number in [low, high], None where it lies outside."""
-    minimal = _minimal(value, one.modulus)
+    minimal = _minimal(value, point.modulus)
     if minimal.degree() == 1:
         exact = fmpq(-minimal[0], minimal[1])
         return exact if low <= exact <= high else None
     bound = 1 + fmpq(max(abs(c) for c in minimal.coeffs()), 1)
     roots, bits = roots_between(minimal, -bound, bound), 64
     while True:
-        ball = one.enclosure(value, bits)
+        ball = point.enclosure(value, bits)
         near = [root for root in roots if root.enclosure(bits).overlaps(ball)]
         if len(near) == 1:
             found = number(near[0])

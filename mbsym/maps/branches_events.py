@@ -110,10 +110,10 @@ class _Reduction:
         self.slopes = [[self.value(x) for x in row] for row in self.curve.slopes]
 
     def value(self, x: Polynomial) -> Element:
-        found = self.place.residue(x)
-        if found is None:
+        element = self.place.residue(x)
+        if element is None:
             raise _Unknown("a derivative outside of the number field")
-        return found
+        return element
 
     def sign(self, x: Element) -> int:
         """Exact: 0 only where the element vanishes."""
@@ -213,10 +213,10 @@ class _Reduction:
         n = len(self.names)
         rows = [[*row, y] for row, y in zip(self.slopes, right, strict=True)]
         reduced, pivots = echelon(self.field, rows, n)
-        found = [fmpq_poly([0])] * n
+        elements = [fmpq_poly([0])] * n
         for row, column in zip(reduced, pivots, strict=False):
-            found[column] = row[n]
-        return found
+            elements[column] = row[n]
+        return elements
 
 
 # Where along a branch the verdict of problem 6 may change.
@@ -258,8 +258,8 @@ def stability_changes(curve: Curve) -> CurvePoints:
     found = []
     for x in conditions:
         try:
-            one = curve.where_on_components([x])
-            found.append(curve.where([x]) if one.unfinished else one)
+            points = curve.where_on_components([x])
+            found.append(curve.where([x]) if points.unfinished else points)
         except Failure as reason:
             found.append(CurvePoints((), (), False, (str(reason),)))
     return joined(found)

@@ -66,7 +66,7 @@ class Critical:
     @property
     def events(self) -> tuple[Event, ...]:
         """What happens, each as often as it does."""
-        found = [one.named.event for one in self.meetings or () if one.named.event is not Event.REGULAR]
+        found = [meeting.named.event for meeting in self.meetings or () if meeting.named.event is not Event.REGULAR]
         return (*found, Event.CONTINUUM) if self.continuum else tuple(found)
 
 
@@ -102,12 +102,12 @@ class Branches(Map):
     @property
     def intervals(self) -> list[Cell]:
         """Those that were reached."""
-        return [one for one in self.regions if one.counted is not None]
+        return [region for region in self.regions if region.counted is not None]
 
     @property
     def criticals(self) -> list[Cell]:
         """The critical values that were reached, each with ``critical``."""
-        return [one for one in self.corners if one.said is not None]
+        return [corner for corner in self.corners if corner.said is not None]
 
     def critical(self, at: Cell) -> Critical:
         """What happens at a critical value."""
@@ -126,7 +126,7 @@ class Branches(Map):
 
     def sides(self, at: Cell) -> tuple[Cell | None, Cell | None]:
         """The intervals below and above a critical value, where they were reached."""
-        below, above = (one if one is not None and one.counted is not None else None for one in self.beside(at))
+        below, above = (cell if cell is not None and cell.counted is not None else None for cell in self.beside(at))
         return below, above
 
     def count_changes(self, at: Cell) -> bool:
@@ -136,11 +136,11 @@ class Branches(Map):
 
     def leaves(self, at: Cell) -> bool:
         """Whether equilibria go to infinity or to a border: what is found there does not account for the counts."""
-        one = self.critical(at)
-        if not one.border or one.meetings is None:
-            return one.border
+        critical = self.critical(at)
+        if not critical.border or critical.meetings is None:
+            return critical.border
         for side, name in zip(self.sides(at), ("below", "above"), strict=True):
-            near = [getattr(x.named, name) for x in one.meetings]
+            near = [getattr(x.named, name) for x in critical.meetings]
             if side is not None and (None in near or sum(near) != len(self.equilibria(side))):
                 return True
         return False
@@ -170,15 +170,15 @@ class Branches(Map):
 
     def certain(self, at: Cell) -> bool:
         """Whether the verdicts on both sides are proved up to a critical value."""
-        sides = [one.number for one in self.sides(at) if one is not None]
+        sides = [side.number for side in self.sides(at) if side is not None]
         return all(x.throughout for x in self.pieces if x.interval in sides)
 
     def happens(self, at: Cell) -> bool:
         """Whether anything is to be told of a critical value."""
-        one = self.critical(at)
+        critical = self.critical(at)
         changed = None not in self.sides(at) and self.count_changes(at)
         changed = changed or self.leaves(at) or self.verdict_changes(at)
-        return bool(one.events) or one.balance is False or changed
+        return bool(critical.events) or critical.balance is False or changed
 
     def between(self, interval: Cell) -> tuple[Cell | None, Cell | None]:
         """The critical values at which an interval starts and ends, where they were reached."""
@@ -190,15 +190,15 @@ class Branches(Map):
     def spans(self) -> list[tuple[Cell, Cell]]:
         """The first and last of the intervals between which nothing happens, in their order."""
         found: list[tuple[Cell, Cell]] = []
-        for one in self.intervals:
-            start = self.between(one)[0]
+        for interval in self.intervals:
+            start = self.between(interval)[0]
             if found and start is not None and not self.happens(start):
-                found[-1] = found[-1][0], one
+                found[-1] = found[-1][0], interval
             else:
-                found.append((one, one))
+                found.append((interval, interval))
         return found
 
     @property
     def proved(self) -> bool:
         """Whether the numbers of equilibria are proved everywhere in the open intervals."""
-        return not self.interrupted and all(one.certainty is Certainty.PROVED for one in self.intervals)
+        return not self.interrupted and all(interval.certainty is Certainty.PROVED for interval in self.intervals)

@@ -80,15 +80,15 @@ class ExactVerdicts:
         """The verdict, the counts and the kind of border at the point."""
         at, signs = _field(place), _signs(place)
         parts, one_energy = self.section.judged(signs)
-        found = [verdict_over(part, at) for part in parts]
-        verdict = combine((one.verdict for one in found), one_energy)
+        verdicts = [verdict_over(part, at) for part in parts]
+        verdict = combine((point_verdict.verdict for point_verdict in verdicts), one_energy)
         signature = [inertia(evaluated(part.K, at)) for part in parts]
         right: int | None = None
         real: int | None = None
-        if all(one.roots is not None for one in found):
-            right = sum(one.roots.right for one in found if one.roots is not None)
-            real = sum(_real(one) for one in found)
-        kinds = {_border(part, one, usual, at) for part, one, usual in zip(parts, found, self._usual, strict=True)}
+        if all(point_verdict.roots is not None for point_verdict in verdicts):
+            right = sum(point_verdict.roots.right for point_verdict in verdicts if point_verdict.roots is not None)
+            real = sum(_real(point_verdict) for point_verdict in verdicts)
+        kinds = {_border(part, one, usual, at) for part, one, usual in zip(parts, verdicts, self._usual, strict=True)}
         border = next((kind for kind in _ORDER if kind in kinds), None)
         return Judged(verdict, right, real, sum(x[2] for x in signature), sum(x[1] for x in signature), border)
 
@@ -309,10 +309,10 @@ def check(
 
     Of a line the regions are its intervals, the corners its zeros.
     """
-    one = _Checking(section, Random(seed))
+    checking = _Checking(section, Random(seed))
     doubted = jumps(found, regions, arcs, corners)
-    one.findings += [Finding(Mistake.JUMP, arc=k) for k in doubted[0]]
-    one.findings += [Finding(Mistake.JUMP, corner=k) for k in doubted[1]]
+    checking.findings += [Finding(Mistake.JUMP, arc=k) for k in doubted[0]]
+    checking.findings += [Finding(Mistake.JUMP, corner=k) for k in doubted[1]]
     if isinstance(found, Line):
         count = len(found.intervals)
         for at, interval in enumerate(found.intervals * (1 + FEWEST // count)):
@@ -320,20 +320,20 @@ def check(
             first, last = interval.ends
             below = found.low if first is None else found.zeros[first].number
             above = found.high if last is None else found.zeros[last].number
-            x = one.between(below, above, one.share(2, at // count, (at % count, 0)))
-            one.region(interval.id, regions[interval.id], (x,), interval.signs, found.factors)
-        return one.result()
-    one.findings += [Finding(Mistake.LAW, arc=x.arc, breach=x) for x in breaches(found)]
+            x = checking.between(below, above, checking.share(2, at // count, (at % count, 0)))
+            checking.region(interval.id, regions[interval.id], (x,), interval.signs, found.factors)
+        return checking.result()
+    checking.findings += [Finding(Mistake.LAW, arc=x.arc, breach=x) for x in breaches(found)]
     cells = sum(len(each.sections) - 1 for each in found.columns)
     strips = [*range(len(found.columns))] * (1 + FEWEST // cells)
     for at, strip in enumerate(strips):
         progress("check", at, len(strips))
-        one.strip(found, strip, regions, at // len(found.columns))
+        checking.strip(found, strip, regions, at // len(found.columns))
     for arc, judged in zip(found.arcs, arcs, strict=False):
         if judged is not None:
-            one.arc(found, arc, judged)
+            checking.arc(found, arc, judged)
     progress("check", len(strips), len(strips))
-    return one.result()
+    return checking.result()
 
 
 def check_boxes(
@@ -348,13 +348,13 @@ def check_boxes(
     Where a box's counts are not known its verdict may say less than that of a point; unstable and not must not mix.
     ``verdict`` gives the one at a point where the section has no matrices; where it is undecided nothing is compared.
     """
-    one = _Checking(section, Random(seed))
+    checking = _Checking(section, Random(seed))
     for at, (number, judged, point) in enumerate(tried):
         progress("check", at, len(tried))
-        there = one.at(point) if verdict is None else verdict(*point)
+        there = checking.at(point) if verdict is None else verdict(*point)
         if there.word is not Word.UNDECIDED or judged.right is not None:
-            one.box(number, judged, point, there)
-    return one.result()
+            checking.box(number, judged, point, there)
+    return checking.result()
 
 
 class _Checking:
@@ -391,7 +391,7 @@ class _Checking:
         x = self.between(left, right, self.share(2, at, (strip, -1)))
         there = column(found.curves, found.box, x)
         expected = found.columns[strip].sections
-        if [one.curve for one in there.sections] != [one.curve for one in expected]:
+        if [section.curve for section in there.sections] != [section.curve for section in expected]:
             self.findings.append(Finding(Mistake.BRANCHES, near=(float(x),)))
             return
         for cell in range(len(expected) - 1):

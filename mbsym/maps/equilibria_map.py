@@ -64,9 +64,9 @@ def equilibria_map(
     names = axes[0].name, axes[1].name
     limits = Limits()
     parts = surfaces(system, names, values, limits)
-    found, unfinished = _curves(parts)
-    made = decompose(found.factors, box_of(axes), progress=watch)
-    undamped = all(is_undamped(one.search) for one in parts)
+    boundaries, unfinished = _curves(parts)
+    made = decompose(boundaries.factors, box_of(axes), progress=watch)
+    undamped = all(is_undamped(part.search) for part in parts)
     source = Random(20261123)
     drawn = Drawn(made)
     cells: list[Cell] = []
@@ -85,7 +85,7 @@ def equilibria_map(
     related = {item.name for item in system.relations}
     given = {name: x for name, x in values.items() if name not in names and name not in related}
     return EquilibriaMap(
-        Of.EQUILIBRIA, axes, given, made, found, tuple(cells), arcs, corners, areas(made),
+        Of.EQUILIBRIA, axes, given, made, boundaries, tuple(cells), arcs, corners, areas(made),
         interrupted=interrupted, unfinished=unfinished,
     )  # fmt: skip
 
@@ -227,15 +227,15 @@ class Surface(Varied):
 
     def leaving(self) -> list[Projected]:
         """Where a root or a denominator vanishes, or lengths go to infinity."""
-        found = [self.over([x], inside=False) for x in self.undefined()]
+        projecteds = [self.over([x], inside=False) for x in self.undefined()]
         if self.mass is None:
-            found.append(Projected((), False, (MASS_OPEN,)))
+            projecteds.append(Projected((), False, (MASS_OPEN,)))
         elif not self.mass.is_constant():
             # all along a surface: other equilibria meet it where they are singular
-            found.append(replace(self.over([self.mass]), everywhere=False))
+            projecteds.append(replace(self.over([self.mass]), everywhere=False))
         for one in self.at_infinity():
-            found.append(Projected((), False, (INFINITY_OPEN,)) if one is None else self._projected(*one, ()))
-        return found
+            projecteds.append(Projected((), False, (INFINITY_OPEN,)) if one is None else self._projected(*one, ()))
+        return projecteds
 
 
 class _Eliminating(_Solver):
@@ -286,5 +286,5 @@ def surfaces(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    found = [Surface(one) for searches in searches_over(system, parameters, values, limits) for one in searches]
-    return tuple(one for one in found if not one.empty)
+    found = [Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches]
+    return tuple(surface for surface in found if not surface.empty)

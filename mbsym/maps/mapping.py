@@ -66,14 +66,14 @@ def kept_in(analysis: Analysis, there: Section) -> Admissibility:
     """What points of a section have to keep.  Raises Unfit where none does."""
     kept = admissibility(analysis, there)
     if kept.broken:
-        raise Unfit([Complaint(Fault.OUTSIDE, "", one.condition.about) for one in kept.broken])
+        raise Unfit([Complaint(Fault.OUTSIDE, "", demand.condition.about) for demand in kept.broken])
     return kept
 
 
 def bounded(there: Section, kept: Admissibility) -> Boundaries:
     """All boundaries of a section: of verdicts, of what is kept, and the axes' zeros where the energy asks for them."""
-    asked = [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
-    return boundaries(there, [*(one.condition for one in kept.demands), *asked], kept.known)
+    conditions = [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
+    return boundaries(there, [*(demand.condition for demand in kept.demands), *conditions], kept.known)
 
 
 def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
@@ -99,10 +99,10 @@ def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
     interrupted = False
     try:
         for cells in (arcs, corners):
-            for k, one in enumerate(cells):
-                if one.imaginary:
+            for k, cell in enumerate(cells):
+                if cell.imaginary:
                     watch("soft or hard", k, len(cells))
-                cells[k] = told(one)
+                cells[k] = told(cell)
     except KeyboardInterrupt:
         interrupted = True
     return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
@@ -199,7 +199,7 @@ def withdrawn(cells: list[Cell], part: int, checked: Check) -> list[Cell]:
 
     What is wrong with the arrangement as a whole takes all verdicts with it.
     """
-    found = [(one.region, one.arc, one.corner) for one in checked.findings]
+    found = [(finding.region, finding.arc, finding.corner) for finding in checked.findings]
     lone = all(one.breach is None for one in checked.findings) and all(any(k is not None for k in x) for x in found)
     doubted = {one[part] for one in found}
     return [one.withdrawn if one.said is not None and (one.number in doubted or not lone) else one for one in cells]
@@ -226,8 +226,8 @@ def box_of(axes: Sequence[Axis]) -> Box:
 
 def lengths(line: Line) -> tuple[tuple[float, float], ...]:
     """Of the intervals, and their errors, which are those of rounding."""
-    marks = [line.low if x is None else line.zeros[x].number for one in line.intervals for x in one.ends[:1]]
-    last = [line.high if x is None else line.zeros[x].number for one in line.intervals for x in one.ends[1:]]
+    marks = [line.low if x is None else line.zeros[x].number for interval in line.intervals for x in interval.ends[:1]]
+    last = [line.high if x is None else line.zeros[x].number for interval in line.intervals for x in interval.ends[1:]]
     return tuple((float_of(b) - float_of(a), 1e-15 * abs(float_of(b))) for a, b in zip(marks, last, strict=True))
 
 
@@ -239,12 +239,12 @@ def float_of(x: Any) -> float:
 def places(ground: Ground) -> list[tuple[Shape, int, Any]]:
     """(shape, number, exact sample) of all cells of an arrangement or a line: regions, arcs, corners."""
     if isinstance(ground, Line):
-        intervals = [(Shape.INTERVAL, one.id, one.sample) for one in ground.intervals]
-        return [*intervals, *((Shape.ZERO, one.id, one.number) for one in ground.zeros)]
+        intervals = [(Shape.INTERVAL, interval.id, interval.sample) for interval in ground.intervals]
+        return [*intervals, *((Shape.ZERO, zero.id, zero.number) for zero in ground.zeros)]
     assert isinstance(ground, Arrangement)
-    regions = [(Shape.REGION, one.id, Point(*one.sample)) for one in ground.regions]
-    arcs = [(Shape.ARC, one.id, one.point) for one in ground.arcs]
-    return [*regions, *arcs, *((Shape.CORNER, one.id, one.point) for one in ground.corners)]
+    regions = [(Shape.REGION, region.id, Point(*region.sample)) for region in ground.regions]
+    arcs = [(Shape.ARC, arc.id, arc.point) for arc in ground.arcs]
+    return [*regions, *arcs, *((Shape.CORNER, corner.id, corner.point) for corner in ground.corners)]
 
 
 class Judge:

@@ -94,12 +94,12 @@ class Counted:
     @property
     def stable(self) -> int:
         """Stable ones at the sample."""
-        return sum(one.verdict.stable for one in self.equilibria)
+        return sum(equilibrium.verdict.stable for equilibrium in self.equilibria)
 
     @property
     def undecided(self) -> int:
         """Those at the sample of which nothing decides whether they are stable."""
-        return sum(one.verdict.word.open for one in self.equilibria)
+        return sum(equilibrium.verdict.word.open for equilibrium in self.equilibria)
 
 
 @dataclass(frozen=True)
@@ -161,8 +161,8 @@ class Cell:
         """What cells have in common that look alike in every respect that a map shows."""
         if self.judged is None:
             return (self.lack,)
-        found = self.judged
-        return (found.verdict.word, found.verdict.theorems, found.right, found.real_right, found.degree)
+        judged = self.judged
+        return (judged.verdict.word, judged.verdict.theorems, judged.right, judged.real_right, judged.degree)
 
 
 class Joined:
@@ -238,7 +238,7 @@ class Map:
     @cached_property
     def counts(self) -> frozenset[int]:
         """All numbers of equilibria that regions have."""
-        return frozenset(one.counted.count for one in self.regions if one.counted is not None)
+        return frozenset(region.counted.count for region in self.regions if region.counted is not None)
 
     @property
     def whole(self) -> float:
@@ -303,7 +303,7 @@ class Map:
         """The regions below and above an arc or a point (left and right of a vertical arc); None is outside."""
         if isinstance(self.ground, Line):
             ends = ([x.id for x in self.ground.intervals if x.ends[k] == border.number] for k in (1, 0))
-            below, above = (found[0] if found else None for found in ends)
+            below, above = (end[0] if end else None for end in ends)
         else:
             below, above = self.place(border).regions
         return None if below is None else self.regions[below], None if above is None else self.regions[above]
@@ -334,20 +334,20 @@ class Map:
 
     def drawn(self, border: Cell) -> bool:
         """Whether a border is part of the picture: another look on its two sides, or on it alone."""
-        sides = [one for one in self.beside(border) if one is not None]
+        sides = [cell for cell in self.beside(border) if cell is not None]
         if len(sides) < 2:
             return False
         return self.separates(border) or (
-            self.singles_out(border) and any(one.lack is None for one in (*sides, border))
+            self.singles_out(border) and any(cell.lack is None for cell in (*sides, border))
         )
 
     @property
     def together(self) -> tuple[int, ...]:
         """For each region the first of those that it makes one with, as no border between them changes anything."""
         regions = Joined(len(self.regions))
-        for one in self.borders:
-            a, b = self.beside(one)
-            if a is not None and b is not None and self.look(a) == self.look(one) == self.look(b):
+        for border in self.borders:
+            a, b = self.beside(border)
+            if a is not None and b is not None and self.look(a) == self.look(border) == self.look(b):
                 regions.join(a.number, b.number)
         return tuple(map(regions, range(len(self.regions))))
 

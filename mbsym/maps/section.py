@@ -156,7 +156,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         return _section(analysis, axes, settings, None, found)
     except Unfit as unfit:
         constant = None
-        if len(axes) <= MOST_BESIDE and {one.fault for one in unfit.complaints} == {Fault.IRRATIONAL}:
+        if len(axes) <= MOST_BESIDE and {complaint.fault for complaint in unfit.complaints} == {Fault.IRRATIONAL}:
             constant = constant_of(analysis.system, analysis.ring, found)
         if constant is None:
             raise
@@ -183,11 +183,11 @@ def _section(
     known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
     balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
     undefined: list[Polynomial] = []
-    found = []
+    systems = []
     for part in parts:
         made, below = _in_axes(part, part.at(balance), images, complaints)
         if made is not None:
-            found.append(made)
+            systems.append(made)
             undefined += below
     irrational += images.irrational
     if complaints:
@@ -199,7 +199,7 @@ def _section(
     return Section(
         tuple(axes),
         context,
-        tuple(found),
+        tuple(systems),
         tuple(part.coordinates for part in parts),
         law.everywhere,
         law,
@@ -261,9 +261,9 @@ def _in_axes(
 def _image(x: Polynomial, part: Prepared, images: Images, complaints: list[Complaint]) -> Image | None:
     """The image of an entry; None where it has none, with what is missing among the complaints."""
     ring = None if part.ring is images.ring else part.ring
-    found: Image | None = None
+    image: Image | None = None
     try:
-        found = images(x, ring)
+        image = images(x, ring)
     except NoValue as error:
         complaints.append(Complaint(Fault.MISSING, _missing(error)))
         complaints += _further(x, ring, images)
@@ -271,20 +271,20 @@ def _image(x: Polynomial, part: Prepared, images: Images, complaints: list[Compl
         complaints.append(Complaint(Fault.IRRATIONAL, str(error)))
     except SingularPoint:
         complaints.append(Complaint(Fault.SINGULAR, str(x)))
-    return found
+    return image
 
 
 def _further(x: Polynomial, ring: Any, images: Images) -> list[Complaint]:
     """Everything else in the same entry that has no number."""
-    found = []
+    complaints = []
     for k in occurring([x]):
         try:
             images(x.context().gen(k), ring)
         except NoValue as error:
-            found.append(Complaint(Fault.MISSING, _missing(error)))
+            complaints.append(Complaint(Fault.MISSING, _missing(error)))
         except Failure:
             pass
-    return found
+    return complaints
 
 
 def _missing(error: NoValue) -> str:
@@ -301,21 +301,21 @@ def _carried(images: Images, p: Polynomial) -> tuple[Polynomial, ...]:
 
 def _motion_exists(motion: Equilibrium, images: Images) -> None:
     """Raises Unfit where a condition of problem 4 does not hold in the whole section."""
-    found = []
+    complaints = []
     for condition in motion.conditions:
         try:
             top, _ = images(condition.polynomial)
         except NoValue as error:
-            found.append(Complaint(Fault.MISSING, _missing(error)))
+            complaints.append(Complaint(Fault.MISSING, _missing(error)))
             continue
         except Failure:
-            found.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
+            complaints.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
             continue
         if top != 0:
-            found.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
-    found += [Complaint(Fault.NOWHERE, f"{condition} = 0") for condition in motion.impossible]
-    if found:
-        raise Unfit(found)
+            complaints.append(Complaint(Fault.NOWHERE, f"{condition} = 0"))
+    complaints += [Complaint(Fault.NOWHERE, f"{condition} = 0") for condition in motion.impossible]
+    if complaints:
+        raise Unfit(complaints)
 
 
 # What is given of a section of the space of parameters: axes and numbers that fit together, or every complaint.
@@ -372,20 +372,20 @@ def _determined(system: System, motion: Equilibrium, chosen: Sequence[str]) -> l
 
     related = {item.name: f"{item.name} = {text(item.value)}" for item in system.relations}
     solved = {name: f"{name} = {value}" for name, value in motion.solved}
-    found = [Complaint(Fault.RELATED, name, related[name]) for name in chosen if name in related]
-    return [*found, *(Complaint(Fault.SOLVED, name, solved[name]) for name in chosen if name in solved)]
+    complaints = [Complaint(Fault.RELATED, name, related[name]) for name in chosen if name in related]
+    return [*complaints, *(Complaint(Fault.SOLVED, name, solved[name]) for name in chosen if name in solved)]
 
 
 def _against_signs(analysis: Analysis, given: Mapping[str, Fraction]) -> list[Complaint]:
     """Numbers that contradict a declared sign, or one that the definition of a symbol shows."""
     words = analysis.signs.words
-    found = []
+    against_signs = []
     for name, value in given.items():
         word = words[analysis.ring.index("parameter", name)]
         relation = RELATION_OF_SIGN.get(word)
         if relation is not None and not holds(value, relation):
-            found.append(Complaint(Fault.SIGN, name, word))
-    return found
+            against_signs.append(Complaint(Fault.SIGN, name, word))
+    return against_signs
 
 
 def _dependent(scene: Scene, chosen: Sequence[str]) -> list[Complaint]:
@@ -405,7 +405,7 @@ def _dependent(scene: Scene, chosen: Sequence[str]) -> list[Complaint]:
     ]
     generator = Random(20261122)
     rows: list[list[Any]] = []
-    rank, found = 0, []
+    rank, complaints = 0, []
     point = [fmpq(generator.randint(1000, 9999), generator.randint(100, 999)) for _ in range(ring.context.nvars())]
     for name in symbols:
         try:
@@ -415,14 +415,14 @@ def _dependent(scene: Scene, chosen: Sequence[str]) -> list[Complaint]:
                 below = below * factor**exponent
             row = [_slope(top, below, k, point) for k in free]
         except (Failure, ZeroDivisionError):
-            found.append(Complaint(Fault.SINGULAR, name))
+            complaints.append(Complaint(Fault.SINGULAR, name))
             continue
         table = fmpq_mat([*rows, row]) if row else fmpq_mat(1, 1)
         if table.rank() == rank + 1:
             rows, rank = [*rows, row], rank + 1
         else:
-            found.append(Complaint(Fault.DEPENDENT, name, ", ".join(x for x in chosen if x != name)))
-    return found
+            complaints.append(Complaint(Fault.DEPENDENT, name, ", ".join(x for x in chosen if x != name)))
+    return complaints
 
 
 def _slope(top: Polynomial, below: Polynomial, k: int, point: Sequence[Any]) -> Any:

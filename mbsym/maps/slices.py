@@ -104,12 +104,12 @@ class Stack(Map):
     @property
     def planes(self) -> list[Map]:
         """The slices that there are maps of."""
-        return [one.plane for one in self.layers if one.plane is not None]
+        return [layer.plane for layer in self.layers if layer.plane is not None]
 
     @property
     def sound(self) -> bool:
         """Whether all checks of all slices hold."""
-        return all(one.confirmed for one in self.layers) and all(one.sound for one in self.planes)
+        return all(layer.confirmed for layer in self.layers) and all(plane.sound for plane in self.planes)
 
     def ends(self, picture: Picture) -> tuple[Number, bool, Number, bool]:
         """(from, whether that belongs to it, to, whether that does), values of the third axis."""
@@ -136,17 +136,17 @@ def stack(
     """
     watch("first approximation", 0, 1)
     there = section(analysis, axes, settings)
-    kept = kept_in(analysis, there)
+    admissibility = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    found = bounded(there, kept)
-    line = critical_levels(found.factors, box_of(axes), *ends(axes[2]), progress=watch)
+    boundaries = bounded(there, admissibility)
+    line = critical_levels(boundaries.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
             f"{len(line.zeros)} values of {axes[2].name} at which the picture may change, more than {MOST_LEVELS}",
             limit=Limit.WORK,
             remedy=f"take a smaller interval of {axes[2].name}",
         )
-    slicing = _Slicing(analysis, there, kept, found, of, watch)
+    slicing = _Slicing(analysis, there, admissibility, boundaries, of, watch)
     levels = levels_of(line)
     layers: list[Layer] = []
     interrupted = False
@@ -160,11 +160,11 @@ def stack(
             except KeyboardInterrupt:
                 interrupted = True
         layers.append(Layer(number, z, critical, lack=Lack.NOT_REACHED))
-    if interrupted and all(one.plane is None for one in layers):
+    if interrupted and all(layer.plane is None for layer in layers):
         raise KeyboardInterrupt
     return Stack(
-        of, there.axes, there.told, line, found, section=there, admissibility=kept, interrupted=interrupted,
-        layers=tuple(layers), pictures=_pictures(layers),
+        of, there.axes, there.told, line, boundaries, section=there, admissibility=admissibility,
+        interrupted=interrupted, layers=tuple(layers), pictures=_pictures(layers),
     )  # fmt: skip
 
 
@@ -187,11 +187,11 @@ class _Slicing:
         self.watch(f"slice {number + 1} of {whole}", 0, 1)
         if isinstance(z, AlgebraicNumber) and z.polynomial.degree() > MOST_DEGREE:
             return Layer(number, z, critical, lack=Lack.IRRATIONAL)
-        cut, kept = at_level(self.section, self.kept, z)
-        if kept.broken:
-            return Layer(number, z, critical, lack=Lack.OUTSIDE, broken=kept.broken)
+        cut, admissibility = at_level(self.section, self.kept, z)
+        if admissibility.broken:
+            return Layer(number, z, critical, lack=Lack.OUTSIDE, broken=admissibility.broken)
         try:
-            plane = mapped(cut, kept, self._flat(cut, kept, z), self.of, told)
+            plane = mapped(cut, admissibility, self._flat(cut, admissibility, z), self.of, told)
             plane = with_nonlinear(with_onsets(plane, SoftBorders(self.analysis, cut), told), self.analysis, told)
             if critical or plane.interrupted:
                 return Layer(number, z, critical, plane)
@@ -201,7 +201,7 @@ class _Slicing:
         except TooLargeError:
             return Layer(number, z, critical, lack=Lack.TOO_LARGE)
 
-    def _flat(self, cut: Section, kept: Admissibility, z: Any) -> Boundaries:
+    def _flat(self, cut: Section, admissibility: Admissibility, z: Any) -> Boundaries:
         """The boundary polynomials in the slice, in their old places.
 
         Where one vanishes on the whole slice, other verdicts are possible in it than near it: what bounds them is
@@ -211,17 +211,19 @@ class _Slicing:
         flat = [p if p == 0 else norm_of_factors(cut, p) for p in flat]
         if all(p != 0 for p in flat):
             return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
-        own = bounded(cut, kept)
+        own = bounded(cut, admissibility)
         here = [p if p != 0 else cut.context.constant(1) for p in flat]
         further = [
             (p, conditions)
             for p, conditions in zip(own.factors, own.conditions, strict=True)
             if not any(q.gcd(p) == p / p.leading_coefficient() for q in here)
         ]
-        lying = [one for p, told in zip(flat, self.boundaries.conditions, strict=True) if p == 0 for one in told]
+        lying = [
+            one for p, conditions in zip(flat, self.boundaries.conditions, strict=True) if p == 0 for one in conditions
+        ]
         return Boundaries(
             (*here, *(p for p, _ in further)),
-            (*self.boundaries.conditions, *(told for _, told in further)),
+            (*self.boundaries.conditions, *(conditions for _, conditions in further)),
             (*self.boundaries.vanishing, *lying),
         )
 
@@ -233,11 +235,11 @@ class _Slicing:
 
     def _confirmed(self, plane: Map, z: Any) -> bool:
         """Whether the slice at another value corresponds to a map, with the verdicts of regions."""
-        cut, kept = at_level(self.section, self.kept, z)
+        cut, admissibility = at_level(self.section, self.kept, z)
         flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
         there: Arrangement = decompose([p if p != 0 else cut.context.constant(1) for p in flat], box_of(cut.axes))
-        judge = Judge(cut, kept)
-        kinds = [judge(Shape.REGION, one.id, Point(*one.sample)).kind for one in there.regions]
+        judge = Judge(cut, admissibility)
+        kinds = [judge(Shape.REGION, region.id, Point(*region.sample)).kind for region in there.regions]
         return alike(
             plane.arrangement,
             there,
@@ -262,7 +264,7 @@ def last_of(cut: Section, z: Any) -> Any:
     return z if cut.constant is None else cut.context.gen(2)
 
 
-def at_level(there: Section, kept: Admissibility, z: Number) -> tuple[Section, Admissibility]:
+def at_level(there: Section, admissibility: Admissibility, z: Number) -> tuple[Section, Admissibility]:
     """A section of three axes where the last has the value z, and what its points have to keep.
 
     An irrational z is the constant of the section.
@@ -301,15 +303,15 @@ def at_level(there: Section, kept: Admissibility, z: Number) -> tuple[Section, A
         constant=constant,
     )
     demands, broken = [], []
-    for one in kept.demands:
-        polynomial = flat(one.condition.polynomial)
-        told = replace(one, condition=replace(one.condition, polynomial=polynomial))
+    for demand in admissibility.demands:
+        polynomial = flat(demand.condition.polynomial)
+        told = replace(demand, condition=replace(demand.condition, polynomial=polynomial))
         value = known(polynomial)
         if value is None:
             demands.append(told)
         elif not told.kept(value):
             broken.append(told)
-    return cut, Admissibility(tuple(demands), tuple(broken), kept.left_out)
+    return cut, Admissibility(tuple(demands), tuple(broken), admissibility.left_out)
 
 
 # --- pictures ---------------------------------------------------------------------------------------------------------
@@ -317,23 +319,23 @@ def at_level(there: Section, kept: Admissibility, z: Number) -> tuple[Section, A
 
 def _pictures(layers: Sequence[Layer]) -> tuple[Picture, ...]:
     """Neighbours that show the same, joined."""
-    found: list[Picture] = []
+    pictures: list[Picture] = []
     open_levels: list[Layer] = []
     for layer in layers:
         if layer.critical and layer.lack in (Lack.IRRATIONAL, Lack.TOO_LARGE):
             open_levels.append(layer)
             continue
-        between = tuple(one.number for one in open_levels)
-        if found and _same(layers[found[-1].shown], layer):
-            last = found.pop()
+        between = tuple(open_level.number for open_level in open_levels)
+        if pictures and _same(layers[pictures[-1].shown], layer):
+            last = pictures.pop()
             joined = (*last.layers, *between, layer.number)
-            found.append(Picture(joined, _better(layers, last.shown, layer), (*last.unseen, *between)))
+            pictures.append(Picture(joined, _better(layers, last.shown, layer), (*last.unseen, *between)))
         else:
-            found += [Picture((k,), k, (k,)) for k in between]
-            found.append(Picture((layer.number,), layer.number))
+            pictures += [Picture((k,), k, (k,)) for k in between]
+            pictures.append(Picture((layer.number,), layer.number))
         open_levels = []
-    found += [Picture((one.number,), one.number, (one.number,)) for one in open_levels]
-    return tuple(found)
+    pictures += [Picture((open_level.number,), open_level.number, (open_level.number,)) for open_level in open_levels]
+    return tuple(pictures)
 
 
 def _better(layers: Sequence[Layer], shown: int, layer: Layer) -> int:

@@ -298,20 +298,24 @@ def _stretches(
     borders: SoftBorders, formula: _Along, made: Arrangement, arc: Arc, curve: int
 ) -> tuple[Stretch, ...] | None:
     """Stretches of one sign of a; None where a point of the arc could not be told."""
-    found: list[Stretch] = []
+    stretches: list[Stretch] = []
     for piece in arc.pieces:
-        kept = _of_piece(borders, formula, made, piece, curve)
-        if kept is None:
+        kept_stretches = _of_piece(borders, formula, made, piece, curve)
+        if kept_stretches is None:
             return None
         if piece.backwards:
-            kept = [Stretch(one.end, one.start, one.onset) for one in reversed(kept)]
-        if found and found[-1].onset is kept[0].onset and _same_between(borders, made, piece, kept[0].onset):
-            found[-1:] = [Stretch(found[-1].start, kept[0].end, kept[0].onset)]
-            kept = kept[1:]
-        found += kept
-    if arc.corners == (None, None) and not _same_between(borders, made, arc.pieces[0], found[0].onset):
+            kept_stretches = [Stretch(one.end, one.start, one.onset) for one in reversed(kept_stretches)]
+        if (
+            stretches
+            and stretches[-1].onset is kept_stretches[0].onset
+            and _same_between(borders, made, piece, kept_stretches[0].onset)
+        ):
+            stretches[-1:] = [Stretch(stretches[-1].start, kept_stretches[0].end, kept_stretches[0].onset)]
+            kept_stretches = kept_stretches[1:]
+        stretches += kept_stretches
+    if arc.corners == (None, None) and not _same_between(borders, made, arc.pieces[0], stretches[0].onset):
         return None  # closed: where it starts is a point of it
-    return tuple(found)
+    return tuple(stretches)
 
 
 def _same_between(borders: SoftBorders, made: Arrangement, piece: Piece, onset: Onset) -> bool:
@@ -328,8 +332,8 @@ def _of_piece(
 ) -> list[Stretch] | None:
     """Stretches of a piece from left to right; None where a sign is not told."""
     sections = made.columns[piece.strip].sections
-    place = sum(1 for one in sections[: piece.section] if one.curve == curve)
-    count = sum(1 for one in sections if one.curve == curve)
+    place = sum(1 for section in sections[: piece.section] if section.curve == curve)
+    count = sum(1 for section in sections if section.curve == curve)
     ends = [made.fibres[piece.strip + k].abscissa.x for k in (0, 1)]
 
     def point(x: Any) -> tuple[Any, Any] | None:
@@ -346,19 +350,19 @@ def _runs(
 
     ``point`` gives the enclosed point of the curve over an enclosed number; None where a sign is not told.
     """
-    found: list[Stretch] = []
+    runs: list[Stretch] = []
     for start, end in pairwise(marks):
         here = point(arb(between_simply(start, end)))
         onset = None if here is None else _confirmed(borders, formula, *here)
         if onset is None:
             return None
-        if found and found[-1].onset is onset:
+        if runs and runs[-1].onset is onset:
             meeting = point(enclosure(start, PRECISION))
             if meeting is not None and borders._at(meeting).onset is onset:
-                found[-1] = replace(found[-1], end=end)
+                runs[-1] = replace(runs[-1], end=end)
                 continue
-        found.append(Stretch(start, end, onset, formula.axis))
-    return found
+        runs.append(Stretch(start, end, onset, formula.axis))
+    return runs
 
 
 def _confirmed(borders: SoftBorders, formula: _Along, x: Any, y: Any) -> Onset | None:

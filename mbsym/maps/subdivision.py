@@ -78,10 +78,10 @@ class Subdivision(Generic[Proved]):
 
     def locate(self, x: Rational, y: Rational) -> Tile[Proved]:
         """A tile with the point; a proved one if there is one.  Raises ValueError outside of the box."""
-        found = [tile for tile in self.tiles if (x, y) in tile.box]
-        if not found:
+        tiles = [tile for tile in self.tiles if (x, y) in tile.box]
+        if not tiles:
             raise ValueError("a point outside of the box")
-        return next((tile for tile in found if tile.proved is not None), found[0])
+        return next((tile for tile in tiles if tile.proved is not None), tiles[0])
 
 
 class Prover(Protocol[Given]):
@@ -183,8 +183,8 @@ class ByEnclosures:
         self._polynomials = [_characteristic(part) for part in section.parts]
 
     def __call__(self, box: Box, hint: Any) -> tuple[Verdict | None, Any]:
-        found = self.verdict(box)
-        return (None if found.word is Word.UNDECIDED else found), None
+        verdict = self.verdict(box)
+        return (None if verdict.word is Word.UNDECIDED else verdict), None
 
     def verdict(self, box: Box) -> Verdict:
         """The combined verdict; undecided where the balls leave it open."""
@@ -194,8 +194,8 @@ class ByEnclosures:
         else:
             parts, one_energy = self._section.judged([sign(a) for a, _ in ranges])
         pairs = zip(parts, self._polynomials, strict=True)
-        found = (_enclosed(part, polynomial, box) for part, polynomial in pairs)
-        return combine((exactly(x) if part.exact else x for x, part in zip(found, parts, strict=True)), one_energy)
+        verdicts = (_enclosed(part, polynomial, box) for part, polynomial in pairs)
+        return combine((exactly(x) if part.exact else x for x, part in zip(verdicts, parts, strict=True)), one_energy)
 
 
 def _characteristic(part: LinearSystem) -> tuple[Polynomial, ...]:

@@ -51,18 +51,18 @@ def verdict_at(section: Section, point: Sequence[Any]) -> Judged:
     """The exact verdict at a rational point, coordinates in the order of the axes."""
     values = {k: rationals.fraction(x) for k, x in enumerate(point)}
     parts, one_energy = section.judged([(x > 0) - (x < 0) for x in point])
-    found = [exact_verdict(part, values) for part in parts]
-    verdict = combine((one.verdict for one in found), one_energy)
+    verdicts = [exact_verdict(part, values) for part in parts]
+    verdict = combine((one.verdict for one in verdicts), one_energy)
     signature = [inertia(stiffness_at(part, point)) for part in parts]
     degree, null = sum(one[2] for one in signature), sum(one[1] for one in signature)
     right: int | None = 0
     real: int | None = 0
-    for one in found:
-        if one.roots is None or right is None or real is None:
+    for point_verdict in verdicts:
+        if point_verdict.roots is None or right is None or real is None:
             right = real = None
             break
-        right += one.roots.right
-        real += count_real_roots(one.characteristic)[2] if one.roots.right else 0
+        right += point_verdict.roots.right
+        real += count_real_roots(point_verdict.characteristic)[2] if point_verdict.roots.right else 0
     return Judged(verdict, right, real, degree, null)
 
 
@@ -92,12 +92,12 @@ def jumps(
 ) -> tuple[list[int], list[int]]:
     """The arcs and the corners (zeros of a line) whose counts do not fit those of the regions beside them."""
     if isinstance(found, Line):
-        beside = [[one.id for one in found.intervals if zero.id in one.ends] for zero in found.zeros]
+        beside = [[interval.id for interval in found.intervals if zero.id in interval.ends] for zero in found.zeros]
         return [], list(_misfits(corners, beside, regions))
     by_arc = {arc.id: [k for k in arc.regions if k is not None] for arc in found.arcs}
     # an arrangement that breaks a law may lack arcs: that is found elsewhere
-    by_corner = [[k for arc in one.arcs for k in by_arc.get(arc, ())] for one in found.corners]
-    by_corner = [near or _around(found, one.place) for near, one in zip(by_corner, found.corners, strict=True)]
+    by_corner = [[k for arc in corner.arcs for k in by_arc.get(arc, ())] for corner in found.corners]
+    by_corner = [near or _around(found, corner.place) for near, corner in zip(by_corner, found.corners, strict=True)]
     return list(_misfits(arcs, [*by_arc.values()], regions)), list(_misfits(corners, by_corner, regions))
 
 
@@ -111,7 +111,7 @@ def _around(found: Arrangement, place: tuple[int, int]) -> list[int]:
 def _misfits(points: Verdicts, beside: Sequence[Sequence[int]], regions: Verdicts) -> Iterator[int]:
     for k, (here, near) in enumerate(zip(points, beside, strict=False)):
         there = [regions[r] for r in near if r < len(regions)]
-        if here is not None and any(one is not None and not _fits(here, one) for one in there):
+        if here is not None and any(judged is not None and not _fits(here, judged) for judged in there):
             yield k
 
 

@@ -366,15 +366,15 @@ class _Articulated(Generic[S]):
 
     def _outwards(self) -> dict[str, S]:
         zero = self.system.scene.zero(INERTIAL)
-        found: dict[str, S] = {}
+        outwards: dict[str, S] = {}
         motions: list[tuple[Vector[S], Vector[S]]] = []
         for number, frame in enumerate(self.system.frames):
             angular, linear = motions[frame.parent] if frame.parent >= 0 else (zero, zero)
             linear = linear + angular.cross(frame.offset)
-            motion = self._accelerated(self.displacements[number], angular, linear, found)
+            motion = self._accelerated(self.displacements[number], angular, linear, outwards)
             angular, linear = frame.out(motion[0]), frame.out(motion[1])
-            motions.append(self._accelerated(self.turns[number], angular, linear, found))
-        return found
+            motions.append(self._accelerated(self.turns[number], angular, linear, outwards))
+        return outwards
 
     def _accelerated(
         self, joints: list[_Joint[S]], angular: Vector[S], linear: Vector[S], found: dict[str, S]

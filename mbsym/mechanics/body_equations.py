@@ -109,7 +109,7 @@ class _Joint:
 
 def _joints(scene: NamedScene, name: str) -> list[_Joint]:
     lower, motion, point = scene.lower, scene.motions[name], scene.motions[name].body.connection_point
-    found = []
+    joints = []
     for coordinate in scene.system.coordinates:
         turn = shift = scene.zero(name)
         for each, axis in zip(motion.turns, scene.axes[name], strict=True):
@@ -119,8 +119,8 @@ def _joints(scene: NamedScene, name: str) -> list[_Joint]:
         if any(coordinate in names(x) for x in point):
             shift = scene.out(name, scene.vector([differentiate(x, coordinate) for x in point], motion.offset.frame))
         if not (turn.vanishes() and shift.vanishes()):
-            found.append(_Joint(coordinate, turn, shift))
-    return found
+            joints.append(_Joint(coordinate, turn, shift))
+    return joints
 
 
 def _turned_back(algebra: Algebra[Node], rotation: Tensor[Node], tensor: Tensor[Node]) -> Tensor[Node]:
@@ -273,10 +273,10 @@ def _joint_acceleration(scene: NamedScene, name: str) -> Vector[Node]:
     """omega_k x sum v_t + sum over s < t of v_s x v_t + sum u_t x_t''."""
     motion = scene.motions[name]
     rates = [axis * turn.rate for turn, axis in zip(motion.turns, scene.axes[name], strict=True)]
-    found = motion.angular_velocity.cross(motion.relative_angular_velocity)
+    vector = motion.angular_velocity.cross(motion.relative_angular_velocity)
     for place, v in enumerate(rates):
         for w in rates[place + 1 :]:
-            found = found + v.cross(w)
+            vector = vector + v.cross(w)
     for turn, axis in zip(motion.turns, scene.axes[name], strict=True):
-        found = found + axis * turn.second_rate
-    return found
+        vector = vector + axis * turn.second_rate
+    return vector

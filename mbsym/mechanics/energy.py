@@ -82,7 +82,7 @@ def own_determinants(system: System, ring: Ring) -> list[Polynomial]:
     """
     done: set[str] = set()
     waiting: dict[str, list[str]] = {INERTIAL: []}
-    found = []
+    polynomials = []
     moving = _Energies(system, ring)
     for body in system.bodies:
         inside = {x for e in expressions((body.rotation, body.connection_point)) for x in names(e)}
@@ -95,12 +95,12 @@ def own_determinants(system: System, ring: Ring) -> list[Polynomial]:
         rows = moving.hessian(body.name, own)
         value = determinant(ring, rows)
         if not value.is_zero():
-            found.append(value)
+            polynomials.append(value)
             done.update(own)
     left = [name for name in system.coordinates if name not in done]
     if left:
         raise NoClosedForm(Message("no body alone tells [[names]]", names=", ".join(left)))
-    return found
+    return polynomials
 
 
 #: Rows and columns of the principal minors of a 3 x 3 matrix.

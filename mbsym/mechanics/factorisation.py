@@ -58,13 +58,13 @@ class Elimination:
 
     def backward(self, forward: Sequence[Scalar]) -> tuple[Scalar, ...]:
         """M^-1 b from L^-T b."""
-        found = [self._zero] * len(forward)
+        scalars = [self._zero] * len(forward)
         for k in reversed(self._order):
             value = forward[k] * self.inverses[k]
             for i, factor in self._factors[k].items():
-                value = value - factor * found[i]
-            found[k] = value
-        return tuple(found)
+                value = value - factor * scalars[i]
+            scalars[k] = value
+        return tuple(scalars)
 
 
 def solve(

@@ -127,27 +127,27 @@ def rates(algebra: Algebra, e: Sequence[Scalar], spin: Sequence[Scalar]) -> list
     """
     half = algebra.number(Fraction(1, 2))
     scalar, vector = e[0], e[1:]
-    found: list[Any] = [-(half * dot(vector, spin))]
+    scalars: list[Any] = [-(half * dot(vector, spin))]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        found.append(half * (scalar * spin[i] + vector[j] * spin[k] - vector[k] * spin[j]))
-    return found
+        scalars.append(half * (scalar * spin[i] + vector[j] * spin[k] - vector[k] * spin[j]))
+    return scalars
 
 
 def of_turns(algebra: Algebra, halves: Iterable[tuple[int, Scalar, Scalar]]) -> list[Scalar]:
     """e of turns one after the other, each about an axis (1, 2, 3) with the sine and cosine of half its angle."""
-    found: list[Any] = [algebra.one, algebra.zero, algebra.zero, algebra.zero]
+    scalars: list[Any] = [algebra.one, algebra.zero, algebra.zero, algebra.zero]
     for axis, sine, cosine in halves:
         turn = [cosine, *(sine if axis == k else algebra.zero for k in (1, 2, 3))]
-        found = product(found, turn)
-    return found
+        scalars = product(scalars, turn)
+    return scalars
 
 
 def product(a: Sequence[Scalar], b: Sequence[Scalar]) -> list[Scalar]:
     """a o b: what b turns first is turned by a, seen from the frame."""
-    found: list[Any] = [a[0] * b[0] - dot(a[1:], b[1:])]
+    scalars: list[Any] = [a[0] * b[0] - dot(a[1:], b[1:])]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         x, y = a[1:], b[1:]
-        found.append(a[0] * y[i] + x[i] * b[0] + x[j] * y[k] - x[k] * y[j])
-    return found
+        scalars.append(a[0] * y[i] + x[i] * b[0] + x[j] * y[k] - x[k] * y[j])
+    return scalars

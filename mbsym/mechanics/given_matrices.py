@@ -30,13 +30,13 @@ class GivenMatrices(NamedTuple, Generic[S]):
 
 def given_matrices(scene: Scene[S], linear: LinearModel) -> GivenMatrices[S]:
     """M, C, S, B as ``scene`` lowers formulas."""
-    size, given = len(linear.coordinates), linear.matrix("B")
-    inputs = 0 if given is None else len(given.rows[0])
+    size, matrix = len(linear.coordinates), linear.matrix("B")
+    inputs = 0 if matrix is None else len(matrix.rows[0])
 
     def lowered(key: str, columns: int) -> ScalarMatrix[S]:
-        found, algebra = linear.matrix(key), scene.algebra
-        if found is not None:
-            return ScalarMatrix(algebra, [[scene.lower(x) for x in row] for row in found.rows])
+        given_matrix, algebra = linear.matrix(key), scene.algebra
+        if given_matrix is not None:
+            return ScalarMatrix(algebra, [[scene.lower(x) for x in row] for row in given_matrix.rows])
         unit = key == "M"
         return ScalarMatrix.by_entry(
             algebra, size, columns, lambda i, j: algebra.one if unit and i == j else algebra.zero
@@ -44,8 +44,8 @@ def given_matrices(scene: Scene[S], linear: LinearModel) -> GivenMatrices[S]:
 
     def total(keys: Sequence[str]) -> ScalarMatrix[S]:
         first, *others = (lowered(key, size) for key in keys)
-        for one in others:
-            first = first + one
+        for other in others:
+            first = first + other
         return first
 
     if linear.of_first_order:

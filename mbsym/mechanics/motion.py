@@ -107,20 +107,20 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
     """
     system = scene.system
     values = motion_values(system) | {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
-    driven, images = [one.name for one in system.prescribed], relations(scene)
+    driven, images = [prescribed.name for prescribed in system.prescribed], relations(scene)
     if rates is None:
         if scene not in _CARRIED:
             own = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in turning(scene)}
             _CARRIED[scene] = carried(scene, own)
         return dict(_CARRIED[scene])
     moved = {name: scene.ring.substitute(scene.lower(values[name][1]), images) for name in driven}
-    found: dict[int, Polynomial] = {}
+    polynomials: dict[int, Polynomial] = {}
     for name, (first, ratio) in in_step(scene.ring, {**moved, **rates}).items():
         way = multiply(number(ratio), subtract(Name(first), values[first][0]))
         with suppress(Failure):  # a part of an angle that the ring does not know
             kind = "prescribed" if name in driven else "coordinate"
-            found |= _standing(scene, kind, name, add(values[name][0], way))
-    return found
+            polynomials |= _standing(scene, kind, name, add(values[name][0], way))
+    return polynomials
 
 
 def _standing(scene: Scene, kind: str, name: str, value: Expression) -> dict[int, Polynomial]:

@@ -95,9 +95,9 @@ def _inertia_wrench(
 
 def inertia_wrenches(scene: Scene[S]) -> dict[str, tuple[Vector[S], Vector[S]]]:
     """(F, N) of every body, in its axes: what its motion needs, the moment about O_k."""
-    found = Accelerations(scene)
+    accelerations = Accelerations(scene)
     return {
-        name: _inertia_wrench(scene, motion, found.angular[name], found.origin[name])
+        name: _inertia_wrench(scene, motion, accelerations.angular[name], accelerations.origin[name])
         for name, motion in scene.motions.items()
     }
 

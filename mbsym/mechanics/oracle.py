@@ -174,8 +174,8 @@ class Placement:
         self._centres: dict[str, Triple] = {}
         self._tensors: dict[str, list[Triple]] = {}
         self._spins: dict[str, tuple[list[Scalar], list[Scalar]]] = {}
-        one, zero = self.algebra.one, self.algebra.zero
-        identity = [[one if i == j else zero for j in range(3)] for i in range(3)]
+        series, zero = self.algebra.one, self.algebra.zero
+        identity = [[series if i == j else zero for j in range(3)] for i in range(3)]
         self.origin: dict[str, Triple] = {INERTIAL: [zero, zero, zero]}
         self.axes: dict[str, list[Triple]] = {INERTIAL: identity}
         for body in system.bodies:
@@ -206,8 +206,8 @@ class Placement:
 
     def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
         """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
-        one, zero = self.algebra.one, self.algebra.zero
-        rows = [[one if i == j == k else (c if i == j else zero) for j in range(3)] for i in range(3)]
+        series, zero = self.algebra.one, self.algebra.zero
+        rows = [[series if i == j == k else (c if i == j else zero) for j in range(3)] for i in range(3)]
         rows[(k + 1) % 3][(k + 2) % 3] = -s
         rows[(k + 2) % 3][(k + 1) % 3] = s
         return rows
@@ -489,12 +489,12 @@ class Oracle:
     def _gathered(self, own: Wrenches) -> Wrenches:
         """What acts on each body and on all that hangs on it, from what acts on each (nothing on those left out)."""
         nothing = [self.numbers.zero] * 3, [self.numbers.zero] * 3
-        found = {INERTIAL: nothing, **{body.name: own.get(body.name, nothing) for body in self.system.bodies}}
+        wrenches = {INERTIAL: nothing, **{body.name: own.get(body.name, nothing) for body in self.system.bodies}}
         for body in reversed(self.system.bodies):
-            pairs = zip(found[body.attached_to], found[body.name], strict=True)
+            pairs = zip(wrenches[body.attached_to], wrenches[body.name], strict=True)
             force, moment = ([a + b for a, b in zip(x, y, strict=True)] for x, y in pairs)
-            found[body.attached_to] = force, moment
-        return found
+            wrenches[body.attached_to] = force, moment
+        return wrenches
 
     def _applied(self, name: str) -> Scalar:
         total = self.numbers.zero

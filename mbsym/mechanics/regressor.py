@@ -56,16 +56,16 @@ def standard_parameters(scene: Scene[S]) -> tuple[Standard, ...]:
 def values(scene: Scene[S]) -> dict[Standard, S]:
     """The parameters that the description gives its bodies."""
     found = {}
-    for one in standard_parameters(scene):
-        own = mass_properties(scene, one.body)
-        if one.kind == "m":
-            found[one] = own.mass
-        elif one.kind in KINDS[6:9]:
-            found[one] = own.first_moment[KINDS.index(one.kind) - 6]
+    for standard_parameter in standard_parameters(scene):
+        own = mass_properties(scene, standard_parameter.body)
+        if standard_parameter.kind == "m":
+            found[standard_parameter] = own.mass
+        elif standard_parameter.kind in KINDS[6:9]:
+            found[standard_parameter] = own.first_moment[KINDS.index(standard_parameter.kind) - 6]
         else:
-            i, j = _PAIRS[KINDS.index(one.kind)]
-            found[one] = own.tensor[i][j]
-    return {one: scene.algebra.reduce(value) for one, value in found.items()}
+            i, j = _PAIRS[KINDS.index(standard_parameter.kind)]
+            found[standard_parameter] = own.tensor[i][j]
+    return {standard: scene.algebra.reduce(value) for standard, value in found.items()}
 
 
 #: A parameter of an elementary frame: its number in the articulation, and which of KINDS.
@@ -80,10 +80,10 @@ def regrouped(system: Articulation[S]) -> dict[Standard, dict[Slot, S]]:
     effect.
     """
     algebra, found = system.algebra, dict[Standard, dict[Slot, S]]()
-    for one in standard_parameters(system.scene):
-        shares = found[one] = {}
-        number = system.frame_of[one.body]
-        own = _unit(algebra, one.kind, system.frames[number].name)
+    for standard_parameter in standard_parameters(system.scene):
+        shares = found[standard_parameter] = {}
+        number = system.frame_of[standard_parameter.body]
+        own = _unit(algebra, standard_parameter.kind, system.frames[number].name)
         while number >= 0:
             frame = system.frames[number]
             stays, leaves = _split(algebra, frame, own)
@@ -174,21 +174,21 @@ class Energies(Generic[S]):
         return algebra.times(half, share) if i == j else share, algebra.zero
 
 
-def column(scene: Scene[S], found: Accelerations[S], one: Standard) -> tuple[S, ...]:
+def column(scene: Scene[S], found: Accelerations[S], standard: Standard) -> tuple[S, ...]:
     """The column of Y that belongs to a parameter, at the state and accelerations of the scene's environment."""
-    algebra, body = scene.algebra, one.body
+    algebra, body = scene.algebra, standard.body
     spin, angular = scene.motions[body].angular_velocity, found.angular[body]
     origin = found.origin[body] + scene.to_axes(base_acceleration(scene), body)
     unit = algebra.one
     force = moment = scene.zero(body)
-    if one.kind == "m":
+    if standard.kind == "m":
         force = origin
-    elif one.kind in KINDS[6:9]:
-        h = axis_vector(algebra, KINDS.index(one.kind) - 5, unit, body)
+    elif standard.kind in KINDS[6:9]:
+        h = axis_vector(algebra, KINDS.index(standard.kind) - 5, unit, body)
         force = angular.cross(h) + spin.cross(spin.cross(h))
         moment = h.cross(origin)
     else:
-        i, j = _PAIRS[KINDS.index(one.kind)]
+        i, j = _PAIRS[KINDS.index(standard.kind)]
         moment = _swapped(scene, angular, i, j) + spin.cross(_swapped(scene, spin, i, j))
     joints = Joints(scene)
     joints.need(body, force, moment)

@@ -36,12 +36,12 @@ Value = Fraction | Expression
 
 def given_values(system: System, overrides: Mapping[str, Value]) -> dict[str, Value]:
     """The numbers of a description's parameters, replaced by ``overrides``; relations are not used here."""
-    given: dict[str, Value] = {}
-    for one in system.parameters:
-        if one.value is not None:
-            exact = rational(one.value)
-            given[one.name] = one.value if exact is None else exact
-    return given | dict(overrides)
+    values: dict[str, Value] = {}
+    for parameter in system.parameters:
+        if parameter.value is not None:
+            exact = rational(parameter.value)
+            values[parameter.name] = parameter.value if exact is None else exact
+    return values | dict(overrides)
 
 
 def rational_values(values: Mapping[str, Value]) -> dict[str, Fraction]:
@@ -136,11 +136,13 @@ class Rest:
     def balanced(self) -> list[Polynomial]:
         """f + J^T lambda, with multipliers by their names."""
         ring, still = self.ring, dict(self.rates)
-        found = list(self.at_rest)
+        polynomials = list(self.at_rest)
         for row, name in zip(self.rows, self.multipliers, strict=True):
             for i, x in enumerate(row.partials):
-                found[i] = found[i] + ring.times(ring.substitute(x, still), ring.generator("prescribed", name))
-        return found
+                polynomials[i] = polynomials[i] + ring.times(
+                    ring.substitute(x, still), ring.generator("prescribed", name)
+                )
+        return polynomials
 
     @property
     def tied_in_motion(self) -> tuple[str, ...]:

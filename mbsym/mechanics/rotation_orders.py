@@ -58,8 +58,8 @@ def _orders(body: Body, spin: str) -> list[tuple[tuple[int, Expression], ...]]:
         others = [angle for _, angle in turns if angle_name(angle) != spin]
         left = [axis for axis in (1, 2, 3) if axis != first[0]]
         turns = (first, *zip(left, others, strict=True))
-    found = [order for order in permutations(turns) if order != given]
-    return sorted(found, key=lambda order: [angle_name(angle) for _, angle in order].index(spin))
+    orders = [order for order in permutations(turns) if order != given]
+    return sorted(orders, key=lambda order: [angle_name(angle) for _, angle in order].index(spin))
 
 
 def _spin(system: System, body: Body) -> str | None:

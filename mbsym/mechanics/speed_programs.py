@@ -71,7 +71,7 @@ def restoring(program: Program, system: System) -> dict[str, Node]:
     less e and e_i themselves; its square is left.
     """
     half = program.number(Fraction(1, 2))
-    found: dict[str, Node] = {}
+    nodes: dict[str, Node] = {}
     for vectors in orthonormal(system):
         for vector in vectors:
             totals = [program.zero] * len(vector)
@@ -80,8 +80,8 @@ def restoring(program: Program, system: System) -> dict[str, Node]:
                 gap = sum((program.input(a) * program.input(b) for a, b in pairs), program.zero)
                 gap = gap - program.one if other is vector else gap
                 totals = [x + gap * program.input(name) for x, name in zip(totals, other, strict=True)]
-            found |= {name: -(half * x) for name, x in zip(vector, totals, strict=True)}
-    return found
+            nodes |= {name: -(half * x) for name, x in zip(vector, totals, strict=True)}
+    return nodes
 
 
 def _residuals(form: SpeedForm, scene: Scene, inputs: Mapping[str, Node]) -> list[Node]:
@@ -109,5 +109,5 @@ def _residuals(form: SpeedForm, scene: Scene, inputs: Mapping[str, Node]) -> lis
 def _pairs(scene: Scene, name: str, force: Vector, moment: Vector) -> list[tuple[Node, Node]]:
     """Components of a wrench, each with the velocity on which it works."""
     motion = scene.motions[name]
-    found = [*zip(force, motion.velocity_origin, strict=True), *zip(moment, motion.angular_velocity, strict=True)]
-    return list(found)
+    pairs = [*zip(force, motion.velocity_origin, strict=True), *zip(moment, motion.angular_velocity, strict=True)]
+    return list(pairs)

@@ -74,7 +74,7 @@ def _speed(oracle: Oracle, speed: Speed) -> Series:
 
 def slopes(oracle: Oracle, speed: Speed) -> list[Scalar]:
     """du/dq'_i for every coordinate."""
-    found = []
+    scalars = []
     for name in oracle.system.coordinates:
         displaced = oracle.displaced(name)
         environment: dict[str, Any] = {
@@ -87,8 +87,8 @@ def slopes(oracle: Oracle, speed: Speed) -> list[Scalar]:
                 along = _sum(own[k][i].a * spin[k] for k in range(3))
                 environment[key] = _dual(oracle, oracle.numbers.zero, True, along)
         algebra = FirstOrder(oracle.numbers, environment)
-        found.append(Lowering(algebra, environment)(speed.form).b)
-    return found
+        scalars.append(Lowering(algebra, environment)(speed.form).b)
+    return scalars
 
 
 def _dual(oracle: Oracle, value: Scalar, moves: bool, rate: Scalar | None = None) -> Any:

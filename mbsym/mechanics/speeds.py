@@ -197,18 +197,18 @@ class SpeedForm:
         return best[1]
 
     def _speeds(self, kept: set[str]) -> list[Variable]:
-        found = []
+        speeds = []
         for body in self.system.bodies:
-            found += [self._variable(speed.name) for speed in body.speeds]
-            found += [self._velocity(name) for name in body.coordinates if name in kept]
-        return found
+            speeds += [self._variable(speed.name) for speed in body.speeds]
+            speeds += [self._velocity(name) for name in body.coordinates if name in kept]
+        return speeds
 
     def _position_names(self) -> list[str]:
-        found: list[str] = []
+        position_names: list[str] = []
         for body in self.system.bodies:
-            found += [name for name in body.coordinates if name not in self.replaced]
-            found += [name for vector in body.orientation for name in vector.components]
-        return found
+            position_names += [name for name in body.coordinates if name not in self.replaced]
+            position_names += [name for vector in body.orientation for name in vector.components]
+        return position_names
 
     def _variable(self, name: str) -> Variable:
         ring = self.ring
@@ -267,7 +267,7 @@ class SpeedForm:
     @cached_property
     def rates(self) -> dict[str, Polynomial]:
         """s' by name."""
-        ring, found = self.ring, dict(self.velocities)
+        ring, polynomials = self.ring, dict(self.velocities)
         given = self._given(ring, self._plain, only_vectors=False)
         scene = Scene(self.system, ring, self._in_speeds, ring, bodies=bool(self.oriented), given=given)
         for body in self.oriented:
@@ -278,8 +278,8 @@ class SpeedForm:
                     rates = [ring.reduce(x) for x in quaternions.rates(ring, values, list(spin))]
                 else:
                     rates = list(Vector(ring, (values[0], values[1], values[2]), body.name).cross(spin))
-                found |= dict(zip(one.components, rates, strict=True))
-        return found
+                polynomials |= dict(zip(one.components, rates, strict=True))
+        return polynomials
 
     @cached_property
     def _in_speeds(self) -> dict[str, Polynomial]:
@@ -334,14 +334,14 @@ class SpeedForm:
     @cached_property
     def _norms(self) -> list[Polynomial]:
         """|e|^2 - 1 of every quaternion."""
-        found = []
+        norms = []
         for body in self.by_quaternion:
             total = -self.ring.one
             for name in body.orientation[0].components:
                 e = self.ring.generator("coordinate", name)
                 total = total + e * e
-            found.append(total)
-        return found
+            norms.append(total)
+        return norms
 
     def shortened(self, x: Polynomial) -> Polynomial:
         """x modulo |e|^2 - 1 of quaternions, as far as that makes it shorter: m |e|^4 is m."""
@@ -368,15 +368,15 @@ class SpeedForm:
     def _cosines(self) -> dict[int, Polynomial]:
         ring = self.ring
         scene = Scene(self.system, ring, self._plain, ring) if self.by_vectors else None
-        found = {}
+        cosines = {}
         for body in self.by_vectors:
             assert scene is not None
             rows = direction_cosines(ring, scene.motions[body.name].turns, body.attached_to, body.name)
             for vector in body.orientation:
                 assert isinstance(vector, UnitVector)
                 for row, name in enumerate(vector.components):
-                    found[ring.index("coordinate", name)] = rows[row][vector.axis - 1]
-        return found
+                    cosines[ring.index("coordinate", name)] = rows[row][vector.axis - 1]
+        return cosines
 
     def occurring(self, formulas: Sequence[Polynomial]) -> tuple[Variable, ...]:
         """The positions on which formulas depend, and those on which their derivatives depend."""

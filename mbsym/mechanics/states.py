@@ -74,12 +74,12 @@ def rational_states(system: System, ring: Ring, count: int) -> Iterator[State]:
 
 def _tangents(system: System, ring: Ring, source: random.Random, fine: int = 1) -> dict[str, fmpq]:
     """Tangents of half angles; with quaternions sines and cosines of half angles are rational, too."""
-    found = {
+    tangents = {
         name: fmpq(source.randint(-9 * fine, 9 * fine) or fine, source.randint(fine, 9 * fine)) for name in ring.angles
     }
     if not any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation):
-        return found
-    quarters = {name: x / 10 for name, x in found.items()}  # no quarter turn of 45 degrees
+        return tangents
+    quarters = {name: x / 10 for name, x in tangents.items()}  # no quarter turn of 45 degrees
     return {name: 2 * x / (1 - x * x) for name, x in quarters.items()}
 
 

@@ -145,9 +145,9 @@ def angles_of(system: System) -> Iterator[Expression]:
 
 def half_angles(system: System) -> list[Expression]:
     """Half of every angle on the unperturbed motion of bodies told by quaternions, but for those that are 0 or turn."""
-    values = {one.coordinate: one.value for one in system.motion if one.rate == ZERO}
+    values = {entry.coordinate: entry.value for entry in system.motion if entry.rate == ZERO}
     zeros = dict.fromkeys(system.coordinates, ZERO) if values else {}
-    turning = {one.coordinate for one in system.motion if one.rate != ZERO}
+    turning = {entry.coordinate for entry in system.motion if entry.rate != ZERO}
     found = []
     for body in system.bodies if zeros else ():
         if any(isinstance(one, Quaternion) for one in body.orientation):
@@ -226,14 +226,14 @@ def _assumed(system: System, ring: Ring) -> Iterator[Any]:
     """What is declared or assumed to be positive, as polynomials: sqrt((a - b)**2) is b - a under a < b."""
     yield from (-ring.generator("parameter", one.name) for one in system.parameters if one.sign == "negative")
     lower = Lowering(ring, ring_environment(system, ring))
-    for one in system.assumptions:
-        if one.relation in ("<", ">") and all(map(_is_polynomial, (one.left, one.right))):
+    for assumption in system.assumptions:
+        if assumption.relation in ("<", ">") and all(map(_is_polynomial, (assumption.left, assumption.right))):
             try:
                 with ring.budget(ASSUMPTION_WORK):
-                    gap = lower(one.left) - lower(one.right)
+                    gap = lower(assumption.left) - lower(assumption.right)
             except NoClosedForm:
                 continue
-            yield gap if one.relation == ">" else -gap
+            yield gap if assumption.relation == ">" else -gap
 
 
 def _is_whole(power: Expression) -> bool:

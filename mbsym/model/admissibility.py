@@ -377,7 +377,7 @@ def known_values(system: System) -> dict[str, Fraction]:
         value = None if parameter.value is None else number_of(parameter.value, {})
         if value is not None:
             values[parameter.name] = value
-    waiting = {one.name: one.value for one in system.relations if one.name not in values}
+    waiting = {relation.name: relation.value for relation in system.relations if relation.name not in values}
     needs = {name: names(value) for name, value in waiting.items()}
     while ready := [name for name in waiting if needs[name] <= values.keys()]:
         for name in ready:

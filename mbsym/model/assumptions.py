@@ -85,27 +85,27 @@ class _Inequality:
 
 
 def _declared(system: System) -> list[_Inequality]:
-    found = [
+    inequalities = [
         _Inequality((("pi", Fraction(1)),), -_PI[0], True),
         _Inequality((("pi", Fraction(-1)),), _PI[1], True),
     ]
     for parameter in system.parameters:
         relation = RELATION_OF_SIGN.get(parameter.sign, "!=")
-        found += _of_form(LinearForm(((parameter.name, Fraction(1)),)), relation)
-    return found
+        inequalities += _of_form(LinearForm(((parameter.name, Fraction(1)),)), relation)
+    return inequalities
 
 
 def _equations(system: System) -> list[_Inequality]:
     """Relations and notation are equations: two inequalities each."""
-    found = []
-    definitions = [(one.name, one.value) for one in system.relations]
-    definitions += [(one.name, one.value) for one in system.notation]
+    equations = []
+    definitions = [(relation.name, relation.value) for relation in system.relations]
+    definitions += [(notation.name, notation.value) for notation in system.notation]
     for name, definition in definitions:
         value = linear_form(definition)
         if value is not None:
             gap = LinearForm(((name, Fraction(1)),)) + value.scaled(Fraction(-1))
-            found += [*_of_form(gap, ">="), *_of_form(gap, "<=")]
-    return found
+            equations += [*_of_form(gap, ">="), *_of_form(gap, "<=")]
+    return equations
 
 
 def _inequalities(left: Expression, relation: str, right: Expression) -> list[_Inequality]:
@@ -123,20 +123,20 @@ def _of_form(gap: LinearForm, relation: str) -> list[_Inequality]:
     return [_Inequality(tuple(sorted(coefficients.items())), gap.constant, relation in ("<", ">"))]
 
 
-def _impossible(given: list[_Inequality]) -> bool | None:
+def _impossible(inequalities: list[_Inequality]) -> bool | None:
     """Whether no numbers fulfil all of them; None where it would take too long to know."""
-    known = set(given)
+    known = set(inequalities)
     while True:
-        if any(one.false for one in known):
+        if any(inequality.false for inequality in known):
             return True
         growth = _growth(known)
         if not growth:
             return False
         name = min(growth, key=lambda x: (growth[x], x))
-        above = [one for one in known if one.of(name) > 0]
-        below = [one for one in known if one.of(name) < 0]
-        known = {one for one in known if one.of(name) == 0}
-        known |= {_without(name, one, other) for one in above for other in below}
+        above = [inequality for inequality in known if inequality.of(name) > 0]
+        below = [inequality for inequality in known if inequality.of(name) < 0]
+        known = {inequality for inequality in known if inequality.of(name) == 0}
+        known |= {_without(name, inequality, other) for inequality in above for other in below}
         if len(known) > MOST_INEQUALITIES:
             return None
 
@@ -144,8 +144,8 @@ def _impossible(given: list[_Inequality]) -> bool | None:
 def _growth(known: set[_Inequality]) -> dict[str, int]:
     """By name, how many inequalities more there are when it has been eliminated."""
     bounds: dict[str, list[int]] = {}
-    for one in known:
-        for name, coefficient in one.coefficients:
+    for inequality in known:
+        for name, coefficient in inequality.coefficients:
             bounds.setdefault(name, [0, 0])[coefficient > 0] += 1
     return {name: above * below - above - below for name, (above, below) in bounds.items()}
 

@@ -144,7 +144,7 @@ def index_names(kind: ClaimKind, system: System) -> tuple[tuple[str, ...], ...]:
         COORDINATES: system.claimable,
         STATES: (*system.coordinates, *system.velocities),
         INPUTS: system.input_names,
-        OUTPUTS: tuple(one.name for one in system.outputs),
+        OUTPUTS: tuple(output.name for output in system.outputs),
     }
     return (names[kind.rows], names[kind.columns])[: kind.entry]
 

@@ -126,7 +126,7 @@ def kind_name(constraint: Constraint) -> str:
 
 def listed(constraints: tuple[Constraint, ...]) -> Message:
     """``coincide 1, rolling 2``: each constraint by its kind and its number in the description."""
-    named = ((Message(kind_name(one)), number) for number, one in enumerate(constraints, start=1))
+    named = ((Message(kind_name(constraint)), number) for number, constraint in enumerate(constraints, start=1))
     return joined((Message("[[kind]] [[number]]", kind=kind, number=number) for kind, number in named), ", ")
 
 

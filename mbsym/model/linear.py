@@ -74,4 +74,4 @@ class LinearModel:
 
     def matrix(self, key: str) -> GivenMatrix | None:
         """The matrix of that key, or None where it was left out."""
-        return next((one for one in self.matrices if one.key == key), None)
+        return next((matrix for matrix in self.matrices if matrix.key == key), None)

@@ -121,7 +121,7 @@ def units_by_name(system: System, more: Iterable[tuple[str, str | None]] = ()) -
         *names,
         *(item.name for item in system.prescribed),
         *system.input_names,
-        *(one.name for one in system.outputs),
+        *(output.name for output in system.outputs),
     )
     found = chain(((name, unit_of(system, name)) for name in names), more)
     units: dict[str, str] = {}

@@ -53,7 +53,7 @@ class Scaling:
 
     @property
     def units(self) -> tuple[str, ...]:
-        factors = [one.factor for one in (self.time, *self.variables) if one is not None]
+        factors = [scaled.factor for scaled in (self.time, *self.variables) if scaled is not None]
         found = (node.name for factor in factors for node in walk(factor) if isinstance(node, Name))
         return tuple(dict.fromkeys(name for name in found if name not in CONSTANTS))
 

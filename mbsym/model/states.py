@@ -38,7 +38,7 @@ class InStates(System):
 
 def in_states(system: System, positions: tuple[str, ...], speeds: tuple[str, ...]) -> InStates:
     """The same system in these variables."""
-    same = {one.name: getattr(system, one.name) for one in fields(System)}
+    same = {field.name: getattr(system, field.name) for field in fields(System)}
     return InStates(**same, described=system, positions=positions, own_speeds=speeds)
 
 

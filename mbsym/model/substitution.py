@@ -111,12 +111,12 @@ def without_explicit_relations(system: System) -> System:
     Generalised forces go with the displacements that are left, Q_q + Q_s ds/dq.  Relations that hold prescribed
     quantities or t stay, and all that are not so.  What only tells of coordinates (claims, initial values) is left out.
     """
-    if any(isinstance(one, Relation) for one in system.constraints):
+    if any(isinstance(constraint, Relation) for constraint in system.constraints):
         system = _motions_alone(system)
     while (explicit := _explicit(system)) is not None:
         relation, name, value = explicit
-        kept = tuple(one for one in system.constraints if one is not relation)
-        free = [one for one in system.coordinates if one != name]
+        kept = tuple(constraint for constraint in system.constraints if constraint is not relation)
+        free = [coordinate for coordinate in system.coordinates if coordinate != name]
         system = _told_by(replace(system, constraints=kept), name, value, free)
     return system
 
@@ -145,7 +145,7 @@ def _motions_alone(system: System) -> System:
 
 def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
     """A relation, a coordinate and what that is by it; None where there is none."""
-    signs = {one.name: one.sign for one in system.parameters}
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
     still = {*system.coordinates, *signs}
     for relation in system.constraints:
         if not isinstance(relation, Relation) or not names(relation.left) | names(relation.right) <= still:

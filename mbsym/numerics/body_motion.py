@@ -120,13 +120,13 @@ def _rate(program: Program, outputs: Sequence[Node], names: Sequence[str], rates
         return []
     rows = jacobian(program, outputs, [program.input("t"), *map(program.input, names)])
     moving = [program.input(name) for name in rates]
-    found = []
+    nodes = []
     for row in rows:
         total = row[0]
         for partial, rate in zip(row[1:], moving, strict=True):
             total = total + partial * rate
-        found.append(total)
-    return found
+        nodes.append(total)
+    return nodes
 
 
 # Columns of a trajectory besides the state: inputs by their laws, and speeds, unit vectors and quaternions.
@@ -157,16 +157,16 @@ def speed_columns(scenario: Scenario, times: Any, states: Any) -> dict[str, Any]
     return dict(zip(formulas, found, strict=True))
 
 
-def input_columns(given: Scenario, times: Any, positions: Any, velocities: Any) -> dict[str, Any]:
+def input_columns(scenario: Scenario, times: Any, positions: Any, velocities: Any) -> dict[str, Any]:
     """u(t, q, q') of shape (m,) by name, at times (m,) with q and q' of shape (n, m)."""
-    if not given.inputs:
+    if not scenario.inputs:
         return {}
-    program = bound(given)
-    used = set().union(*(names(one.law) for one in given.inputs))
+    program = bound(scenario)
+    used = set().union(*(names(one.law) for one in scenario.inputs))
     lower = Lowering(program, {name: program.input(name) for name in (*sorted(used), "pi")})
-    nodes = tuple(lower(one.law) for one in given.inputs)
-    inputs = ("t", *given.system.coordinates, *given.system.velocities)
+    nodes = tuple(lower(one.law) for one in scenario.inputs)
+    inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
     points = np.vstack([times, np.asarray(positions, dtype=float), np.asarray(velocities, dtype=float)])
     values = arrays.kernel(Code(program, inputs, nodes))(points)
     shaped = (np.broadcast_to(value, np.shape(times)) for value in values)
-    return dict(zip((one.name for one in given.inputs), shaped, strict=True))
+    return dict(zip((one.name for one in scenario.inputs), shaped, strict=True))

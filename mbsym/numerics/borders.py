@@ -105,20 +105,20 @@ class LinearModel:
 
     # --- digits ---
 
-    def digits(self, given: Scenario) -> dict[str, Digits]:
+    def digits(self, scenario: Scenario) -> dict[str, Digits]:
         """Of every matrix that is not zero, by its letter, and of the ``eigenvalues``."""
-        inputs = self._floats(given)
+        inputs = self._floats(scenario)
         found = {}
-        masses = self._exact("M", given)[0][:: self.size + 1]
+        masses = self._exact("M", scenario)[0][:: self.size + 1]
         for name in self.shown:
-            exact, bits = self._exact(name, given)
+            exact, bits = self._exact(name, scenario)
             sizes = scales(name, exact, masses, self.alike)
             pairs = {s: compared(self._values(name, s, inputs), exact, full, sizes) for s, full in FULL.items()}
             kept, worst = ({s: pair[i] for s, pair in pairs.items()} for i in (0, 1))
             norm = max((abs(float(x.mid())) for x in exact), default=0.0)
-            condition = self._condition(name, given, sizes)
+            condition = self._condition(name, scenario, sizes)
             found[name] = Digits(kept, worst, kept[FLOAT64], condition, bits, norm)
-        eigenvalues = self._eigenvalue_digits(given)
+        eigenvalues = self._eigenvalue_digits(scenario)
         if eigenvalues is not None:
             found["eigenvalues"] = eigenvalues
         return found
@@ -127,23 +127,23 @@ class LinearModel:
         with np.errstate(all="ignore"):
             return np.asarray(self._kernels[scalar][name](inputs), dtype=float)
 
-    def _floats(self, given: Scenario) -> Any:
-        return np.array([float(given.parameters.get(name, Fraction(0))) for name in self.names[:-1]] + [np.pi])
+    def _floats(self, scenario: Scenario) -> Any:
+        return np.array([float(scenario.parameters.get(name, Fraction(0))) for name in self.names[:-1]] + [np.pi])
 
-    def _exact(self, name: str, given: Scenario) -> tuple[list[Any], int]:
+    def _exact(self, name: str, scenario: Scenario) -> tuple[list[Any], int]:
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                balls = self._truth[name](self._balls(given))
+                balls = self._truth[name](self._balls(scenario))
                 if tight(balls):
                     return balls, bits
         return balls, 0
 
-    def _balls(self, given: Scenario) -> list[Any]:
-        return [*(ball(given.parameters[name]) for name in self.names[:-1]), acb.pi().real]
+    def _balls(self, scenario: Scenario) -> list[Any]:
+        return [*(ball(scenario.parameters[name]) for name in self.names[:-1]), acb.pi().real]
 
-    def _condition(self, name: str, given: Scenario, sizes: Sequence[Any]) -> float:
+    def _condition(self, name: str, scenario: Scenario, sizes: Sequence[Any]) -> float:
         with ctx.workprec(512):
-            inputs = self._balls(given)
+            inputs = self._balls(scenario)
             base = self._truth[name](inputs)
             sums = [0.0] * len(base)
             for place in range(len(inputs) - 1):
@@ -157,10 +157,10 @@ class LinearModel:
             parts = [s / float(size) if size > 0 else inf for s, size in zip(sums, sizes, strict=True) if s]
         return max(parts, default=1.0)
 
-    def eigenvalues(self, given: Scenario, scalar: str) -> Any:
+    def eigenvalues(self, scenario: Scenario, scalar: str) -> Any:
         """Of the first-order system, in floating point throughout; None where M is singular to it."""
         n, kind = self.size, np.float32 if scalar == FLOAT32 else np.float64
-        inputs = self._floats(given)
+        inputs = self._floats(scenario)
         m, d, g, k, c = (self._values(x, scalar, inputs).astype(kind).reshape(n, n) for x in "MDGKN")
         first = self._first_order(m, d + g, k + c, kind)
         with np.errstate(all="ignore"):
@@ -179,10 +179,10 @@ class LinearModel:
             return None
         return first
 
-    def exact_eigenvalues(self, given: Scenario) -> list[Any] | None:
+    def exact_eigenvalues(self, scenario: Scenario) -> list[Any] | None:
         """Certified balls with multiplicity; None where a value is irrational or M singular."""
         try:
-            m, d, g, k, c = (self._rational(matrix, given) for matrix in self.linear.matrices)
+            m, d, g, k, c = (self._rational(matrix, scenario) for matrix in self.linear.matrices)
             inverse = m.inv()
         except NOT_THERE:
             return None
@@ -193,27 +193,27 @@ class LinearModel:
             first[i, n + i] = 1
             for j in range(n):
                 first[n + i, j], first[n + i, n + j] = -position[i, j], -velocity[i, j]
-        found = enclosures(first.charpoly().coeffs(), bits=256)
-        return [root.ball for root in found for _ in range(root.multiplicity)]
+        roots = enclosures(first.charpoly().coeffs(), bits=256)
+        return [root.ball for root in roots for _ in range(root.multiplicity)]
 
-    def _rational(self, matrix: Any, given: Scenario) -> Any:
+    def _rational(self, matrix: Any, scenario: Scenario) -> Any:
         numbers = Rationals({}, {})
-        carry = Carrier(self.ring, numbers, {name: numbers.number(x) for name, x in given.parameters.items()})
+        carry = Carrier(self.ring, numbers, {name: numbers.number(x) for name, x in scenario.parameters.items()})
         return fmpq_mat(self.size, self.size, [carry(x) for row in matrix.polynomials for x in row])
 
-    def _eigenvalue_digits(self, given: Scenario) -> Digits | None:
-        exact = self.exact_eigenvalues(given)
+    def _eigenvalue_digits(self, scenario: Scenario) -> Digits | None:
+        exact = self.exact_eigenvalues(scenario)
         if exact is None:
             return None
         kept = {}
         size = max(abs(x).mid() for x in exact)
         for scalar, full in FULL.items():
-            values = self.eigenvalues(given, scalar)
+            values = self.eigenvalues(scenario, scalar)
             kept[scalar] = 0.0 if values is None else _matched(values, exact, size, full)
-        condition = self._eigenvalue_condition(given, exact, size)
+        condition = self._eigenvalue_condition(scenario, exact, size)
         return Digits(kept, kept, kept[FLOAT64], condition, 256, float(size))
 
-    def _eigenvalue_condition(self, given: Scenario, exact: Sequence[Any], size: Any) -> float:
+    def _eigenvalue_condition(self, scenario: Scenario, exact: Sequence[Any], size: Any) -> float:
         """max_i sum_j |d lambda_i/dp_j p_j| / max |lambda|, over the parameters: no unit and no formula enters.
 
         By differences in many bits; where eigenvalues coincide it is of the order of one over the square root of the
@@ -223,10 +223,10 @@ class LinearModel:
         if not largest > 0:
             return inf
         sums = [0.0] * len(exact)
-        for name, value in given.parameters.items():
+        for name, value in scenario.parameters.items():
             if not value:
                 continue
-            moved = self.exact_eigenvalues(changed(given, **{name: value * (1 + NUDGE)}))
+            moved = self.exact_eigenvalues(changed(scenario, **{name: value * (1 + NUDGE)}))
             if moved is None:
                 return inf
             left = list(moved)
@@ -237,43 +237,43 @@ class LinearModel:
 
     # --- verdicts ---
 
-    def judged(self, given: Scenario) -> Judged:
+    def judged(self, scenario: Scenario) -> Judged:
         """The exact verdict, and what floats say."""
         floats: dict[str, str] = {}
         for scalar in FULL:
-            values = self.eigenvalues(given, scalar)
+            values = self.eigenvalues(scenario, scalar)
             if values is None:
                 floats[scalar] = Word.UNDECIDED
                 continue
             size, growth = np.max(np.abs(values)), np.max(values.real)
             limit = ON_THE_AXIS * size
             floats[scalar] = Word.UNSTABLE if growth > limit else Word.ASYMPTOTIC if growth < -limit else NO_GROWTH
-        return Judged(self.verdict_of(given.parameters), floats)
+        return Judged(self.verdict_of(scenario.parameters), floats)
 
-    def borders(self, given: Scenario, overrides: dict[str, Expression]) -> Iterator[Ladder]:
+    def borders(self, scenario: Scenario, overrides: dict[str, Expression]) -> Iterator[Ladder]:
         """For every free parameter the nearest value where the verdict changes, approached from both sides."""
-        for name in free_parameters(given):
-            inside = self._bracket(given, overrides, name)
+        for name in free_parameters(scenario):
+            inside = self._bracket(scenario, overrides, name)
             if inside is None:
                 continue
             low, high = inside
             border = (low + high) / 2
-            value = float(given.parameters[name] * border)
+            value = float(scenario.parameters[name] * border)
             for side, sign in (("from below", -1), ("from above", 1)):
                 probes = []
                 for size in APPROACH:
-                    there = scaled(given, overrides, name, border * (1 + sign * Fraction(f"{size:e}")))
+                    there = scaled(scenario, overrides, name, border * (1 + sign * Fraction(f"{size:e}")))
                     probes.append(Probe(size, there, there.state))
                 yield Ladder(BORDER, f"{name} -> {value:.6g} {side}", tuple(probes))
 
     def _bracket(
-        self, given: Scenario, overrides: dict[str, Expression], name: str
+        self, scenario: Scenario, overrides: dict[str, Expression], name: str
     ) -> tuple[Fraction, Fraction] | None:
         """Two factors 1e-20 apart with different verdicts, both of them decided; the nearest to 1."""
 
         def word(factor: Fraction) -> str:
             try:
-                return self.verdict_of(scaled(given, overrides, name, factor).parameters).word
+                return self.verdict_of(scaled(scenario, overrides, name, factor).parameters).word
             except (Incomplete, ValueError, ZeroDivisionError):
                 return Word.UNDECIDED
 

@@ -69,23 +69,23 @@ class Compensation:
     cost: float
 
 
-def states_about(given: Scenario, inputs: Sequence[str]) -> list[list[float]] | None:
+def states_about(scenario: Scenario, inputs: Sequence[str]) -> list[list[float]] | None:
     """Values of the inputs (t, q, q') at the start and at two places about it, where everything moves.
 
     Positions are shifted by parts of a radian or of themselves, velocities by parts of the largest there is.
     None for inputs that a scenario does not have.
     """
-    system = given.system
+    system = scenario.system
     if isinstance(system, InStates):
         return None
-    state = map(float, (*given.positions, *given.velocities))
+    state = map(float, (*scenario.positions, *scenario.velocities))
     start = dict(zip((*system.coordinates, *system.velocities), state, strict=True)) | {"t": 0.0}
     start |= {name: value_of(name) for name in inputs if place_of(name) is not None}
     if any(name not in start for name in inputs):
         return None
     angles = angle_denominators(system)
-    fastest = max((abs(float(x)) for x in given.velocities), default=0.0)
-    rate = fastest or max((abs(float(x)) for _, x in given.prescribed.values()), default=0.0) or 1.0
+    fastest = max((abs(float(x)) for x in scenario.velocities), default=0.0)
+    rate = fastest or max((abs(float(x)) for _, x in scenario.prescribed.values()), default=0.0) or 1.0
     found = []
     for turn in (0, 1, 2):
         moved = dict(start)
@@ -125,9 +125,9 @@ def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequenc
     return Compensation(better, before, after, len(chosen), better.operations / max(1, code.operations))
 
 
-def compensated_code(given: Scenario, code: Code, outputs: Sequence[int]) -> Compensation | None:
+def compensated_code(scenario: Scenario, code: Code, outputs: Sequence[int]) -> Compensation | None:
     """``compensation`` at the states about a scenario's start."""
-    states = states_about(given, code.inputs)
+    states = states_about(scenario, code.inputs)
     return None if states is None else compensation(code, states, outputs)
 
 

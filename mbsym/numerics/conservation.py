@@ -127,12 +127,12 @@ def confronted(
         return Conservation(quantity, Standing.UNDECIDED, float("nan"), scale, Doubt.NO_VALUES, measure)
     change = float(np.max(np.abs(values - values[0]))) / scale
     doubt = doubt if standing is Standing.UNDECIDED else None
-    found = Conservation(quantity, standing, change, scale, doubt, measure)
+    conservation = Conservation(quantity, standing, change, scale, doubt, measure)
     if standing is Standing.VERIFIED and len(values) < 2:
-        return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.NO_MOTION)
+        return replace(conservation, standing=Standing.UNDECIDED, doubt=Doubt.NO_MOTION)
     if standing is Standing.VERIFIED and not change <= CONTRADICTION:
-        return replace(found, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
-    return found
+        return replace(conservation, standing=Standing.UNDECIDED, doubt=Doubt.CONTRADICTED)
+    return conservation
 
 
 def swayed(code: Code, place: int, points: Any, errors: Sequence[float]) -> float:
@@ -183,9 +183,9 @@ def energy_standing(
 
 def _power(dynamics: Dynamics, rate: EnergyRate, state: Sequence[float]) -> list[arb]:
     """The terms of dh/dt at (t, q, q'), from the parameters themselves: as balls, where their values are rounded."""
-    given = dynamics.scenario
-    balls = {name: _ball(value) for name, value in given.parameters.items()} | {"pi": arb.pi()}
-    for name, (initial, speed) in given.prescribed.items():
+    scenario = dynamics.scenario
+    balls = {name: _ball(value) for name, value in scenario.parameters.items()} | {"pi": arb.pi()}
+    for name, (initial, speed) in scenario.prescribed.items():
         balls[name] = _ball(initial) + _ball(speed) * arb(state[0])
     balls |= dict(zip(dynamics.inputs, map(arb, state), strict=True))
     return enclosures(Code(rate.program, tuple(balls), rate.terms), tuple(balls.values()), BITS)

@@ -377,7 +377,7 @@ class Constraints:
 
     def _places(self, state: Any) -> list[Any]:
         """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
-        source, n, found = np.random.default_rng(5), self.size, [state]
+        source, n, places = np.random.default_rng(5), self.size, [state]
         velocities = state[self.places :]
         weights = self.weights(0.0, state)
         rows = self.at(0.0, state).partials
@@ -390,8 +390,8 @@ class Constraints:
                 way -= weights @ np.linalg.lstsq(rows @ weights, rows @ way, rcond=CERTAIN)[0]
             place = self.led(0.0, self.displaced(0.0, state, way))
             if place is not None and self._orthogonalised(0.0, place)[1] > CERTAIN:
-                found.append(place)
-        return found
+                places.append(place)
+        return places
 
     def led(self, t: float, state: Any) -> Any | None:
         """A state whose position is led to the constraints by Newton's method, each step the shortest; None if not."""
@@ -446,12 +446,12 @@ class Constraints:
         is measured by NEAREST times its value at the start.
         """
         state = np.array([float(x) for x in self._scenario.state])
-        found = self.dynamics
+        dynamics = self.dynamics
         rows = [self.at(0.0, x).partials @ self.weights(0.0, x) for x in self._places(state)]
-        lengths = np.max([np.sum(one**2, axis=1) for one in rows], axis=0)
-        numbers_of = [self.names.index(row.name) for row in found.rows]
-        sizes = np.array([max(lengths[numbers_of[k]] for k in owners) for owners in found.owners])
-        pivots = substituted(found.program, found.pivots[self.size :], numbers := bound(self._scenario))
+        lengths = np.max([np.sum(row**2, axis=1) for row in rows], axis=0)
+        numbers_of = [self.names.index(row.name) for row in dynamics.rows]
+        sizes = np.array([max(lengths[numbers_of[k]] for k in owners) for owners in dynamics.owners])
+        pivots = substituted(dynamics.program, dynamics.pivots[self.size :], numbers := bound(self._scenario))
         values = arrays.kernel(Code(numbers, self.inputs, tuple(pivots)))(np.concatenate(([0.0], state)))
         with np.errstate(all="ignore"):
             usual = float(np.sum(sizes / values))

@@ -274,12 +274,12 @@ def _determinant(rows: Sequence[Sequence[arb]]) -> arb:
 
 def _of_angles(body: Body, angles: Sequence[arb]) -> list[list[arb]]:
     """R^jk of the angles of a joint with turns by names."""
-    found = [[arb(int(i == j)) for j in range(3)] for i in range(3)]
+    of_angles = [[arb(int(i == j)) for j in range(3)] for i in range(3)]
     for (axis, _), angle in zip(body.rotation.turns(), angles, strict=True):
         i, j = axis % 3, (axis + 1) % 3
         s, c = angle.sin(), angle.cos()
-        found[i], found[j] = (
-            [c * a + s * b for a, b in zip(found[i], found[j], strict=True)],
-            [c * b - s * a for a, b in zip(found[i], found[j], strict=True)],
+        of_angles[i], of_angles[j] = (
+            [c * a + s * b for a, b in zip(of_angles[i], of_angles[j], strict=True)],
+            [c * b - s * a for a, b in zip(of_angles[i], of_angles[j], strict=True)],
         )
-    return found
+    return of_angles

@@ -118,10 +118,10 @@ class Dynamics:
         """
         if self.constraints is None:
             return None
-        found = self.constraints.dynamics
-        fresh, pivots = self._specialised, found.pivots[self.constraints.size :]
-        nodes = [*found.position_correction, *found.velocity_correction, *pivots]
-        made = substituted(found.program, nodes, fresh)
+        dynamics = self.constraints.dynamics
+        fresh, pivots = self._specialised, dynamics.pivots[self.constraints.size :]
+        nodes = [*dynamics.position_correction, *dynamics.velocity_correction, *pivots]
+        made = substituted(dynamics.program, nodes, fresh)
         nearness = fresh.zero
         for size, pivot in zip(self.constraints.nearest, made[self.dimension :], strict=True):
             nearness = nearness + fresh.number(size) * fresh.reciprocal(pivot)
@@ -131,8 +131,8 @@ class Dynamics:
     def multipliers(self) -> Code:
         """(t, q, q') -> lambda of the rows; J^T lambda are the generalised forces of the constraints."""
         assert self.constraints is not None
-        found = self.constraints.dynamics
-        return self._code(substituted(found.program, found.multipliers, self._specialised))
+        dynamics = self.constraints.dynamics
+        return self._code(substituted(dynamics.program, dynamics.multipliers, self._specialised))
 
     @cached_property
     def features(self) -> Features:
@@ -154,9 +154,9 @@ class Dynamics:
         sliding = sides.index(SLIDING) if SLIDING in sides else None
         if sliding not in self._on_sides:
             self._on_sides[sliding] = Frozen(self, sliding)
-        found = self._on_sides[sliding]
-        found.take(sides)
-        return found
+        frozen = self._on_sides[sliding]
+        frozen.take(sides)
+        return frozen
 
     @cached_property
     def pivots(self) -> Code:
@@ -236,8 +236,8 @@ class Dynamics:
     def energies(self) -> Code:
         """(t, q, q') -> (T - U, T2 - T0 - U), T of the motion in inertial space."""
         found, fresh = self._programs, self._specialised
-        wanted = [found.energy, found.kinetic_energy, found.force_function]
-        energy, kinetic, force = substituted(found.program, wanted, fresh)
+        nodes = [found.energy, found.kinetic_energy, found.force_function]
+        energy, kinetic, force = substituted(found.program, nodes, fresh)
         lagrangian = kinetic + force
         momenta = gradient(fresh, lagrangian, [fresh.input(name) for name in self.system.velocities])
         return self._code([energy, self._jacobi(lagrangian, momenta)])
@@ -316,20 +316,20 @@ class Frozen(Dynamics):
             place += length
 
     def _code(self, nodes: list[Node], thorough: bool = False) -> Code:
-        found = super()._code(nodes, thorough)
-        return Code(found.program, found.inputs, held(found, self._signs))
+        code = super()._code(nodes, thorough)
+        return Code(code.program, code.inputs, held(code, self._signs))
 
     @cached_property
     def right_hand_side(self) -> Code:
         """(t, q, q') -> (q', q'') on this side of every switch."""
-        found = self.whole.right_hand_side
-        return Code(found.program, found.inputs, held(found, self._signs))
+        code = self.whole.right_hand_side
+        return Code(code.program, code.inputs, held(code, self._signs))
 
     @cached_property
     def mass_matrix(self) -> Code:
         """(t, q, q') -> M row by row, on this side of every switch."""
-        found = self.whole.mass_matrix
-        return Code(found.program, found.inputs, held(found, self._signs))
+        code = self.whole.mass_matrix
+        return Code(code.program, code.inputs, held(code, self._signs))
 
     @cached_property
     def holding(self) -> Code:
@@ -341,10 +341,10 @@ class Frozen(Dynamics):
 
     @cached_property
     def _signs(self) -> Standing:
-        found = dict(self._held)
+        signs = dict(self._held)
         if self.sliding is not None:
-            found[self.whole.switches.outputs[self.sliding].number] = self.holding.outputs[0]
-        return found
+            signs[self.whole.switches.outputs[self.sliding].number] = self.holding.outputs[0]
+        return signs
 
     @property
     def _held(self) -> dict[int | tuple[int, Curve], Any]:

@@ -167,7 +167,7 @@ def _with_forces(
     """M q'' - f, and the same where q'' is zero."""
     resting = {acceleration_name(name): program.number(0) for name in system.coordinates}
     both = [residuals(Scene(system, program, x, ring)) for x in (environment, {**environment, **resting})]
-    needed, applied = ([found[name] for name in system.coordinates] for found in both)
+    needed, applied = ([nodes[name] for name in system.coordinates] for nodes in both)
     return needed, applied
 
 

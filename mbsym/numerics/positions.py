@@ -149,21 +149,21 @@ def positions(scenario: Scenario, times: Any, states: Any) -> Positions | None:
 
 def _points(system: System, frame: str) -> list[Point]:
     """The origin, joints, mass centres that are not there, and tips of axes of bodies with inertia."""
-    found = [Point(frame, ORIGIN)]
+    points = [Point(frame, ORIGIN)]
     for body in system.bodies:
         if frame not in system.path(body.name)[:-1] and frame != INERTIAL:
             continue
-        found.append(Point(body.name, JOINT))
+        points.append(Point(body.name, JOINT))
         if body.mass != ZERO and any(x != ZERO for x in body.mass_centre):
-            found.append(Point(body.name, MASS_CENTRE))
+            points.append(Point(body.name, MASS_CENTRE))
         if body.inertia is not None:
-            found += [Point(body.name, AXIS, axis) for axis in (1, 2, 3)]
-    there = {point.body for point in found[1:]}
+            points += [Point(body.name, AXIS, axis) for axis in (1, 2, 3)]
+    there = {point.body for point in points[1:]}
     for number, ends in _tied(system).items():
-        for side, one in enumerate(ends):
-            if one.body in there and any(x != ZERO for x in one.position):
-                found.append(Point(one.body, END, end=(number, side)))
-    return found
+        for side, end in enumerate(ends):
+            if end.body in there and any(x != ZERO for x in end.position):
+                points.append(Point(end.body, END, end=(number, side)))
+    return points
 
 
 def _tied(system: System) -> dict[int, tuple[PointOfBody, PointOfBody]]:
@@ -238,7 +238,7 @@ def _own_axes(system: System, frame: str, points: Sequence[Point], places: Any) 
         return {}
     links, _ = _lines(system, frame, [points[i] for i in plain])
     lined = {end for link in links if _length(places, [plain[k] for k in link]) > STILL * size for end in link}
-    found = {}
+    own_axes = {}
     for k, i in enumerate(plain):
         name, kind = points[i].body, points[i].kind
         angles = {x for angle in system.body(name).rotation.angles for x in names(angle)}
@@ -246,8 +246,8 @@ def _own_axes(system: System, frame: str, points: Sequence[Point], places: Any) 
         if kind == JOINT and free and k not in lined and np.max(np.ptp(places[i], axis=1)) <= STILL * size:
             carried = [j for j in plain if name in system.path(points[j].body)]
             reach = max(_length(places, (i, j)) for j in carried)
-            found[name] = BEYOND * reach if reach > STILL * size else size / 4
-    return found
+            own_axes[name] = BEYOND * reach if reach > STILL * size else size / 4
+    return own_axes
 
 
 def _length(places: Any, pair: Sequence[int]) -> float:
@@ -301,8 +301,8 @@ def _lines(
 
 def _ties_to_origin(system: System, frame: str) -> bool:
     """Whether a rod leads to the origin of the frame."""
-    ends = (one for k, pair in _tied(system).items() if isinstance(system.constraints[k], Distance) for one in pair)
-    return any(one.body == frame and all(x == ZERO for x in one.position) for one in ends)
+    ends = (point for k, pair in _tied(system).items() if isinstance(system.constraints[k], Distance) for point in pair)
+    return any(end.body == frame and all(x == ZERO for x in end.position) for end in ends)
 
 
 def _extent(found: Positions) -> float:

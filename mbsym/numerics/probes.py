@@ -166,15 +166,15 @@ def singular(given: Scenario, found: Singularities, units: SceneUnits) -> Iterat
 
     One coordinate approaches it; the others are where the scenario has them, or where the set wants them.
     """
-    for one in found.sets:
-        movable = [name for name in one.names if name in given.system.coordinates]
-        for number in range(min(len(one.places), MOST_PLACES)):
+    for singular_set in found.sets:
+        movable = [name for name in singular_set.names if name in given.system.coordinates]
+        for number in range(min(len(singular_set.places), MOST_PLACES)):
             if movable:
-                yield _approach(given, one, number, movable[0], units)
+                yield _approach(given, singular_set, number, movable[0], units)
 
 
-def _approach(given: Scenario, one: SingularSet, number: int, moving: str, units: SceneUnits) -> Ladder:
-    place, names_ = one.places[number], given.system.coordinates
+def _approach(given: Scenario, singular_set: SingularSet, number: int, moving: str, units: SceneUnits) -> Ladder:
+    place, names_ = singular_set.places[number], given.system.coordinates
     start = [*(place.get(name, x) for name, x in zip(names_, given.positions, strict=True)), *_velocities(given, units)]
     k = names_.index(moving)
     probes = []
@@ -182,14 +182,14 @@ def _approach(given: Scenario, one: SingularSet, number: int, moving: str, units
         state = list(start)
         state[k] -= _decimal(size) * units.sizes[k]
         probes.append(Probe(size, given, tuple(state)))
-    return Ladder(SINGULAR, subject(one, number, moving), tuple(probes))
+    return Ladder(SINGULAR, subject(singular_set, number, moving), tuple(probes))
 
 
-def subject(one: SingularSet, number: int, moving: str) -> str:
+def subject(singular_set: SingularSet, number: int, moving: str) -> str:
     """``theta -> pi/2``, ``a -> 1.5708 at b = 3.14159``."""
-    if one.values:
-        return f"{moving} -> {one.values[number].label}"
-    place = {name: f"{float(x):.6g}" for name, x in one.places[number].items()}
+    if singular_set.values:
+        return f"{moving} -> {singular_set.values[number].label}"
+    place = {name: f"{float(x):.6g}" for name, x in singular_set.places[number].items()}
     others = ", ".join(f"{name} = {x}" for name, x in place.items() if name != moving)
     return f"{moving} -> {place[moving]} at {others}"
 

@@ -63,7 +63,7 @@ class Incomplete(Exception):
         parts = []
         if lack.names:
             parts.append("no value for " + ", ".join(lack.names))
-        super().__init__("; ".join([*parts, *(one.text for one in lack.contradictions)]))
+        super().__init__("; ".join([*parts, *(contradiction.text for contradiction in lack.contradictions)]))
         self.lack = lack
 
 
@@ -136,10 +136,10 @@ def scenario(
         if name in overrides:
             text = Message("'[[name]]' is a declared variable, and positions are taken in coordinates here", name=name)
             numbers.contradictions.append(Contradiction("misplaced-name", name, text))
-    given = initial_values(system, overrides)
+    values = initial_values(system, overrides)
     positions, velocities = [], []
     for name in system.coordinates:
-        entry = given[name]
+        entry = values[name]
         if entry.position is None and state:
             missing.append(f"{name} (its initial position)")
         positions.append(numbers.value(name, entry.position))
@@ -147,9 +147,9 @@ def scenario(
     prescribed = _prescribed(system, numbers)
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
-    typed = {name: entry.position for name, entry in given.items() if entry.position is not None}
+    typed = {name: entry.position for name, entry in values.items() if entry.position is not None}
     became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
-    unstated = tuple(velocity_name(name) for name in system.coordinates if given[name].velocity is None)
+    unstated = tuple(velocity_name(name) for name in system.coordinates if values[name].velocity is None)
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
 
 
@@ -170,8 +170,8 @@ def contradictions_of(system: System, overrides: Mapping[str, Expression]) -> tu
 
 def own_values(system: System, overrides: Mapping[str, Expression]) -> dict[str, Expression]:
     """What the description and the overrides say of declared variables at t = 0."""
-    given = {one.coordinate: one.position for one in system.start if one.position is not None}
-    return given | {name: overrides[name] for name in system.variables if name in overrides}
+    expressions = {value.coordinate: value.position for value in system.start if value.position is not None}
+    return expressions | {name: overrides[name] for name in system.variables if name in overrides}
 
 
 def _with_own(
@@ -187,38 +187,38 @@ def _with_own(
     """The scenario of an initial state in declared variables."""
     from mbsym.numerics.declared_start import declared_start  # few descriptions have any
 
-    given = initial_values(system, overrides)
+    given_values = initial_values(system, overrides)
     values = {name: numbers.value(name, value) for name, value in own.items()}
 
     def told(name: str, value: Expression | None) -> Fraction | None:
         return None if value is None else numbers.value(name, value)
 
-    positions = {name: told(name, given[name].position) for name in system.coordinates}
-    velocities = {name: told(velocity_name(name), given[name].velocity) for name in system.coordinates}
+    positions = {name: told(name, given_values[name].position) for name in system.coordinates}
+    velocities = {name: told(velocity_name(name), given_values[name].velocity) for name in system.coordinates}
     prescribed = _prescribed(system, numbers)
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     known = numbers.known | {name: initial for name, (initial, _) in prescribed.items()}
-    found = declared_start(system, values, positions, velocities, known)
-    wrong = [Contradiction("conflicting-values", name, text) for name, text in found.wrong]
-    singular = bool(found.state) and found.velocities is None
+    start = declared_start(system, values, positions, velocities, known)
+    wrong = [Contradiction("conflicting-values", name, text) for name, text in start.wrong]
+    singular = bool(start.state) and start.velocities is None
     if singular and not declared:
         text = "in the initial state angles are singular: their velocities do not follow from the speeds"
         hint = "other axes of 'rotation' are regular there; mbsym simulate begins there in declared variables"
         wrong.append(Contradiction("singular-start", next(iter(own)), text, hint))
-    if found.missing or wrong:
-        raise Incomplete(Lack(found.missing, tuple(wrong)))
+    if start.missing or wrong:
+        raise Incomplete(Lack(start.missing, tuple(wrong)))
     became = tuple(Driven(one.name, laws.get(one.name, one.held), one.name in laws) for one in inputs)
-    rates = found.velocities or (arb(0),) * len(positions)
+    rates = start.velocities or (arb(0),) * len(positions)
     return Scenario(
         system=system,
         parameters=numbers.known,
-        positions=tuple(map(rounded, found.positions)),
+        positions=tuple(map(rounded, start.positions)),
         velocities=tuple(map(rounded, rates)),
         prescribed=prescribed,
         inputs=became,
-        unstated=found.unstated,
-        declared=tuple(map(rounded, found.state)),
+        unstated=start.unstated,
+        declared=tuple(map(rounded, start.state)),
         singular=singular,
     )
 
@@ -263,13 +263,13 @@ class _Numbers:
 
 def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _Numbers, assumed: bool) -> None:
     """Values given, and those that follow from relations; contradictions between the two, to signs and assumptions."""
-    given = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
-    typed = {name for name, value in given.items() if value is not None}
+    expressions = {p.name: overrides.get(p.name, p.value) for p in system.parameters}
+    typed = {name for name, value in expressions.items() if value is not None}
     # A relation overrules the number in the file where what it is made of was overridden; else they must agree.
     stale = overruled(system, overrides)
-    for _ in range(len(given) + 1):
+    for _ in range(len(expressions) + 1):
         before = len(numbers.settled)
-        for name, value in given.items():
+        for name, value in expressions.items():
             if value is not None and name not in numbers.settled and name not in stale and numbers.ready(value):
                 numbers.define(name, value)
         for relation in system.relations:
@@ -304,13 +304,13 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             numbers.contradictions.append(wrong)
     for assumption, left, right in broken(system, numbers.known, AGREEMENT, _evaluated) if assumed else ():
         used = names(assumption.left) | names(assumption.right)
-        name = next((one for one in overrides if one in used), min(used, default=""))
+        name = next((override for override in overrides if override in used), min(used, default=""))
         written = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
-        told = Message(
+        message = Message(
             "the values break the assumption [[assumption]]: [[left]] against [[right]]",
             assumption=written, left=f"{float(left):.12g}", right=f"{float(right):.12g}",
         )  # fmt: skip
-        numbers.contradictions.append(Contradiction("broken-assumption", name, told))
+        numbers.contradictions.append(Contradiction("broken-assumption", name, message))
 
 
 def _evaluated(expression: Expression, known: Mapping[str, Fraction]) -> Fraction | None:
@@ -324,15 +324,15 @@ def _evaluated(expression: Expression, known: Mapping[str, Fraction]) -> Fractio
 
 def initial_values(system: System, overrides: Mapping[str, Expression]) -> dict[str, InitialValue]:
     """What the description and the overrides say of every coordinate at t = 0."""
-    given = {entry.coordinate: entry for entry in system.initial}
+    values = {entry.coordinate: entry for entry in system.initial}
     for name in system.coordinates:
-        entry = given.get(name, InitialValue(name))
+        entry = values.get(name, InitialValue(name))
         if name in overrides:
             entry = replace(entry, position=overrides[name])
         if velocity_name(name) in overrides:
             entry = replace(entry, velocity=overrides[velocity_name(name)])
-        given[name] = entry
-    return given
+        values[name] = entry
+    return values
 
 
 def exact(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
@@ -446,8 +446,8 @@ class Specialised(Program):
             return rounded(arb.pi() * rationals.ball(turns))
 
     def square_root(self, x: Node) -> Node:
-        found = super().square_root(x)
-        return found if self._constant(found) is not None else self._folded("sqrt", x, found)
+        node = super().square_root(x)
+        return node if self._constant(node) is not None else self._folded("sqrt", x, node)
 
     def function(self, name: str, x: Node) -> Node:
         return self._folded(name, x, super().function(name, x))

@@ -55,15 +55,15 @@ def separated(dynamics: Dynamics) -> tuple[Part, ...]:
             for j in range(n):
                 if linked[i] != linked[j] and not masses.program.vanishes(masses.outputs[i * n + j]):
                     linked = _merged(linked, i, j)
-    found = []
+    parts = []
     for first in sorted(set(linked)):
         own = [i for i in range(n) if linked[i] == first]
         if len(own) == n:
             return (Part(names, tuple(range(2 * n)), dynamics),)
         scenario = _alone(dynamics.scenario, {names[i] for i in own})
         places = (*own, *(n + i for i in own))
-        found.append(Part(tuple(names[i] for i in own), places, Dynamics(scenario)))
-    return tuple(found)
+        parts.append(Part(tuple(names[i] for i in own), places, Dynamics(scenario)))
+    return tuple(parts)
 
 
 def _linked(dynamics: Dynamics) -> list[int]:
@@ -203,9 +203,9 @@ class _Beside:
 
     def _filled(self, place: int, times: Any) -> Any:
         """The states of one part, from what it has already and from its run."""
-        kept, run = self.ahead[place], self.runs[place]
-        known = 0 if kept is None else int(np.searchsorted(times, kept.end, side="right"))
-        early = kept(times[:known]) if kept is not None and known else None
+        piece, run = self.ahead[place], self.runs[place]
+        known = 0 if piece is None else int(np.searchsorted(times, piece.end, side="right"))
+        early = piece(times[:known]) if piece is not None and known else None
         if known == len(times):
             return early
         self.ahead[place] = None

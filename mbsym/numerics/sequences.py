@@ -75,26 +75,26 @@ class Ranking:
             "operations"
         )
         gaps = {"best": best.text, "distance": f"{best.distance:.2g}", "operations": best.operations}
-        told = Message(text, body=self.body, **gaps)
+        message = Message(text, body=self.body, **gaps)
         if best.own:
-            return Message("[[told]]; it is the one in the description.", told=told)
+            return Message("[[told]]; it is the one in the description.", told=message)
         text = "[[told]]; the description's [[own]] is [[distance]] away with [[operations]]."
-        return Message(text, told=told, own=own.text, distance=f"{own.distance:.2g}", operations=own.operations)
+        return Message(text, told=message, own=own.text, distance=f"{own.distance:.2g}", operations=own.operations)
 
 
-def rankings(given: Scenario, states: Sequence[Sequence[float]], watch: Callable[[str], None]) -> Iterator[Ranking]:
+def rankings(scenario: Scenario, states: Sequence[Sequence[float]], watch: Callable[[str], None]) -> Iterator[Ranking]:
     """One ranking for every body that three turns about coordinates of its own orient.
 
     ``states`` are states (q, q') that the motion passes, the first one the state at which M is judged.
     """
-    for body in given.system.bodies:
+    for body in scenario.system.bodies:
         if len(list(body.rotation.turns())) == 3:
             watch(f"sequences of {body.name}")
-            yield _ranking(given, body, states)
+            yield _ranking(scenario, body, states)
 
 
-def _ranking(given: Scenario, body: Body, states: Sequence[Sequence[float]]) -> Ranking:
-    system = given.system
+def _ranking(scenario: Scenario, body: Body, states: Sequence[Sequence[float]]) -> Ranking:
+    system = scenario.system
     turns = list(body.rotation.turns())
     angles = [angle.name for _, angle in turns if isinstance(angle, Name)]
     if len(angles) != 3 or not set(angles) <= set(body.coordinates):
@@ -108,16 +108,16 @@ def _ranking(given: Scenario, body: Body, states: Sequence[Sequence[float]]) -> 
         )
     places = [system.coordinates.index(name) for name in angles]
     own = tuple(axis for axis, _ in turns)
-    found = []
+    alternatives = []
     for axes in SEQUENCES:
         middles = [angles_of(axes, orientation(own, [state[k] for k in places])) for state in states]
         distance = min(abs(sin(x[1])) if axes[0] == axes[2] else abs(cos(x[1])) for x in middles)
         state = list(states[0][: len(system.coordinates)])
         for k, value in zip(places, middles[0], strict=True):
             state[k] = value
-        found.append(_alternative(given, body, axes, axes == own, distance, state))
-    kept = [a for a in found if a is not None]
-    return Ranking(body.name, tuple(sorted(kept, key=_preference)))
+        alternatives.append(_alternative(scenario, body, axes, axes == own, distance, state))
+    kept_alternatives = [a for a in alternatives if a is not None]
+    return Ranking(body.name, tuple(sorted(kept_alternatives, key=_preference)))
 
 
 def _preference(a: Alternative) -> tuple[float, int, bool]:
@@ -143,9 +143,9 @@ def _mentions(load: Any, name: str) -> bool:
 
 
 def _alternative(
-    given: Scenario, body: Body, axes: tuple[int, ...], own: bool, distance: float, state: Sequence[float]
+    scenario: Scenario, body: Body, axes: tuple[int, ...], own: bool, distance: float, state: Sequence[float]
 ) -> Alternative | None:
-    system = given.system
+    system = scenario.system
     rotation = Rotation(tuple(axes), tuple(angle for _, angle in body.rotation.turns()))
     changed = replace(
         system,
@@ -161,7 +161,7 @@ def _alternative(
     fixed = constants(changed)
     equations = [*(x for row in whole.mass_matrix for x in row), *whole.forcing]
     code = Code(solved.program, input_names(changed), solved.pivots)
-    arithmetic = Arithmetic(replace(given, system=changed), [Quantity("pivots", code)], compiled=False)
+    arithmetic = Arithmetic(replace(scenario, system=changed), [Quantity("pivots", code)], compiled=False)
     inputs = np.array([0.0, *state, *(0.0 for _ in state)])
     pivots = np.abs(arithmetic.values("pivots", FLOAT64, inputs))
     pivot = float(pivots.min() / pivots.max()) if np.all(np.isfinite(pivots)) and pivots.max() > 0 else 0.0

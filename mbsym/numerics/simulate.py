@@ -271,16 +271,17 @@ def _last_rows(dynamics: Dynamics, trouble: Breakdown, rows: Recorder, times: An
         if trouble.filled is not None:
             rows.keep(times[rows.count : rows.count + trouble.filled.shape[1]], trouble.filled)
         past = rows.past()
-        found = diagnosed(dynamics, trouble, past)
+        last_rows = diagnosed(dynamics, trouble, past)
         if (
-            found.kind in (Cause.STEP_LIMIT, Cause.STUCK, Cause.STOPPED, Cause.SINGULAR_CONSTRAINTS, Cause.OUT_OF_REACH)
-            and found.time > past[0, -1]
+            last_rows.kind
+            in (Cause.STEP_LIMIT, Cause.STUCK, Cause.STOPPED, Cause.SINGULAR_CONSTRAINTS, Cause.OUT_OF_REACH)
+            and last_rows.time > past[0, -1]
         ):
             # The state in which it stopped is as good as any other: with rows far apart it may be all there is.
-            rows.keep(np.array([found.time]), np.asarray(found.state)[:, None])
+            rows.keep(np.array([last_rows.time]), np.asarray(last_rows.state)[:, None])
     except Breakdown as undefined:
         return undefined
-    return found
+    return last_rows
 
 
 def chunks(run: Run, times: Any, bound: float, meter: Meter, done: int = 0, most: int = MOST_AT_ONCE) -> Iterator[Any]:

@@ -52,42 +52,42 @@ def state_names(system: System) -> tuple[tuple[str, ...], tuple[str, ...]]:
     return tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
 
 
-def scenario_in_states(given: Scenario) -> Scenario:
+def scenario_in_states(scenario: Scenario) -> Scenario:
     """The scenario in (s, u), its initial state from that in coordinates, to ``PRECISION`` bits.  Raises Failure."""
-    system = given.system
+    system = scenario.system
     form = SpeedForm(system, ring_of(system))
     names = tuple(x.name for x in form.positions), tuple(u.name for u in form.speeds)
     n = len(form.positions)
-    if given.declared:
-        seen, state = in_states(system, *names), given.declared
-        return replace(given, system=seen, positions=state[:n], velocities=state[n:], typed={})
+    if scenario.declared:
+        seen, state = in_states(system, *names), scenario.declared
+        return replace(scenario, system=seen, positions=state[:n], velocities=state[n:], typed={})
     program = Program()
     nodes = form.state_in_coordinates(program)
-    values: dict[str, Any] = {"t": Fraction(0)} | dict(given.parameters)
-    values |= {name: initial for name, (initial, _) in given.prescribed.items()}
-    values |= dict(zip((*system.coordinates, *system.velocities), given.state, strict=True))
+    values: dict[str, Any] = {"t": Fraction(0)} | dict(scenario.parameters)
+    values |= {name: initial for name, (initial, _) in scenario.prescribed.items()}
+    values |= dict(zip((*system.coordinates, *system.velocities), scenario.state, strict=True))
     with ctx.workprec(PRECISION + 64):
         values["pi"] = arb.pi()
         found = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
     state = tuple(rounded(value) for value in found)
-    return replace(given, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
+    return replace(scenario, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
 
 
-def scenario_in_velocities(given: Scenario) -> Scenario:
+def scenario_in_velocities(scenario: Scenario) -> Scenario:
     """The scenario in (q, q'), of one in (s, u) whose positions are the coordinates.  Raises Failure, SingularPoint."""
     from mbsym.numerics.declared_start import declared_start  # few descriptions have any
 
-    system, values = described(given.system), dict(zip(given.system.velocities, given.velocities, strict=True))
+    system, values = described(scenario.system), dict(zip(scenario.system.velocities, scenario.velocities, strict=True))
     own = {speed.name: values[speed.name] for speed in system.speeds}
     rates = {name: values.get(velocity_name(name)) for name in system.coordinates}
-    known = dict(given.parameters) | {name: initial for name, (initial, _) in given.prescribed.items()}
-    positions = dict(zip(given.system.coordinates, given.positions, strict=True))
-    found = declared_start(system, own, positions, rates, known)
-    if found.velocities is None:
+    known = dict(scenario.parameters) | {name: initial for name, (initial, _) in scenario.prescribed.items()}
+    positions = dict(zip(scenario.system.coordinates, scenario.positions, strict=True))
+    start = declared_start(system, own, positions, rates, known)
+    if start.velocities is None:
         raise SingularPoint("the speeds do not determine the generalised velocities")
     q = tuple(positions[name] for name in system.coordinates)
     return replace(
-        given, system=system.without_speeds, positions=q, velocities=tuple(map(rounded, found.velocities)), typed={}
+        scenario, system=system.without_speeds, positions=q, velocities=tuple(map(rounded, start.velocities)), typed={}
     )
 
 
@@ -105,17 +105,19 @@ class StateDynamics(Dynamics):
     @cached_property
     def _in_program(self) -> tuple[list[list[Node]], list[Node], list[Node]]:
         """M, f, s' in the specialised program."""
-        found, n = speed_program(self.form), len(self.form.speeds)
-        nodes = [*(x for row in found.mass_matrix for x in row), *found.forcing, *found.rates]
-        made = substituted(found.program, nodes, self._specialised)
+        program, n = speed_program(self.form), len(self.form.speeds)
+        nodes = [*(x for row in program.mass_matrix for x in row), *program.forcing, *program.rates]
+        made = substituted(program.program, nodes, self._specialised)
         return [made[i * n : (i + 1) * n] for i in range(n)], made[n * n : n * n + n], made[n * n + n :]
 
     @cached_property
     def _accelerated(self) -> tuple[Sequence[Node], Sequence[Node]]:
         """u' and the pivots of M, and of J M^-1 J^T with constraints.  Raises SingularPoint."""
         if self.constraints is not None:
-            found = self.constraints.dynamics
-            both = (substituted(found.program, x, self._specialised) for x in (found.accelerations, found.pivots))
+            dynamics = self.constraints.dynamics
+            both = (
+                substituted(dynamics.program, x, self._specialised) for x in (dynamics.accelerations, dynamics.pivots)
+            )
             return next(both), next(both)
         mass, forcing, _ = self._in_program
         return solve(self._specialised, mass, forcing)
@@ -288,13 +290,13 @@ def _cosines(body: Body, rows: Any, place: Mapping[str, int]) -> Any:
     if not isinstance(body.orientation[0], Quaternion):
         return np.array(vectors)
     e, v = vectors[0][0], vectors[0][1:]
-    found = 2 * v[:, None] * v[None, :]
+    cosines = 2 * v[:, None] * v[None, :]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        found[i, i] += e * e - np.sum(v * v, axis=0)
-        found[i, j] -= 2 * e * v[k]
-        found[j, i] += 2 * e * v[k]
-    return found
+        cosines[i, i] += e * e - np.sum(v * v, axis=0)
+        cosines[i, j] -= 2 * e * v[k]
+        cosines[j, i] += 2 * e * v[k]
+    return cosines
 
 
 def _angles(axes: Sequence[int], a: Any) -> tuple[Any, Any, Any]:

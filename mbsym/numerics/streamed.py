@@ -169,8 +169,8 @@ def _table(dynamics: Dynamics, rows: _Recorder, further: Further) -> tuple[Table
         kinetic = max(kinetic, (float(abs(block[size + 1, highest])), start + highest), key=lambda one: one[0])
         left = fallen(dynamics, points.astype(float), first[:size, 0].astype(float))
         pivot = min(pivot, (float(np.min(left)), start + int(np.argmin(left))), key=lambda one: one[0])
-    visited = {name: stored.at(one.places(stored.count))[:size].astype(float) for name, one in steps.items()}
-    places = {*_evenly(stored.count, SHOWN), kinetic[1], pivot[1], *(one.farthest[1] for one in steps.values())}
+    visited = {name: stored.at(step.places(stored.count))[:size].astype(float) for name, step in steps.items()}
+    places = {*_evenly(stored.count, SHOWN), kinetic[1], pivot[1], *(step.farthest[1] for step in steps.values())}
     return Table(dynamics, stored, plain, scale, further, visited), sorted(places)
 
 

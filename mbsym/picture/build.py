@@ -88,8 +88,8 @@ def start(system: System, overrides: Mapping[str, Expression] | None = None) -> 
     Raises Incomplete with what cannot be (two numbers for one parameter), Failure for a system given by its matrices.
     """
     refuse_matrices(system, "there are no bodies to draw")
-    given = dict(overrides or {})
-    found, stand_ins, at_zero = _numbers(system, given)
+    expressions = dict(overrides or {})
+    found, stand_ins, at_zero = _numbers(system, expressions)
     if not found.system.constraints:
         return Start(found, stand_ins, at_zero)
     from mbsym.numerics.closing import closed
@@ -104,10 +104,10 @@ def start(system: System, overrides: Mapping[str, Expression] | None = None) -> 
 
 
 def _numbers(
-    system: System, given: dict[str, Expression]
+    system: System, expressions: dict[str, Expression]
 ) -> tuple[Scenario, tuple[tuple[str, float], ...], tuple[str, ...]]:
     try:
-        return scenario(system, given, declared=True), (), ()
+        return scenario(system, expressions, declared=True), (), ()
     except Incomplete as error:
         if not error.lack.names:
             raise
@@ -119,26 +119,26 @@ def _numbers(
         own = [x for x in system.parameters if x.name in missing and x.value is None and x.name not in related]
         for item in own or [x for x in system.parameters if x.name in missing]:
             chosen[item.name] = tree.number(-1 if item.sign in NEGATIVE else 1)
-        missing = _lacking(system, given | chosen)
+        missing = _lacking(system, expressions | chosen)
     if chosen:  # numbers that mean nothing need not agree with signs
         system = replace(system, parameters=tuple(replace(item, sign="real") for item in system.parameters))
     told = tuple((name, -1.0 if item == tree.number(-1) else 1.0) for name, item in chosen.items())
     try:
-        return scenario(system, given | chosen, assumed=not chosen, declared=True), told, ()
+        return scenario(system, expressions | chosen, assumed=not chosen, declared=True), told, ()
     except Incomplete as error:
         if not error.lack.names:
             raise
-    begun = {} if own_values(system, given) else initial_values(system, given)
+    begun = {} if own_values(system, expressions) else initial_values(system, expressions)
     at_zero = tuple(x for x in system.coordinates if x not in begun or begun[x].position is None)
-    return scenario(system, given | chosen, state=False, assumed=not chosen), told, at_zero
+    return scenario(system, expressions | chosen, state=False, assumed=not chosen), told, at_zero
 
 
-def _lacking(system: System, given: Mapping[str, Expression]) -> set[str]:
+def _lacking(system: System, expressions: Mapping[str, Expression]) -> set[str]:
     """The parameters that have no value yet."""
     try:
-        scenario(system, given, state=False, assumed=False)
+        scenario(system, expressions, state=False, assumed=False)
     except Incomplete as error:
-        return {*error.lack.names} & {*system.parameter_names} - {*given}
+        return {*error.lack.names} & {*system.parameter_names} - {*expressions}
     return set()
 
 
@@ -154,8 +154,8 @@ class Places:
         program = scene.algebra
         assert isinstance(program, Program)
         self.program = program
-        one, zero = program.one, program.zero
-        self.axes: dict[str, Axes] = {frame: ((one, zero, zero), (zero, one, zero), (zero, zero, one))}
+        node, zero = program.one, program.zero
+        self.axes: dict[str, Axes] = {frame: ((node, zero, zero), (zero, node, zero), (zero, zero, node))}
         self.origins: dict[str, Triple] = {frame: (zero, zero, zero)}
         #: The directions of the turns of each body's joint, in their order.
         self.turned: dict[str, list[Triple]] = {}
@@ -344,7 +344,7 @@ class _Made:
             if len(slides) != 1:
                 continue
             ((name, _),) = slides
-            known = next(one for one in self.known if one.name == name)
+            known = next(coordinate for coordinate in self.known if coordinate.name == name)
             angle = known.kind is Measure.ANGLE
             far, middle = (pi, 0.0) if angle else (0.6 * self.room.radius, known.value)
             steps = (middle + far * (2 * k / PIECES - 1) for k in range(PIECES + 1))
@@ -379,7 +379,7 @@ class _Made:
     def picture(self, found: Start) -> Picture:
         """All of it as values."""
         system, places, values = self.system, self.places, self.scenario.parameters
-        velocity = sum(not is_holonomic(one) for one in system.constraints)
+        velocity = sum(not is_holonomic(constraint) for constraint in system.constraints)
         hidden = tuple(x.name for x in system.bodies if x.name not in places.carried and x.name != places.frame)
         notes = Notes(
             found.stand_ins, found.at_zero, found.moved, found.open_loop, hidden, tuple(self.without), velocity
@@ -407,12 +407,12 @@ class _Made:
             units=tuple((name, unit) for name, unit in units.items() if unit),
         )
 
-    def _wide(self, one: Coordinate) -> Coordinate:
+    def _wide(self, coordinate: Coordinate) -> Coordinate:
         """Lengths may be moved about as far as the system is large."""
-        if one.limited or one.kind.value != "length":
-            return one
-        far = max(self.room.radius, abs(one.value))
-        return replace(one, minimum=one.value - far, maximum=one.value + far)
+        if coordinate.limited or coordinate.kind.value != "length":
+            return coordinate
+        far = max(self.room.radius, abs(coordinate.value))
+        return replace(coordinate, minimum=coordinate.value - far, maximum=coordinate.value + far)
 
     def _drawn(self, name: str) -> Drawn:
         body, places, values = self.system.body(name), self.places, self.scenario.parameters
@@ -673,8 +673,8 @@ def _between(places: Places, kind: Stretch, first: Point, second: Point, of: str
 
 def _arms(places: Places, points: tuple[Point, ...]) -> Iterator[Span]:
     """From the joint of a body to a point of it; nothing is drawn of frames."""
-    for one in points:
-        arm = places.scene.vector(one.position, one.body)
-        if one.body in places.carried and one.body != INERTIAL and not arm.vanishes():
-            end: tuple[Node, Node, Node] = places.point(one.body, arm.components)
-            yield Span(Stretch.BODY, places.origins[one.body], end, one.body)
+    for point in points:
+        arm = places.scene.vector(point.position, point.body)
+        if point.body in places.carried and point.body != INERTIAL and not arm.vanishes():
+            end: tuple[Node, Node, Node] = places.point(point.body, arm.components)
+            yield Span(Stretch.BODY, places.origins[point.body], end, point.body)

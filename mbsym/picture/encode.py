@@ -172,11 +172,11 @@ def sentences(found: Picture) -> Iterator[str]:
         text = "Constraints on velocities: [[count]]; every position can be shown, not every one is reached."
         yield Message(text, count=notes.velocity_rows)
     solid = [body.ellipsoid for body in found.bodies if body.ellipsoid is not None]
-    if any(one.true_size for one in solid):
+    if any(ellipsoid.true_size for ellipsoid in solid):
         yield Message(
             "Ellipsoids: homogeneous bodies with the same mass and inertia, to scale (none thinner than 1/100)."
         )
-    if any(not one.true_size for one in solid):
+    if any(not ellipsoid.true_size for ellipsoid in solid):
         yield Message(
             "Ellipsoids of bodies without a mass have the proportions of their inertia; their size means nothing."
         )

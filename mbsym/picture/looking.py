@@ -91,15 +91,15 @@ Values = Sequence[float]
 def samples(known: Sequence[Coordinate], scenario: Scenario, apart: float = 0.0) -> list[State]:
     """Inputs of the program at these positions, lengths moved by up to ``apart``; velocities of the start, t = 0."""
     source = Random(5)
-    found = []
+    states = []
     for k in range(POSITIONS):
         state = {"t": 0.0}
-        for one, rate in zip(known, scenario.system.velocities, strict=True):
-            far = pi if one.kind is Measure.ANGLE else apart
-            state[one.name] = one.value + (source.uniform(-far, far) if k else 0.0)
-            state[rate] = one.velocity
-        found.append(state)
-    return found
+        for coordinate, rate in zip(known, scenario.system.velocities, strict=True):
+            far = pi if coordinate.kind is Measure.ANGLE else apart
+            state[coordinate.name] = coordinate.value + (source.uniform(-far, far) if k else 0.0)
+            state[rate] = coordinate.velocity
+        states.append(state)
+    return states
 
 
 @dataclass(frozen=True)
@@ -114,7 +114,7 @@ class Room:
     @classmethod
     def of(cls, values: Sequence[Values], points: Sequence[Operands], reach: Sequence[float], view: View) -> Room:
         """From values of the program; ``reach`` is how far something extends about each point."""
-        placed = [([at(one, point) for one in values], far) for point, far in zip(points, reach, strict=True)]
+        placed = [([at(value, point) for value in values], far) for point, far in zip(points, reach, strict=True)]
         good = [x for x in placed if isfinite(x[1]) and all(isfinite(c) for place in x[0] for c in place)]
         if not good:
             return cls(0.0, (0.0, 0.0, 0.0), 1.0, view)
@@ -144,11 +144,11 @@ def first_look(
     """
     own = None if up is None else at(values[0], up)
     own = None if own is None or not isfinite(hypot(*own)) or hypot(*own) == 0 else unit(own)
-    places = [[at(one, point) for one in values] for point in points]
+    places = [[at(value, point) for value in values] for point in points]
     every = [place for those in places if all(isfinite(c) for x in those for c in x) for place in those]
     spread = [_range(place[k] for place in every) for k in range(3)]
     size = max(spread)
-    turning = [max((_range(at(one, row)[k] for one in values) for row in axes), default=0.0) for k in range(3)]
+    turning = [max((_range(at(value, row)[k] for value in values) for row in axes), default=0.0) for k in range(3)]
     flat = [k for k in (2, 1, 0) if spread[k] <= SAME * size and turning[k] <= SAME]
     return looked_at(own, flat[0] if flat and size else None)
 
@@ -196,7 +196,7 @@ SWEEPS = 12
 
 def shapes(body: Body, values: Mapping[str, Fraction]) -> tuple[Outline, ...]:
     """The shapes of a body whose numbers are known."""
-    found = []
+    outlines = []
     for shape in body.shapes:
         try:
             size = tuple(float(exact(x, values)) for x in shape.size)
@@ -205,8 +205,8 @@ def shapes(body: Body, values: Mapping[str, Fraction]) -> tuple[Outline, ...]:
         except (Failure, KeyError):
             continue
         if all(isfinite(x) and x > 0 for x in size) and all(map(isfinite, at)):
-            found.append(Outline(shape.kind, size, at, axes))
-    return tuple(found)
+            outlines.append(Outline(shape.kind, size, at, axes))
+    return tuple(outlines)
 
 
 def ellipsoid(body: Body, values: Mapping[str, Fraction]) -> Ellipsoid | None:

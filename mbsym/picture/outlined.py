@@ -50,7 +50,7 @@ def outlined(
     tops = [there(0.0, 0.0, sign * length / 2) for sign in (1, -1)]
     if kind == "capsule":
         balls = [_ellipse((radius,) * 3, end, rows, look) for end in tops]
-        return hull(place for one in balls for place in one), ()
+        return hull(place for ball in balls for place in ball), ()
     rims = [
         [
             flat(combined((1.0, radius * cos(a), radius * sin(a)), (end, rows[0], rows[1])))

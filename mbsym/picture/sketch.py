@@ -156,9 +156,9 @@ class Film:
         count = len(self.times)
         zero = [0.0] * count
         self._columns = {name: columns.get(name, zero) for name in found.program.inputs} | {"t": self.times}
-        self._names = {one.name: columns.get(one.name, zero) for one in found.coordinates}
+        self._names = {coordinate.name: columns.get(coordinate.name, zero) for coordinate in found.coordinates}
         values = found.program.evaluate(self._columns)
-        self._rows = [[float(x) for x in one] if one.shape else [float(one)] * count for one in values]
+        self._rows = [[float(x) for x in value] if value.shape else [float(value)] * count for value in values]
         look = projection(found.view)
         bodies = [body for body in found.bodies if body.massive]
         flat = [[(dot(look[0], x), dot(look[1], x)) for x in self._track(body.centre)] for body in bodies]
@@ -171,7 +171,7 @@ class Film:
         size = max(hypot(wide, tall), 1e-9 * found.extent) or 1.0
         self.unit = min(WIDE / max(wide, 1e-9 * size), TALL / max(tall, 1e-9 * size), 8.0 / size)
         paths = [[(self.unit * x, self.unit * y) for x, y in one] for one in flat]
-        self.paths = [one for one in paths if max(_width([x for x, _ in one]), _width([y for _, y in one])) > 0.01]
+        self.paths = [path for path in paths if max(_width([x for x, _ in path]), _width([y for _, y in path])) > 0.01]
 
     def _track(self, operands: Operands) -> list[Numbers]:
         a, b, c = (self._rows[k] for k in operands)
@@ -187,8 +187,8 @@ class Film:
 
 def _shown(body: Drawn) -> Ellipsoid | None:
     """The ellipsoid that is drawn: of a known size, and telling."""
-    found = body.ellipsoid
-    return found if found is not None and found.true_size and found.telling else None
+    ellipsoid = body.ellipsoid
+    return ellipsoid if ellipsoid is not None and ellipsoid.true_size and ellipsoid.telling else None
 
 
 def _width(values: Sequence[float]) -> float:
@@ -221,26 +221,26 @@ class _Paper:
 
     def _state(self) -> dict[str, float]:
         """The position that is drawn."""
-        found = self.found
-        state = dict.fromkeys(found.program.inputs, 0.0) | {"t": 0.0}
-        for one, rate in zip(found.coordinates, self.system.velocities, strict=True):
-            state[one.name], state[rate] = one.value, one.velocity
-        if found.closure is not None:
+        picture = self.found
+        state = dict.fromkeys(picture.program.inputs, 0.0) | {"t": 0.0}
+        for coordinate, rate in zip(picture.coordinates, self.system.velocities, strict=True):
+            state[coordinate.name], state[rate] = coordinate.value, coordinate.velocity
+        if picture.closure is not None:
             return state
         moved = dict(state)
         turn = 0
         # Of what turns by three angles the axes are drawn, not far from those of the frame: they are to be told apart.
-        joints = [{c for x in body.joint.hinges if not x.slides for c in x.coordinates} for body in found.bodies]
+        joints = [{c for x in body.joint.hinges if not x.slides for c in x.coordinates} for body in picture.bodies]
         tilted = {name for joint in joints if len(joint) > 2 for name in joint}
-        for one in found.coordinates:
-            nearest = pi / 2 * round(one.value / (pi / 2))
-            if one.kind is Measure.ANGLE and not one.limited and abs(one.value - nearest) < HARDLY:
-                moved[one.name] = nearest + SEEN[turn % len(SEEN)] * (
-                    (-0.5, 0.5)[turn % 2] if one.name in tilted else 1
+        for coordinate in picture.coordinates:
+            nearest = pi / 2 * round(coordinate.value / (pi / 2))
+            if coordinate.kind is Measure.ANGLE and not coordinate.limited and abs(coordinate.value - nearest) < HARDLY:
+                moved[coordinate.name] = nearest + SEEN[turn % len(SEEN)] * (
+                    (-0.5, 0.5)[turn % 2] if coordinate.name in tilted else 1
                 )
                 turn += 1
         size = self._size(moved)
-        for one in found.coordinates:
+        for one in picture.coordinates:
             if one.name in self._sliding and one.kind is Measure.LENGTH and abs(one.value) < AWAY * size:
                 there = self._rounded(MOVED * size)
                 moved[one.name] = there if one.minimum <= there <= one.maximum or not one.limited else one.value
@@ -546,16 +546,16 @@ class _Paper:
         axes = [self.point(row) for row in body.axes]
         for constraint in self.system.constraints:
             if isinstance(constraint, Coincide | Distance):
-                for one in (constraint.first, constraint.second):
-                    if one.body == body.name and all(names(x) <= self.found.values.keys() for x in one.position):
+                for point in (constraint.first, constraint.second):
+                    if point.body == body.name and all(names(x) <= self.found.values.keys() for x in point.position):
                         values = self.found.values
-                        arm = [_number(x, values) for x in one.position]
-                        yield one.position, self.on(combined((1.0, *arm), (self.point(body.origin), *axes)))
+                        arm = [_number(x, values) for x in point.position]
+                        yield point.position, self.on(combined((1.0, *arm), (self.point(body.origin), *axes)))
 
     def _goes_on(self, body: Drawn) -> bool:
         """Whether its mass centre lies on a longer line of it."""
         here, centre = self.spot(body.origin), self.spot(body.centre)
-        others = [self.spot(one.origin) for one in self.found.bodies if one.parent == body.name]
+        others = [self.spot(drawn.origin) for drawn in self.found.bodies if drawn.parent == body.name]
         others += [place for _, place in self._tied_points(body)]
         return any(
             dist(here, one) > dist(here, centre) - 1e-6 and dot(_direction(here, one), _direction(here, centre)) > 0.999
@@ -617,8 +617,8 @@ class _Paper:
     def _is_hidden(self, body: Drawn) -> bool:
         """Whether it only gives a hoop its turn."""
         return not body.massive and any(
-            one.parent == body.name and name in one.joint.hinges[-1].coordinates
-            for name, (one, _) in self._sliding.items()
+            drawn.parent == body.name and name in drawn.joint.hinges[-1].coordinates
+            for name, (drawn, _) in self._sliding.items()
             if any(x.name == name and x.kind is Measure.ANGLE for x in self.found.coordinates)
         )
 
@@ -686,9 +686,9 @@ class _Paper:
         near = 1e-6 * self.found.extent
         if body.massive and dist(self.point(body.centre), here) > near:
             return body.centre
-        for one in self.found.bodies:
-            if one.parent == body.name and dist(self.point(one.origin), here) > near:
-                return one.origin
+        for drawn in self.found.bodies:
+            if drawn.parent == body.name and dist(self.point(drawn.origin), here) > near:
+                return drawn.origin
         return None
 
     def _angles(self) -> None:
@@ -750,7 +750,7 @@ class _Paper:
         body = self.bodies[guide.body]
         centre, bead = self.on(middle_of), self.spot(body.origin)
         steps = [self.varied(name, value * k / (ARC - 1)) for k in range(ARC)]
-        places = [self.point(body.origin, one) for one in steps]
+        places = [self.point(body.origin, step) for step in steps]
         radius = dist(places[0], middle_of)
         part = min(0.8, 0.55 * self.unit * radius) / (self.unit * radius)
         line = [self.on(combined((1 - part, part), (middle_of, place))) for place in places]
@@ -761,7 +761,7 @@ class _Paper:
         self.letter(Name(name), middle, _direction(centre, middle))
         own = self.own[guide.body]
         values = self.found.values
-        known = {x for one in own.connection_point for x in names(one)} & values.keys()
+        known = {x for expression in own.connection_point for x in names(expression)} & values.keys()
         for one in sorted(known):
             if abs(values[one] - radius) < 1e-9 * radius:
                 side = _turned(_direction(centre, bead))
@@ -858,7 +858,7 @@ class _Paper:
                 if size < 0.15:
                     continue
                 out = along[0] / size, along[1] / size
-                far = [dot((x - here[0], y - here[1]), out) for one in solid for x, y in one.points]
+                far = [dot((x - here[0], y - here[1]), out) for stroke in solid for x, y in stroke.points]
                 far = [] if self._target(body) is not None and dist(here, self.spot(body.centre)) > 0.5 else far
                 reach = max([0.9 * size + 0.2, *(0.8 * x + 0.3 for x in far)])
                 tip = here[0] + reach * along[0] / size, here[1] + reach * along[1] / size
@@ -867,7 +867,7 @@ class _Paper:
 
     def _driven(self) -> None:
         """Axes in the paper about which something is turned by an angle that is prescribed."""
-        given = {one.name for one in self.system.prescribed}
+        given = {prescribed.name for prescribed in self.system.prescribed}
         for body in self.found.bodies:
             turns = [x for x in body.joint.hinges if not x.slides]
             if not self.found.view.plane or len(turns) != 1 or turns[0].coordinates:
@@ -927,7 +927,7 @@ class _Paper:
     def _finished(self) -> Sketch:
         placed = self.letters.placed()
         low, high = self.letters.box()
-        names_of = [one.name for one in self.found.coordinates]
+        names_of = [coordinate.name for coordinate in self.found.coordinates]
         return Sketch(
             tuple(self.marks),
             tuple(Letter(what, place) for what, place in placed),
@@ -944,8 +944,8 @@ class _Paper:
         found: set[str] = set()
         for body in self.system.bodies:
             shapes = (x for shape in body.shapes for x in (*shape.size, *shape.at, *shape.rotation.angles))
-            for one in (*body.connection_point, *body.mass_centre, *body.rotation.angles, *shapes):
-                found |= names(one)
+            for expression in (*body.connection_point, *body.mass_centre, *body.rotation.angles, *shapes):
+                found |= names(expression)
         for relation in reversed(self.system.relations):
             found |= names(relation.value) if relation.name in found else set()
         return found
@@ -958,8 +958,8 @@ def _letters_of(what: Expression | int) -> str:
 
 
 def _seen(name: str) -> str:
-    found = parts(name)
-    return ("x" if found.greek else found.stem) + "".join(found.indices)
+    name_parts = parts(name)
+    return ("x" if name_parts.greek else name_parts.stem) + "".join(name_parts.indices)
 
 
 def _length_of(vector: Sequence[Expression]) -> Expression | None:
@@ -967,12 +967,12 @@ def _length_of(vector: Sequence[Expression]) -> Expression | None:
     there = [x for x in vector if x != ZERO]
     if len(there) != 1:
         return None
-    (found,) = there
-    while isinstance(found, Negative):
-        found = found.operand
-    if isinstance(found, Number) or len(_letters_of(found)) > SHORT:
+    (expression,) = there
+    while isinstance(expression, Negative):
+        expression = expression.operand
+    if isinstance(expression, Number) or len(_letters_of(expression)) > SHORT:
         return None
-    return found
+    return expression
 
 
 def _number(value: Expression, values: Mapping[str, float]) -> float:

@@ -250,4 +250,4 @@ class Picture:
     @property
     def values(self) -> dict[str, float]:
         """The parameters by name."""
-        return {one.name: one.value for one in self.parameters}
+        return {parameter.name: parameter.value for parameter in self.parameters}

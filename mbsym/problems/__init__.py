@@ -14,4 +14,4 @@ def ranges(numbers: Iterable[int] = NUMBERS) -> str:
             groups[-1].append(number)
         else:
             groups.append([number])
-    return ", ".join(f"{one[0]} to {one[-1]}" if len(one) > 1 else str(one[0]) for one in groups)
+    return ", ".join(f"{group[0]} to {group[-1]}" if len(group) > 1 else str(group[0]) for group in groups)

@@ -120,8 +120,8 @@ class Reduction:
         """
         flow, images, random = self.flow, self.images(), Random(seed)
         every = [*images.values(), *flow.rates.values(), *flow.integrals]
-        shift = max(0, *(-one.lowest for one in every if one.lowest is not None))
-        known = min((one.known for one in every if one.known is not None), default=None)
+        shift = max(0, *(-series.lowest for series in every if series.lowest is not None))
+        known = min((series.known for series in every if series.known is not None), default=None)
         at = [fmpq(random.randint(2, _SIZE), random.randint(2, _SIZE)) for _ in flow.context.names()]
 
         def value(x: Series) -> fmpq_poly:
@@ -150,8 +150,8 @@ class Reduction:
                 if slope.coefficients:
                     moved += _lowered(value(slope), shift) * rate
             found.append(whole(bottom, put) * moved - whole(top, put) * eps**shift)
-        for one in flow.integrals:
-            found.append(sum((value(one.derivative(k)) * rate for k, rate in rates.items()), fmpq_poly()))
+        for integral in flow.integrals:
+            found.append(sum((value(integral.derivative(k)) * rate for k, rate in rates.items()), fmpq_poly()))
         orders = [next(k for k, c in enumerate(one.coeffs()) if c != 0) for one in found if one != 0]
         return (min(orders) - shift if orders else None), None if known is None else known - shift
 
@@ -192,7 +192,7 @@ def by_integrals(
             images = dict(zip(unknown, found, strict=True))
             put = _put(flow.context, images, known)
             fixed = known is not None
-            others = (x for x in flow.integrals if not any(x is one for one in chosen))
+            others = (x for x in flow.integrals if not any(x is series for series in chosen))
             left = tuple(put(x - at_first(x) if fixed and not flow.fixed else x) for x in others)
             rates = {place: put(x) for place, x in flow.rates.items() if place not in images}
             return before.then(How.INTEGRALS, images, replace(flow, rates=rates, integrals=left, fixed=fixed))
@@ -263,7 +263,7 @@ def _implicit(
         put = _put(context, dict(zip(unknown, found, strict=True)), known)
         left = [put(row) for row in rows]
         if not any(x.coefficients for x in left):
-            return [x if all(one.is_zero for one in left) else x.up_to(known) for x in found]
+            return [x if all(series.is_zero for series in left) else x.up_to(known) for x in found]
         try:
             steps = _linear(slopes, left, known)
         except SingularPoint:

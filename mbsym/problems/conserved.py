@@ -82,8 +82,8 @@ class Conserved:
 
 def by_integrals(names: Sequence[str], drift: bool) -> Verdict:
     """Stability by the integrals called ``names``; ``drift``: with respect to what is not cyclic."""
-    found = concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRALS, tuple(map(worded, names))))
-    return drifting(found) if drift else found
+    verdict = concluded({Fact.INTEGRALS_DEFINITE}, Reason(Because.INTEGRALS, tuple(map(worded, names))))
+    return drifting(verdict) if drift else verdict
 
 
 def conserved(scene: Scene, energy: Energy, left_out: Sequence[str], steady: Sequence[str]) -> Conserved | None:

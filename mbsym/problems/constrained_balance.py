@@ -72,8 +72,8 @@ class ConstrainedBalance(Balance):
 
     def symmetries(self, coordinates: Sequence[str]) -> Displacements:
         """Those that vary with the position, too, of holonomic systems near a rest: they keep every f of f(q) = 0."""
-        found = among(self.ring, self._fields, self.scene.system.coordinates, self._with_dependent(coordinates))
-        return _along(found, coordinates)
+        displacements = among(self.ring, self._fields, self.scene.system.coordinates, self._with_dependent(coordinates))
+        return _along(displacements, coordinates)
 
     def _with_dependent(self, coordinates: Sequence[str]) -> tuple[str, ...]:
         independent = () if self.about is None else self.about.about
@@ -177,8 +177,8 @@ class ConstrainedBalance(Balance):
             return None
         try:
             rows = said_rows(self.scene)
-            kept = [row for row in rows if row.position is not None or row.name not in self.following]
-            return tuple(self._shortest(row, rows) for row in kept)
+            kept_rows = [row for row in rows if row.position is not None or row.name not in self.following]
+            return tuple(self._shortest(row, rows) for row in kept_rows)
         except Failure:
             return None
 
@@ -193,13 +193,13 @@ class ConstrainedBalance(Balance):
         same = (x for x in rows if x.name in self.following and length(x) < length(row) and self._proportional(x, row))
         return min(same, key=length, default=row)
 
-    def _proportional(self, one: Row, other: Row) -> bool:
+    def _proportional(self, row: Row, other: Row) -> bool:
         """Whether b x = a y for velocity rows x and y: a, b are the partials in the first place where x has one."""
         ring = self.ring
-        at = next((k for k, x in enumerate(one.partials) if not x.is_zero()), None)
-        if at is None or one.position is not None:
+        at = next((k for k, x in enumerate(row.partials) if not x.is_zero()), None)
+        if at is None or row.position is not None:
             return False
-        left, right = ring.times(other.partials[at], one.velocity), ring.times(one.partials[at], other.velocity)
+        left, right = ring.times(other.partials[at], row.velocity), ring.times(row.partials[at], other.velocity)
         return bool(ring.reduce(left - right).is_zero())
 
     @cached_property

@@ -159,14 +159,14 @@ def turned_fields(
     if size.is_zero():
         return []
     inverse = ring.reciprocal(size)
-    found = []
+    directions = []
     for axis in axes:
         turned = {}
         for j, name in enumerate(angles):
             rows = [[*row[:j], x, *row[j + 1 :]] for row, x in zip(rates, axis, strict=True)]
             turned[name] = ring.reduce(ring.times(determinant(ring, rows), inverse))
-        found.append(tuple(turned.get(name, ring.zero) for name in coordinates))
-    return found
+        directions.append(tuple(turned.get(name, ring.zero) for name in coordinates))
+    return directions
 
 
 def symmetries(
@@ -177,7 +177,7 @@ def symmetries(
     fields: Sequence[Direction],
     here: Callable[[Polynomial], Polynomial],
     standing: Sequence[str],
-    kept: Sequence[Polynomial] = (),
+    polynomials: Sequence[Polynomial] = (),
 ) -> list[tuple[Direction, Direction, bool]]:
     """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
 
@@ -193,7 +193,7 @@ def symmetries(
     tried = [*units, *fields][:MOST_FIELDS]
     if len(kinetic) + sum(map(len, forces)) > MOST_FIELD_TERMS:
         return []
-    lists = [[_lie(ring, coordinates, c, x) for c in tried] for x in (kinetic, *kept)]
+    lists = [[_lie(ring, coordinates, c, x) for c in tried] for x in (kinetic, *polynomials)]
     for j, name in enumerate(coordinates):
         lists.append(
             [
@@ -236,7 +236,7 @@ def _shears(ring: Ring, coordinates: Sequence[str], c: Direction) -> bool:
         return False
     cubed = slopes @ (slopes @ slopes)
     pairs = [
-        (x, y) for one, other in zip(slopes.rows, cubed.rows, strict=True) for x, y in zip(one, other, strict=True)
+        (x, y) for row, other in zip(slopes.rows, cubed.rows, strict=True) for x, y in zip(row, other, strict=True)
     ]
     lead = next(((x, y) for x, y in pairs if not x.is_zero()), None)
     if lead is None:

@@ -157,12 +157,12 @@ class Balance:
     def _sliding(self) -> dict[int, Polynomial]:
         """Signs of velocities that differ from 0 on the motion, and so near it: dry friction while something slides."""
         ring, numbers = self.scene.ring, {"positive": 1, "negative": -1}
-        found = {}
+        polynomials = {}
         for k, argument in self._signs.items():
             word = "" if ring.dependencies(argument, self.scene.system.coordinates) else self._word(argument)
             if word in numbers:
-                found[k] = ring.number(numbers[word])
-        return found
+                polynomials[k] = ring.number(numbers[word])
+        return polynomials
 
     @property
     def _velocity_rows(self) -> tuple[Polynomial, ...]:
@@ -283,8 +283,8 @@ class Balance:
         x, coordinates = forces[name], self.scene.system.coordinates
         try:
             x = self._put(x)
-            slopes = [ring.derivative(x, one) for one in coordinates]
-            slopes += [ring.velocity_derivative(x, one) for one in coordinates]
+            slopes = [ring.derivative(x, coordinate) for coordinate in coordinates]
+            slopes += [ring.velocity_derivative(x, coordinate) for coordinate in coordinates]
         except Failure:
             return False
         moving = (*coordinates, *self.scene.system.velocities)
@@ -323,12 +323,12 @@ class Balance:
     @cached_property
     def _gradients(self) -> tuple[Load, ...]:
         """Forces that are the gradient of a function of the coordinates: together, or each by itself."""
-        given = [load for load in self._without_potential if load.given]
-        if not given or not self.scene.motions:
+        gradients = [load for load in self._without_potential if load.given]
+        if not gradients or not self.scene.motions:
             return ()
-        if self._is_gradient(given):
-            return tuple(given)
-        return tuple(load for load in given if len(given) > 1 and self._is_gradient([load]))
+        if self._is_gradient(gradients):
+            return tuple(gradients)
+        return tuple(load for load in gradients if len(gradients) > 1 and self._is_gradient([load]))
 
     def _is_gradient(self, loads: Sequence[Load]) -> bool:
         ring, system = self.scene.ring, self.scene.system
@@ -502,17 +502,17 @@ class Balance:
         if load.damping is not None:
             yield self._word(self.scene.lower(load.damping))
         if load.dissipation_function is not None:
-            for one in _products(load.dissipation_function):
-                degree = self._degree(one)
-                yield "unknown" if degree is None else "zero" if degree == 0 else self._product_word(one)
+            for product in _products(load.dissipation_function):
+                degree = self._degree(product)
+                yield "unknown" if degree is None else "zero" if degree == 0 else self._product_word(product)
         for name, force in zip(load.coordinates, load.given, strict=False):
-            for one in _products(multiply(Name(velocity_name(name)), force)):
-                yield sign_of_product("negative", self._product_word(one))
+            for product in _products(multiply(Name(velocity_name(name)), force)):
+                yield sign_of_product("negative", self._product_word(product))
 
-    def _degree(self, one: _Product) -> int | None:
+    def _degree(self, product: _Product) -> int | None:
         """The degree of a product in the velocities; None where it is not homogeneous."""
         total = 0
-        for base, exponent in one.powers:
+        for base, exponent in product.powers:
             degrees = self._degrees(base)
             if len(degrees) != 1:
                 return None
@@ -525,9 +525,9 @@ class Balance:
         parts = _by_velocities(ring, self.scene.lower(base), self.scene.system.coordinates)
         return {0, 1} if parts is None else {sum(exponents) for exponents in parts} or {0}
 
-    def _product_word(self, one: _Product) -> str:
-        word = "positive" if one.number > 0 else "negative" if one.number < 0 else "zero"
-        for base, exponent in one.powers:
+    def _product_word(self, product: _Product) -> str:
+        word = "positive" if product.number > 0 else "negative" if product.number < 0 else "zero"
+        for base, exponent in product.powers:
             word = sign_of_product(word, self._power_word(base, exponent))
         return word
 
@@ -537,7 +537,7 @@ class Balance:
         if not any(velocity in names(base) for velocity in self.scene.system.velocities):
             return self._word(self.scene.lower(base))
         if isinstance(base, Operation) and base.operator in "+-*":
-            words = {self._product_word(one) for one in _products(base)} - {"zero"}
+            words = {self._product_word(product) for product in _products(base)} - {"zero"}
             if words <= {"positive", "nonnegative"}:
                 return "nonnegative"
             if words <= {"negative", "nonpositive"}:
@@ -623,27 +623,27 @@ def _products(expression: Expression) -> list[_Product]:
         return [_Product(value)]
     match expression:
         case Negative(operand):
-            return [_Product(-one.number, one.powers) for one in _products(operand)]
+            return [_Product(-product.number, product.powers) for product in _products(operand)]
         case Operation("+", left, right):
-            found = [*_products(left), *_products(right)]
+            products = [*_products(left), *_products(right)]
         case Operation("-", left, right):
-            found = [*_products(left), *_products(Negative(right))]
+            products = [*_products(left), *_products(Negative(right))]
         case Operation("*", left, right):
             firsts, seconds = _products(left), _products(right)
             if len(firsts) * len(seconds) > MOST_PRODUCTS:
                 raise Failure("too many products")
-            found = [a * b for a, b in choices(firsts, seconds)]
+            products = [a * b for a, b in choices(firsts, seconds)]
         case Operation("/", left, right):
             bottom = rational(right)
             below = _Product(1 / bottom) if bottom else _Product(Fraction(1), ((right, -1),))
-            found = [one * below for one in _products(left)]
+            products = [product * below for product in _products(left)]
         case Operation("**", base, exponent) if (times := rational(exponent)) is not None and times.denominator == 1:
-            found = [_Product(Fraction(1), ((base, int(times)),))]
+            products = [_Product(Fraction(1), ((base, int(times)),))]
         case _:
-            found = [_Product(Fraction(1), ((expression, 1),))]
-    if len(found) > MOST_PRODUCTS:
+            products = [_Product(Fraction(1), ((expression, 1),))]
+    if len(products) > MOST_PRODUCTS:
         raise Failure("too many products")
-    return found
+    return products
 
 
 # --- polynomials in the velocities ---

@@ -70,7 +70,7 @@ def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int, known: Mapp
     running = (*(item.name for item in system.prescribed), "t")
     images = relations(scene) | dict(known)
     direct = {ring.index(kind, name) for kind in ("coordinate", "velocity") for name in system.coordinates}
-    found: list[Polynomial] = []
+    polynomials: list[Polynomial] = []
     for formula in formulas:
         x = ring.substitute(formula, images)
         others = [(k, ring.context.gen(k)) for k in occurring([x]) if k not in direct]
@@ -93,5 +93,5 @@ def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int, known: Mapp
             part = ring.context.from_dict(terms)
             if part.is_constant():
                 return None
-            found.append(part)
-    return tuple(found)
+            polynomials.append(part)
+    return tuple(polynomials)

@@ -270,7 +270,7 @@ def _not_steady(names: Iterable[str]) -> NoClosedForm:
 def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict[str, Polynomial]:
     """The components of quaternions on the motion, by name.  Raises NoClosedForm where they turn there."""
     values = {name: value for name, (value, _) in motion_values(form.system).items()}
-    found: dict[str, Polynomial] = {}
+    quaternions: dict[str, Polynomial] = {}
     turned = turning(plain) if reduced is None else reduced.expansion.base.turning
     for body in form.by_quaternion:
         used = {name for _, angle in body.rotation.turns() for name in names_in(angle)}
@@ -282,8 +282,8 @@ def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict
             sine, cosine = plain.lower.angle(divide(substitute(angle, values), number(2)))
             turns.append((axis, sine, cosine))
         components = body.orientation[0].components
-        found |= dict(zip(components, map(form.ring.reduce, of_turns(form.ring, turns)), strict=True))
-    return found
+        quaternions |= dict(zip(components, map(form.ring.reduce, of_turns(form.ring, turns)), strict=True))
+    return quaternions
 
 
 def _quaternion_slopes(

@@ -89,16 +89,16 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
             try:
                 _follow(scene, state.numbers, values)
                 there = Scene(scene.system, state.numbers, values, ring, bodies=False)
-                given = given_matrices(there, linear)
+                matrices = given_matrices(there, linear)
                 carry = Carrier(ring, state.numbers, values)
                 derived = [[[carry(x) for x in row] for row in matrix.polynomials] for matrix in found.matrices]
                 gains = [] if found.B is None else [[carry(x) for x in row] for row in found.B.polynomials]
             except Failure as reason:
                 return Check("linearisation", ROUTE, second, UNDECIDED, message_of(reason))
             mass, damping, gyroscopic, stiffness, circulatory = derived
-            pairs: list[tuple[str, Any, Any]] = [("M", mass, given.mass), ("B", gains, given.inputs)]
-            pairs.append(("D + G", added(damping, gyroscopic), given.rates))
-            pairs.append(("K + N", added(stiffness, circulatory), given.places))
+            pairs: list[tuple[str, Any, Any]] = [("M", mass, matrices.mass), ("B", gains, matrices.inputs)]
+            pairs.append(("D + G", added(damping, gyroscopic), matrices.rates))
+            pairs.append(("K + N", added(stiffness, circulatory), matrices.places))
             wrong |= {name for name, first, rows in pairs if gains or name != "B" if not _same(first, rows)}
             wrong |= {name for name, rows in zip("MDK", (mass, damping, stiffness), strict=True) if not _is(rows, 1)}
             wrong |= {name for name, rows in zip("GN", (gyroscopic, circulatory), strict=True) if not _is(rows, -1)}
@@ -119,8 +119,8 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
 def _follow(scene: Scene[Polynomial], algebra: Any, values: dict[str, Any]) -> None:
     """Puts what the relations say in place of the values of their left sides; they hold no circle."""
     for _ in scene.system.relations:
-        for one in scene.system.relations:
-            values[one.name] = Lowering(algebra, values)(one.value)
+        for relation in scene.system.relations:
+            values[relation.name] = Lowering(algebra, values)(relation.value)
 
 
 def _same(first: Any, second: Any) -> bool:
@@ -156,28 +156,28 @@ def faults(scene: Scene[Polynomial], signs: Signs) -> Iterator[Fault]:
     linear = scene.system.linear
     assert linear is not None
     sound = True
-    for given in linear.matrices:
-        for fault in _asymmetries(scene, given) if MATRICES[given.key] else ():
-            sound = sound and given.key != "M"
+    for matrix in linear.matrices:
+        for fault in _asymmetries(scene, matrix) if MATRICES[matrix.key] else ():
+            sound = sound and matrix.key != "M"
             yield fault
     mass = linear.matrix("M")
     if mass is not None and sound:
         yield from _not_positive(scene, linear, mass, signs)
 
 
-def _asymmetries(scene: Scene[Polynomial], given: GivenMatrix) -> Iterator[Fault]:
+def _asymmetries(scene: Scene[Polynomial], matrix: GivenMatrix) -> Iterator[Fault]:
     """The first pair of entries that breaks the symmetry, relations used."""
-    ring, symmetry, images = scene.ring, MATRICES[given.key], relations(scene)
-    entries = [[ring.substitute(scene.lower(x), images) for x in row] for row in given.rows]
+    ring, symmetry, images = scene.ring, MATRICES[matrix.key], relations(scene)
+    entries = [[ring.substitute(scene.lower(x), images) for x in row] for row in matrix.rows]
     sign, size = (1 if symmetry == SYMMETRIC else -1), len(entries)
     for i, j in [(i, i) for i in range(size) if sign < 0] + list(combinations(range(size), 2)):
         if ring.is_zero(entries[i][j] - sign * entries[j][i]) is not False:
             continue
-        whole = {"D": "C", "G": "C", "K": "S", "N": "S"}.get(given.key)
+        whole = {"D": "C", "G": "C", "K": "S", "N": "S"}.get(matrix.key)
         mirrored = f"entry {j + 1}, {i + 1}" + ("" if sign > 0 else " with the other sign")
-        message = f"{given.key} is not {symmetry}: entry {i + 1}, {j + 1} is not {'0' if i == j else mirrored}"
+        message = f"{matrix.key} is not {symmetry}: entry {i + 1}, {j + 1} is not {'0' if i == j else mirrored}"
         hint = f"a matrix without symmetry is given as {whole}, and split by mbsym" if whole else ""
-        span = given.spans[j][i] if given.spans else given.span
+        span = matrix.spans[j][i] if matrix.spans else matrix.span
         yield Fault("matrix-symmetry", message, hint, span)
         return
 

@@ -113,7 +113,7 @@ def _with_reciprocals(scene: Scene, known: Signs) -> Signs:
 
 def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ...]:
     """left - right > 0 and the like, denominators of known sign cleared."""
-    found = []
+    assumptions = []
     for item in scene.system.assumptions:
         try:
             left, right = scene.lower(item.left), scene.lower(item.right)
@@ -129,8 +129,8 @@ def _assumptions(scene: Scene, plain: Signs) -> tuple[tuple[Polynomial, str], ..
                 numerator = -numerator
             elif word != "positive" and exponent % 2:
                 numerator = scene.ring.times(numerator, factor)
-        found.append((numerator, relation))
-    return tuple(found)
+        assumptions.append((numerator, relation))
+    return tuple(assumptions)
 
 
 def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
@@ -154,15 +154,15 @@ def _definitions(scene: Scene) -> dict[str, Polynomial]:
         return _REMEMBERED[scene]
     ring = scene.ring
     images: dict[int, Polynomial] = {}
-    found: dict[str, Polynomial] = {}
+    definitions: dict[str, Polynomial] = {}
     missing: set[str] = set()
     for item in scene.system.notation:
         try:
             if names(item.value) & missing:
                 raise SingularPoint("an earlier symbol is missing")
-            found[item.name] = ring.substitute(scene.lower(item.value), images)
-            images[ring.index("parameter", item.name)] = found[item.name]
+            definitions[item.name] = ring.substitute(scene.lower(item.value), images)
+            images[ring.index("parameter", item.name)] = definitions[item.name]
         except Failure:
             missing.add(item.name)
-    _REMEMBERED[scene] = found
-    return found
+    _REMEMBERED[scene] = definitions
+    return definitions

@@ -313,15 +313,15 @@ def first_symbols(scene: Scene) -> list[Definition]:
     ring, images = scene.ring, relations(scene)
     own = {ring.index("parameter", item.name) for item in scene.system.notation}
     expanded: dict[int, Polynomial] = {}
-    found: list[Definition] = []
+    definitions: list[Definition] = []
     for item in scene.system.notation:
         value = scene.lower(item.value)
         index = ring.index("parameter", item.name)
         direct = any(degree > 0 and k not in own for k, degree in enumerate(value.degrees()) if k >= ring.spare)
         expanded[index] = ring.substitute(value, expanded | images)
         if direct and not any(d > 0 for d in expanded[index].degrees()[: ring.spare]):
-            found.append((index, expanded[index]))
-    return found
+            definitions.append((index, expanded[index]))
+    return definitions
 
 
 def in_notation(ring: Ring, x: Polynomial, symbols: Sequence[Definition]) -> Polynomial:

@@ -101,7 +101,7 @@ def matrix_pairs(
     carry = Carrier(ring, state.numbers, state.values)
     matrices = [[[carry(x) for x in row] for row in m.polynomials] for m in linear.matrices]
     gains = [] if linear.B is None else [[carry(x) for x in row] for row in linear.B.polynomials]
-    found: list[Pair] = []
+    pairs: list[Pair] = []
     mass, damping, gyroscopic, stiffness, circulatory = matrices
     n = len(linear.coordinates)
     for i, name in enumerate(linear.coordinates):
@@ -111,13 +111,13 @@ def matrix_pairs(
             total = total + (stiffness[i][j] + circulatory[i][j]) * shift
         for k, push in enumerate(pushes):
             total = total - gains[i][k] * push
-        found.append((Message("equation [[name]]", name=name), total, residuals[name]))
+        pairs.append((Message("equation [[name]]", name=name), total, residuals[name]))
     for symbol, matrix in zip("MDGKN", matrices, strict=True):
         for i in range(n):
             for j in range(i + 1):
                 mirrored = -matrix[j][i] if symbol in "GN" else matrix[j][i]
-                found.append((Message("symmetry of [[symbol]]", symbol=symbol), matrix[i][j], mirrored))
-    return found + _blocks(ring, linear, dependent, state, matrices)
+                pairs.append((Message("symmetry of [[symbol]]", symbol=symbol), matrix[i][j], mirrored))
+    return pairs + _blocks(ring, linear, dependent, state, matrices)
 
 
 def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: State, whole: Sequence[Any]) -> list[Pair]:
@@ -127,7 +127,7 @@ def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: Stat
     carry = Carrier(ring, state.numbers, {**state.values, **symbols})
     scale = state.numbers.one if linear.time_scale is None else carry(linear.time_scale.polynomial)
     powers = (state.numbers.one, scale, scale, scale * scale, scale * scale)
-    found: list[Pair] = []
+    blocks: list[Pair] = []
     for part in linear.subsystems:
         places = [linear.coordinates.index(name) for name in part.coordinates]
         own = (part.M, part.D, part.G, part.K, part.N)
@@ -135,7 +135,7 @@ def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: Stat
             for i, a in enumerate(places):
                 for j, b in enumerate(places):
                     value = carry(block[i, j].polynomial) * power
-                    found.append(
+                    blocks.append(
                         (
                             Message(
                                 "[[symbol]] of subsystem [[coordinates]]",
@@ -146,7 +146,7 @@ def _blocks(ring: Ring, linear: Linearisation, dependent: Dependent, state: Stat
                             matrix[a][b],
                         )
                     )
-    return found
+    return blocks
 
 
 def _given_motion(system: System) -> dict[str, tuple[Expression, Expression]]:
@@ -174,9 +174,9 @@ def _rates(system: System, ring: Ring, dependent: Dependent) -> dict[str, Polyno
     """
     lower = Lowering(ring, ring_environment(system, ring))
     images = {ring.index("parameter", name): value for name, value in dependent.parameters.items()}
-    given = {name: rate for name, (_, rate) in _given_motion(system).items()}
-    given |= {one.name: one.rate for one in system.prescribed}
-    return {name: ring.substitute(lower(rate), images) for name, rate in given.items()}
+    expressions = {name: rate for name, (_, rate) in _given_motion(system).items()}
+    expressions |= {prescribed.name: prescribed.rate for prescribed in system.prescribed}
+    return {name: ring.substitute(lower(rate), images) for name, rate in expressions.items()}
 
 
 def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: bool, turning: Rates = NONE) -> State:
@@ -198,7 +198,7 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
     values |= {name: carry(value) for name, value in dependent.parameters.items()}
     lower = Lowering(numbers, dict(values))
     values |= {one.name: lower(one.held) for one in system.inputs}
-    running = {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
+    running = {prescribed.name: (prescribed.initial or ZERO, prescribed.rate) for prescribed in system.prescribed}
     running |= {name: motion[name] for name in system.coordinates if not given[name].is_zero()}
     for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
         values[name] = lower(value) + lower(rate) * values["t"]

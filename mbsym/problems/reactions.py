@@ -81,7 +81,7 @@ class Reaction(Shown):
     @property
     def undetermined(self) -> tuple[int, ...]:
         """Components that are not determined: 0, 1, 2 of the force, 3, 4, 5 of the moment."""
-        return tuple(sorted({k for one in self.balances for k in one.components}))
+        return tuple(sorted({k for balance in self.balances for k in balance.components}))
 
     @property
     def terms(self) -> int:
@@ -94,23 +94,23 @@ def reactions(
 ) -> tuple[Reaction, ...]:
     """The reactions that the description asks for (scene over the ring).  Raises NoClosedForm."""
     if tied is None or programs is None:
-        return tuple(_reaction(scene, one) for one in recursion.reactions(scene, scene.system.reactions, ()))
+        return tuple(_reaction(scene, reaction) for reaction in recursion.reactions(scene, scene.system.reactions, ()))
     own = [tied.names[i] for i in tied.independent]
     others = [name for name in _all_rows(scene) if name not in own]
     rows = [(name.constraint, name.component) for name in (*own, *others)]
-    found = [_reaction(scene, one) for one in recursion.reactions(scene, scene.system.reactions, rows)]
+    found = [_reaction(scene, reaction) for reaction in recursion.reactions(scene, scene.system.reactions, rows)]
     balanced = _Balances(scene, tied, programs, (*own, *others))
     return tuple(
         replace(one, per_multiplier=one.per_multiplier[: len(own)], **balanced.of(one.per_multiplier)) for one in found
     )
 
 
-def _reaction(scene: Scene, one: recursion.Reaction) -> Reaction:
+def _reaction(scene: Scene, reaction: recursion.Reaction) -> Reaction:
     def reduced(x: Vector) -> Column:
         return column(scene.ring, [scene.ring.reduce(y) for y in x])
 
-    parts = tuple((reduced(force), reduced(moment)) for force, moment in one.per_multiplier)
-    return Reaction(one.body, reduced(one.force), reduced(one.moment), parts)
+    parts = tuple((reduced(force), reduced(moment)) for force, moment in reaction.per_multiplier)
+    return Reaction(reaction.body, reduced(reaction.force), reduced(reaction.moment), parts)
 
 
 def _all_rows(scene: Scene) -> list[RowName]:
@@ -136,7 +136,7 @@ class _Balances:
         self.tables = [
             {name: flat[i * n : (i + 1) * n] for name, i in places.items()} for flat in values
         ]  # J by rows at every state
-        follow = {one.name: one.from_rows for one in tied.redundant}
+        follow = {redundant.name: redundant.from_rows for redundant in tied.redundant}
         self.sets = [(name, *follow.get(name, ())) for name in rows[len(tied.independent) :]]
 
     def of(self, parts: Sequence[tuple[Column, Column]]) -> dict[str, Any]:
@@ -147,17 +147,17 @@ class _Balances:
         }
         with ctx.workprec(PRECISION):
             per_state: list[list[list[Any]]] = [[] for _ in self.states]
-            found = []
+            balances = []
             for names in self.sets:
                 changes = [self._added(k, names, added) for k in range(len(self.states))]
                 components = tuple(c for c in range(6) if any(is_certain(one[c]) for one in changes))
                 if components:
-                    found.append(Balance(names, components, self._formulas(names, added, components)))
+                    balances.append(Balance(names, components, self._formulas(names, added, components)))
                     for table, change in zip(per_state, changes, strict=True):
                         table.append([change[c] for c in range(6)])
             rank = max((eliminated(table, range(6)).rank for table in per_state), default=0)
-        undetermined = {c for one in found for c in one.components}
-        return {"balances": tuple(found), "combinations": len(undetermined) - rank}
+        undetermined = {c for balance in balances for c in balance.components}
+        return {"balances": tuple(balances), "combinations": len(undetermined) - rank}
 
     def _added(self, k: int, names: Sequence[RowName], added: Mapping[RowName, Sequence[Polynomial]]) -> list[Any]:
         """sum y_i R_i at a state, with y = 1 for the first row."""
@@ -245,7 +245,7 @@ def check_reactions(
     routes = ("Newton-Euler recursion", D_ALEMBERT)
 
     def at(state: State) -> list[Pair]:
-        return [pair for one in found for pair in _pairs(system, ring, one, state, tied)]
+        return [pair for reaction in found for pair in _pairs(system, ring, reaction, state, tied)]
 
     if tied is None or programs is None:
         return compare(truth, "reactions", routes, lambda oracle: at(oracle.state), states=2)

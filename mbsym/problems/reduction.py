@@ -177,14 +177,14 @@ def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> L
     Raises SingularPoint, NoClosedForm.
     """
     names, ring = scene.system.coordinates, scene.ring
-    found, equations, about = reduced.expansion, reduced.equations, reduced.about
-    place = {i: j for j, i in enumerate(found.coordinates)}
+    expansion, equations, about = reduced.expansion, reduced.equations, reduced.about
+    place = {i: j for j, i in enumerate(expansion.coordinates)}
     following = [names.index(name) for name in about.following]
-    inputs = found.scene.system.input_names
+    inputs = expansion.scene.system.input_names
     nothing = [ring.zero] * len(following)
 
     def at(row: Sequence[Polynomial]) -> list[Polynomial]:
-        return [row[place[i]] if i in place else ring.zero for i in (*found.speeds, *following)]
+        return [row[place[i]] if i in place else ring.zero for i in (*expansion.speeds, *following)]
 
     mass, velocity = ([[*row, *nothing] for row in rows] for rows in (equations.A, equations.B))
     position, gains = [at(row) for row in equations.C], [list(row) for row in equations.gains]

@@ -182,15 +182,15 @@ class _Disturbed:
                 value = value - x.b * force
             rest.append(value)
         second = _solved(constant, rest)
-        found = {}
+        duals = {}
         for name in about.speeds:
             i = names.index(name)
             a, b = needed[name].a, needed[name].b
             for row, force, change in zip(rows, first, second, strict=True):
                 a = a - row.partials[i].a * force
                 b = b - row.partials[i].b * force - row.partials[i].a * change
-            found[name] = Dual(a, b)
-        return found
+            duals[name] = Dual(a, b)
+        return duals
 
 
 def _eliminated(

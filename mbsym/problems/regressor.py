@@ -98,16 +98,16 @@ def regressor(scene: Scene[Polynomial]) -> Regressor:
     _refuse(system)
     frames = articulation(scene)
     told = _in_independent(ring, regrouped(frames), *_slots(frames, system))
-    kept, dependent = _relations(ring, told)
+    standards, dependent = _relations(ring, told)
     given = values(scene)
-    found = []
-    for one in kept:
-        others = [(other, row[one]) for other, row in dependent.items() if one in row]
+    bases = []
+    for standard in standards:
+        others = [(other, row[standard]) for other, row in dependent.items() if standard in row]
         added = tuple((other, Formula(ring, _polynomial(ring, x))) for other, x in others)
-        value = given[one]
+        value = given[standard]
         for other, factor in added:
             value = value + ring.times(factor.polynomial, given[other])
-        found.append(Base(one, added, Formula(ring, ring.reduce(value))))
+        bases.append(Base(standard, added, Formula(ring, ring.reduce(value))))
     without = tuple(one for one in told if not told[one])
     besides = any(not isinstance(load, UniformGravity) for load in system.loads) or any(
         motion.gyrostatic_moment is not None for motion in scene.motions.values()
@@ -115,8 +115,8 @@ def regressor(scene: Scene[Polynomial]) -> Regressor:
     program = Program()
     moving = Scene(system, program, program_environment(system, program), ring)
     accelerations = Accelerations(moving)
-    nodes = tuple(column(moving, accelerations, one) for one in kept)
-    return Regressor(system, tuple(told), tuple(found), without, program, nodes, besides)
+    nodes = tuple(column(moving, accelerations, one) for one in standards)
+    return Regressor(system, tuple(told), tuple(bases), without, program, nodes, besides)
 
 
 def _refuse(system: System) -> None:
@@ -223,22 +223,22 @@ def _in_independent(
     ring: Ring,
     shares: Mapping[Standard, Mapping[Slot, Polynomial]],
     slots: Mapping[Slot, Mapping[Slot, Quotient]],
-    kept: Sequence[Slot],
+    kept_slots: Sequence[Slot],
 ) -> dict[Standard, _Column]:
     """Each parameter's effect in those of the slots ``kept``, all times one common denominator."""
     common = ring.one
     for row in slots.values():
         for x in row.values():
             common = common * (x.bottom / common.gcd(x.bottom))
-    found: dict[Standard, _Column] = {}
-    for one, own in shares.items():
+    columns: dict[Standard, _Column] = {}
+    for standard, own in shares.items():
         total: dict[Slot, Polynomial] = {}
         for slot, factor in own.items():
             for other, x in slots[slot].items():
                 total[other] = total.get(other, ring.zero) + factor * x.top * (common / x.bottom)
         reduced = {slot: ring.reduce(x) for slot, x in total.items()}
-        found[one] = {slot: x for slot, x in reduced.items() if not ring.vanishes(x)}
-    return found
+        columns[standard] = {slot: x for slot, x in reduced.items() if not ring.vanishes(x)}
+    return columns
 
 
 def _independent(frames: Articulation[Polynomial], system: System, slots: Sequence[Slot]) -> None:
@@ -278,10 +278,10 @@ def _relations(ring: Ring, columns: Mapping[Key, _Column]) -> tuple[list[Key], d
     """The columns that do not depend on earlier ones, and the others as combinations of these."""
     rows = list(dict.fromkeys(key for one in columns.values() for key in sorted(one, key=len)[:_FIRST]))
     while True:
-        kept, dependent = _eliminated(ring, columns, rows)
+        standards, dependent = _eliminated(ring, columns, rows)
         missed = [key for one, row in dependent.items() if (key := _unequal(ring, columns, one, row, rows)) is not None]
         if not missed:
-            return kept, dependent
+            return standards, dependent
         rows += dict.fromkeys(missed)
 
 
@@ -290,14 +290,14 @@ def _eliminated(
 ) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
     """Gauss and Jordan on some monomials: columns that are independent there are so, others perhaps not."""
     zero = Quotient.of(ring.zero)
-    one = Quotient.of(ring.one)
-    kept: list[Key] = []
+    quotient = Quotient.of(ring.one)
+    keys: list[Key] = []
     dependent: dict[Key, dict[Key, Quotient]] = {}
     #: Pivot: the monomial, the column that is 1 there, and what it is made of.
     pivots: list[tuple[tuple[Any, ...], dict[tuple[Any, ...], Quotient], dict[Key, Quotient]]] = []
     for name, full in columns.items():
         left = {key: Quotient.of(full[key]) for key in rows if key in full}
-        made = {name: one}
+        made = {name: quotient}
         for key, reduced, parts in pivots:
             factor = left.get(key)
             if factor is None:
@@ -317,7 +317,7 @@ def _eliminated(
         if ring.is_zero(left[key].top) is None:
             raise NoClosedForm(Message("whether a constant is zero cannot be decided"))
         unit = left[key]
-        kept.append(name)
+        keys.append(name)
         pivots.append(
             (
                 key,
@@ -325,7 +325,7 @@ def _eliminated(
                 {other: _normal(ring, x / unit) for other, x in made.items()},
             )
         )
-    return kept, dependent
+    return keys, dependent
 
 
 def _normal(ring: Ring, x: Quotient) -> Quotient:

@@ -81,7 +81,7 @@ class Groups:
 
     @property
     def singly(self) -> tuple[str, ...]:
-        inside = {name for one in self.groups for name, _ in one.powers}
+        inside = {name for group in self.groups for name, _ in group.powers}
         return tuple(name for name in self.units if name not in inside)
 
 

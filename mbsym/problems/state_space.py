@@ -87,7 +87,7 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
     solved = _solved(ring, [list(row) for row in linear.M.polynomials], right)
     upper = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
     images = equilibrium.determined(scene)
-    slopes = [expanded.lower(one.value).first for one in system.outputs]
+    slopes = [expanded.lower(output.value).first for output in system.outputs]
     measured = [
         [steadied(scene, ring.substitute(row.get(k, ring.zero), images)) for k in range(2 * n + m)] for row in slopes
     ]
@@ -96,7 +96,7 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
         StateSpace(
             states=(*system.coordinates, *system.velocities),
             inputs=linear.inputs,
-            outputs=tuple(one.name for one in system.outputs),
+            outputs=tuple(output.name for output in system.outputs),
             A=Matrix.of(ring, [*upper, *(row[: 2 * n] for row in solved)]),
             B=Matrix.of(ring, [*([ring.zero] * m for _ in range(n)), *(row[2 * n :] for row in solved)]),
             C=Matrix.of(ring, [row[: 2 * n] for row in measured]),
@@ -107,31 +107,31 @@ def state_space(scene: Scene, expanded: Scene, linear: Linearisation, equilibriu
 
 def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> StateSpace:
     """The same of a constrained system.  Raises as ``state_space``, which also has what is said of the matrices."""
-    ring, found, equations = scene.ring, reduced.expansion, reduced.equations
-    system, n = found.scene.system, len(scene.system.coordinates)
+    ring, expansion, equations = scene.ring, reduced.expansion, reduced.equations
+    system, n = expansion.scene.system, len(scene.system.coordinates)
     names, inputs = scene.system.coordinates, system.input_names
     images = equilibrium.determined(scene)
 
     def on(rows: Sequence[Sequence[Polynomial]]) -> Rows:
         return [[steadied(scene, ring.substitute(x, dict(images))) for x in row] for row in rows]
 
-    places, size = len(found.coordinates), len(found.speeds)
+    places, size = len(expansion.coordinates), len(expansion.speeds)
     right = [
         [*(-x for x in position), *(-x for x in speed), *gains]
         for position, speed, gains in zip(equations.C, equations.B, equations.gains, strict=True)
     ]
     upper = on([[*there, *moved] for there, moved in zip(equations.T, equations.S, strict=True)])
     lower = _solved(ring, on(equations.A), on(right))
-    states = [*found.coordinates, *(n + k for k in found.speeds)]
+    states = [*expansion.coordinates, *(n + k for k in expansion.speeds)]
     pushes = [3 * n + k for k in range(len(inputs))]
-    deviations = (*found.positions, *found.velocities)
+    deviations = (*expansion.positions, *expansion.velocities)
     measured = []
-    for one in system.outputs:
-        slopes = found.scene.lower(one.value).first
+    for output in system.outputs:
+        slopes = expansion.scene.lower(output.value).first
         own = combined(scene, ((slopes[i], form) for i, form in enumerate(deviations) if i in slopes))
         measured.append(
             [
-                on_base(scene, found.base, x)
+                on_base(scene, expansion.base, x)
                 for x in (*(own.get(i, ring.zero) for i in states), *(slopes.get(i, ring.zero) for i in pushes))
             ]
         )
@@ -139,7 +139,7 @@ def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium
     return _steady(
         scene,
         StateSpace(
-            states=(*(names[i] for i in found.coordinates), *(velocity_name(names[k]) for k in found.speeds)),
+            states=(*(names[i] for i in expansion.coordinates), *(velocity_name(names[k]) for k in expansion.speeds)),
             inputs=inputs,
             outputs=tuple(one.name for one in system.outputs),
             A=Matrix.of(ring, [*upper, *(row[:whole] for row in lower)]),
@@ -172,7 +172,7 @@ def _sum(ring: Ring, a: Sequence[Sequence[Polynomial]], b: Sequence[Sequence[Pol
 def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
     """M^-1 R, row by row, for every block of M by its adjugate."""
     n = len(mass)
-    found: Rows = [[] for _ in range(n)]
+    rows: Rows = [[] for _ in range(n)]
     for block in components(n, lambda i, j: not mass[i][j].is_zero()):
         if len(block) > MOST_COUPLED:
             listed = Message(
@@ -185,8 +185,8 @@ def _solved(ring: Ring, mass: Rows, right: Rows) -> Rows:
         inverse = ring.reciprocal(determinant(ring, own))
         for i, row in zip(block, adjugate(own, partial(determinant, ring)), strict=True):
             entries = (ring.dot(row, [right[j][column] for j in block]) for column in range(len(right[i])))
-            found[i] = [_in_lowest_terms(ring, ring.times(x, inverse)) for x in entries]
-    return found
+            rows[i] = [_in_lowest_terms(ring, ring.times(x, inverse)) for x in entries]
+    return rows
 
 
 def _in_lowest_terms(ring: Ring, x: Polynomial) -> Polynomial:

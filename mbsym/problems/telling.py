@@ -116,13 +116,13 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
     Raises NoClosedForm and SingularPoint, TooLargeError where nobody would read so many definitions, and Untold where
     they are not what the general recursion gives.
     """
-    found = body_equations(system, ring, _Limited())
-    outputs = _outputs(found)
-    if len(found.program.live(outputs)) > MOST_OPERATIONS:
+    equations = body_equations(system, ring, _Limited())
+    outputs = _outputs(equations)
+    if len(equations.program.live(outputs)) > MOST_OPERATIONS:
         raise _too_many(MOST_OPERATIONS)
     numbers = {body.name: k for k, body in enumerate(system.bodies, start=1)}
-    proposed = _names(ring, found, numbers)
-    cosines = {name for k, name in proposed.items() if found.meanings[k].quantity is Quantity.DIRECTION_COSINE}
+    proposed = _names(ring, equations, numbers)
+    cosines = {name for k, name in proposed.items() if equations.meanings[k].quantity is Quantity.DIRECTION_COSINE}
 
     def ring_with(moving: Sequence[str], fixed: Sequence[str]) -> Ring:
         made = ring_of(system, terms, moving=moving, fixed=fixed)
@@ -130,15 +130,15 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
         return made
 
     told = tell(
-        found.program,
+        equations.program,
         outputs,
-        {k: (name, found.meanings[k]) for k, name in proposed.items()},
+        {k: (name, equations.meanings[k]) for k, name in proposed.items()},
         frozenset((*system.parameter_names, "pi")),
         ring_with,
         lambda made: ring_environment(system, made),
         _stem(Quantity.COMMON, _Taken(ring), [str(k) for k in range(1, 500)]),
     )
-    sorted_out = _sorted_out(system, told, found)
+    sorted_out = _sorted_out(system, told, equations)
     wrong = disagreement(sorted_out, system, ring)
     if wrong:
         raise Untold(wrong)
@@ -269,8 +269,8 @@ def _disagreement_at(found: ToldSystem, system: System, ring: Ring, state: State
         values.append(total)
         expected.append((Message("the equation of [[name]]", name=name), needed[name]))
     undecided = False
-    for (what, derived), told in zip(expected, values, strict=True):
-        agree = agreement(derived, told)
+    for (what, derived), value in zip(expected, values, strict=True):
+        agree = agreement(derived, value)
         if agree is False:
             return Message("[[what]], told through intermediates, differs", what=what)
         undecided = undecided or agree is None

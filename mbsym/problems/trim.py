@@ -90,8 +90,8 @@ def _row(ring: Ring, x: Polynomial, unknowns: Sequence[str]) -> Row:
     row[_REST] = x - sum((ring.times(row[j], ring.context.gen(k)) for j, k in enumerate(places)), ring.zero)
     for part in row.values():
         if names := _within(ring, part, unknowns):
-            told = Message("[[names]]: not linear in the equations", names=", ".join(names))
-            raise NoClosedForm(told)
+            message = Message("[[names]]: not linear in the equations", names=", ".join(names))
+            raise NoClosedForm(message)
     return row
 
 

@@ -405,5 +405,5 @@ def no_variable(ring: Ring, k: int) -> NoClosedForm:
         what = str(Formula(ring, ring.context.gen(k)))
     elif g.name and not g.name.startswith("#"):
         what = Message("[[kind]] of [[name]]", kind=Message(g.kind), name=g.name)
-    told = Message("[[what]] occurs: the equations are not polynomial in speeds and positions", what=what)
-    return NoClosedForm(told, remedy=remedy) if remedy else NoClosedForm(told)
+    message = Message("[[what]] occurs: the equations are not polynomial in speeds and positions", what=what)
+    return NoClosedForm(message, remedy=remedy) if remedy else NoClosedForm(message)

@@ -65,7 +65,7 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     stages = {name: analysis.stage_of(name) for name in wanted}
     failures = [(name, stage.failure) for name, stage in stages.items() if stage.failure is not None]
     if any(name == "hamilton" for name, _ in failures):  # and then there are no brackets either
-        failures = [one for one in failures if one[0] != BRACKETS]
+        failures = [failure for failure in failures if failure[0] != BRACKETS]
     return Forms(**{name: stage.value for name, stage in stages.items()}, failures=tuple(failures))
 
 
@@ -128,7 +128,7 @@ def _named(
         (Formula(ring, letter), Formula(ring, ring.generators[index].argument))
         for index, letter in zip(long, letters, strict=True)
     ]
-    return [_mapped(found, lambda x: Formula(ring, ring.substitute(x, inverse))) for found in results], told
+    return [_mapped(result, lambda x: Formula(ring, ring.substitute(x, inverse))) for result in results], told
 
 
 def _long(ring: Ring, results: list[Any]) -> Iterator[int]:

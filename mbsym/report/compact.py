@@ -73,7 +73,7 @@ def _chosen(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
     told = analysis.optional("told") if wanted else None
     if told is None:
         return {}
-    found = {}
+    compacts = {}
     for number, closed in wanted.items():
         total = _ENDLESS if closed is None else sum(x.terms for x in closed)
         formulas = told_formulas(told, number)
@@ -81,8 +81,8 @@ def _chosen(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compac
         length = sum(x.terms for x in formulas) + sum(y.formula.terms for x in listed for y in x.definitions)
         one = Compact(told, listed, _replaced(problems[number], total))
         if one.definitions <= MOST_DEFINITIONS and (not one.expanded or SHORTER * length <= total):
-            found[number] = one
-    return found
+            compacts[number] = one
+    return compacts
 
 
 def _replaced(found: Any, printed: int) -> int:

@@ -98,7 +98,7 @@ class Labels:
 
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
     """The meaning of the labels where these requirements are told."""
-    forms = [form for one in requirements if (form := in_coefficients(ring, one)) is not None]
+    forms = [form for requirement in requirements if (form := in_coefficients(ring, requirement)) is not None]
     same = {x for one in requirements if is_letter(Formula(ring, one.polynomial), x := _bare(one.label))}
     return Labels(frozenset(name for form in forms for name in form.names), names_in(ring) - same)
 
@@ -230,11 +230,11 @@ def _required(ring: Ring, case: Case, told: Labels) -> tuple[tuple[Statement, ..
 
 def _suffices(wide: Requirement, narrow: Requirement) -> bool:
     """Whether p f^2 > 0 is ``narrow`` where p > 0 alone is ``wide``, which is therefore met wherever that is."""
-    one, other = wide.condition, narrow.condition
-    if not one.kind == other.kind == "inequality" or wide.relation != narrow.relation:
+    condition, other = wide.condition, narrow.condition
+    if not condition.kind == other.kind == "inequality" or wide.relation != narrow.relation:
         return False
-    ratio = rational_ratio(one.polynomial, other.polynomial)
-    more = len(one.nonzero) < len(other.nonzero) and all(factor in other.nonzero for factor in one.nonzero)
+    ratio = rational_ratio(condition.polynomial, other.polynomial)
+    more = len(condition.nonzero) < len(other.nonzero) and all(factor in other.nonzero for factor in condition.nonzero)
     return more and ratio is not None and ratio > 0
 
 
@@ -259,8 +259,8 @@ def _without_repeats(found: Iterable[CaseStatement]) -> Iterator[CaseStatement]:
 
 def _once(items: Iterable[Statement]) -> list[Statement]:
     found: list[Statement] = []
-    for one in items:
-        found += [] if any(_says(one, other) for other in found) else [one]
+    for item in items:
+        found += [] if any(_says(item, other) for other in found) else [item]
     return found
 
 
@@ -269,21 +269,21 @@ def _alike(some: Sequence[Statement], others: Sequence[Statement]) -> bool:
     return len(some) == len(others) and all(any(_says(x, y) for y in others) for x in some)
 
 
-def _says(one: Statement, other: Statement, relation: str = "") -> bool:
+def _says(statement: Statement, other: Statement, relation: str = "") -> bool:
     """Whether it is the other one; with ``relation``: whether it is that between the other's polynomial and 0."""
-    if one.formula is None or other.formula is None:
+    if statement.formula is None or other.formula is None:
         return False
-    ratio = rational_ratio(one.formula.polynomial, other.formula.polynomial)
+    ratio = rational_ratio(statement.formula.polynomial, other.formula.polynomial)
     if ratio is None or relation:
-        return ratio is not None and one.relation == relation
-    return one.relation == (other.relation if ratio > 0 else OPPOSITE.get(other.relation, other.relation))
+        return ratio is not None and statement.relation == relation
+    return statement.relation == (other.relation if ratio > 0 else OPPOSITE.get(other.relation, other.relation))
 
 
-def _follows(one: Statement, other: Statement) -> bool:
+def _follows(statement: Statement, other: Statement) -> bool:
     """Whether it says only that something is not 0 of which the other has a multiple on one side of 0."""
-    if one.relation != "!=" or one.formula is None or other.formula is None:
+    if statement.relation != "!=" or statement.formula is None or other.formula is None:
         return False
-    return bool(divmod(other.formula.polynomial, one.formula.polynomial)[1].is_zero())
+    return bool(divmod(other.formula.polynomial, statement.formula.polynomial)[1].is_zero())
 
 
 @dataclass(frozen=True)
@@ -351,12 +351,12 @@ def provided(found: Stability, motion: Equilibrium | None, inputs: bool = False)
     own, count = () if motion is None else motion.conditions, len(found.presumed)
     known = [x for x in found.presumed if any(rational_ratio(x.polynomial, y.polynomial) is not None for y in own)]
     if motion is not None and len(known) < count:
-        wanted = joined((Message("$[[left]] = 0$", left=x) for x in found.presumed), ", ")
+        message = joined((Message("$[[left]] = 0$", left=x) for x in found.presumed), ", ")
         if inputs:
             return Message(
-                "while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=wanted
+                "while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=message
             )
-        return Message("provided that [[wanted]]", wanted=wanted)
+        return Message("provided that [[wanted]]", wanted=message)
     count = len(own) if own and count else count
     if inputs:
         return _HELD[min(count, 2)]

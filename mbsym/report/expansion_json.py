@@ -39,12 +39,12 @@ def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
         order=manifold.order,
         provided_nonzero=[write(x) for x in found.provided],
         manifold=[
-            doc.FastVariable(variable=name, residual=left, coefficients=_series(found, one, write))
-            for name, one, left in zip(manifold.fast, manifold.functions, manifold.residuals, strict=True)
+            doc.FastVariable(variable=name, residual=left, coefficients=_series(found, function, write))
+            for name, function, left in zip(manifold.fast, manifold.functions, manifold.residuals, strict=True)
         ],
         flow=[
-            doc.SlowVariable(variable=name, coefficients=_series(found, one, write))
-            for name, one in zip(manifold.slow, manifold.flow, strict=True)
+            doc.SlowVariable(variable=name, coefficients=_series(found, series, write))
+            for name, series in zip(manifold.slow, manifold.flow, strict=True)
         ],
         roots=UNSET
         if found.choice is Choice.ONLY
@@ -88,12 +88,12 @@ def _series(found: Expansion, one: Series, write: Write) -> list[doc.Coefficient
 
 
 def _hurwitz(
-    found: Expansion, one: Hurwitz, outcome: Outcome, conditions: tuple[Condition, ...], write: Write
+    found: Expansion, hurwitz: Hurwitz, outcome: Outcome, conditions: tuple[Condition, ...], write: Write
 ) -> doc.Hurwitz[Any]:
     ring = found.transfer.ring
     positive = _positive(found, conditions, write)
     nonzero = [write(Formula(ring, p)) for c in conditions for p in c.nonzero]
-    polynomial = [_series(found, c, write) for c in one.polynomial]
+    polynomial = [_series(found, c, write) for c in hurwitz.polynomial]
     return doc.Hurwitz(outcome=outcome, positive=positive, nonzero=nonzero, polynomial=polynomial)
 
 

@@ -91,12 +91,12 @@ def _equations(analysis: Analysis) -> Iterator[Line]:
     if analysis.system.linear is not None:
         yield from (Line("", x) for x in analysis.linearisation.equalities)
         return
-    found = analysis.equations
-    tied = found.constraints
-    for i, x in enumerate(found.equalities(analysis.system.coordinates)):
-        yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in constraint_forces(found, i)))
-    if found.in_speeds:
-        own = cast("SpeedEquations", found)
+    equations = analysis.equations
+    tied = equations.constraints
+    for i, x in enumerate(equations.equalities(analysis.system.coordinates)):
+        yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in constraint_forces(equations, i)))
+    if equations.in_speeds:
+        own = cast("SpeedEquations", equations)
         yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)
     if tied is not None:
         yield from _constraints(analysis)
@@ -112,7 +112,7 @@ def _gravity(analysis: Analysis) -> Iterator[Line]:
     """g = -dU/dq, U of the fields of gravity alone."""
     if analysis.system.speeds:
         raise NoClosedForm("the equations are in speeds: 'U' is what gravity gives")
-    fields = tuple(one for one in analysis.system.loads if isinstance(one, UniformGravity | NewtonianGravity))
+    fields = tuple(load for load in analysis.system.loads if isinstance(load, UniformGravity | NewtonianGravity))
     force_function = _with_loads(analysis, fields).energy.force_function
     ring = force_function.ring
     names = analysis.system.coordinates
@@ -137,15 +137,15 @@ def _constraints(analysis: Analysis) -> Iterator[Line]:
 
 def accelerations(analysis: Analysis) -> Column:
     """q'' = M^-1 f by Cramer's rule.  Raises NoClosedForm under constraints and for more than ``MOST_SOLVED`` rows."""
-    found = analysis.equations
-    if found.constraints is not None:
+    equations = analysis.equations
+    if equations.constraints is not None:
         raise NoClosedForm("accelerations under constraints come with the multipliers; the equations have them")
-    n = len(found.forcing)
+    n = len(equations.forcing)
     if n > MOST_SOLVED:
         raise NoClosedForm(f"accelerations of {n} coordinates fill pages; model.py computes them")
-    ring = found.forcing[0].ring
-    rows = [[x.polynomial for x in row] for row in found.mass_matrix]
-    tops = cramer(ring, rows, [x.polynomial for x in found.forcing])
+    ring = equations.forcing[0].ring
+    rows = [[x.polynomial for x in row] for row in equations.mass_matrix]
+    tops = cramer(ring, rows, [x.polynomial for x in equations.forcing])
     inverse = ring.reciprocal(determinant(ring, rows))
     return column(ring, [ring.reduce(ring.times(top, inverse)) for top in tops])
 
@@ -168,10 +168,12 @@ def _moving(ring: Ring, rate: str) -> Formula:
 
 
 def _motion(analysis: Analysis) -> Iterator[Line]:
-    found = analysis.equilibrium
-    if found.satisfied:
+    equilibrium = analysis.equilibrium
+    if equilibrium.satisfied:
         yield Line("", "the unperturbed motion satisfies the equations of motion identically")
-    yield from (Line("", x, "!=" if found.impossible else "=") for x in found.impossible or found.conditions)
+    yield from (
+        Line("", x, "!=" if equilibrium.impossible else "=") for x in equilibrium.impossible or equilibrium.conditions
+    )
 
 
 def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:
@@ -234,8 +236,8 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
     """What ``statements`` lists, with what each is needed for."""
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
-        told = label_meanings(part.ring, part.theory.requirements)
-        items = list(statements(part.ring, part.theory.requirements, told=told))
+        labels = label_meanings(part.ring, part.theory.requirements)
+        items = list(statements(part.ring, part.theory.requirements, told=labels))
         none = "" if items else "; none is left that might fail" if part.theory.requirements else "; none was found"
         yield Line("", f"conditions: {part.theory.wanted}{none}", "", of)
         for item in items:
@@ -308,22 +310,22 @@ def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
 
 def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
     """The equation of one coordinate, or speed: what stands before accelerations, and the rest."""
-    found, names = analysis.equations, _of_rows(analysis)
-    at, ring = names.index(name), found.forcing[0].ring
+    equations, names = analysis.equations, _of_rows(analysis)
+    at, ring = names.index(name), equations.forcing[0].ring
     moving = [_moving(ring, rate) for rate in _rates(analysis)]
-    first = sum((x * rate for x, rate in zip(found.mass_matrix.rows[at], moving, strict=True)), moving[0] * 0)
-    rest = found.equalities(names)[at] - first
-    tied = "" if found.constraints is None else " but for the forces of constraints"
+    first = sum((x * rate for x, rate in zip(equations.mass_matrix.rows[at], moving, strict=True)), moving[0] * 0)
+    rest = equations.equalities(names)[at] - first
+    tied = "" if equations.constraints is None else " but for the forces of constraints"
     yield Line("", first, "", f"the terms with accelerations in the equation of {name}")
     yield Line("", rest, "", f"its other terms; the sum is zero{tied}")
 
 
 def _of_rows(analysis: Analysis) -> tuple[str, ...]:
     """What the rows of the equations of motion are named after."""
-    found = analysis.system
-    if found.linear is not None:
+    system = analysis.system
+    if system.linear is not None:
         return ()
-    return tuple(speed.name for speed in found.speeds) or found.coordinates
+    return tuple(speed.name for speed in system.speeds) or system.coordinates
 
 
 def known_names(analysis: Analysis) -> list[str]:
@@ -425,10 +427,10 @@ def _in_powers(value: InPowers, language: str) -> str:
     """From the highest power on."""
     powers = {0: "", 1: _POWERS[language].split("^")[0].split("**")[0]}
     terms = [(x, powers.get(k, _POWERS[language].format(k))) for k, x in enumerate(value.coefficients) if not x.is_zero]
-    found = _sum(terms[::-1], language) or "0"
+    in_powers = _sum(terms[::-1], language) or "0"
     if str(value.factor) == "1":
-        return found
-    return _sum([(value.factor, f"({found})" if _is_sum(found) else found)], language)
+        return in_powers
+    return _sum([(value.factor, f"({in_powers})" if _is_sum(in_powers) else in_powers)], language)
 
 
 def _in_small(value: InSmall, language: str) -> str:

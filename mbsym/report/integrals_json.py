@@ -92,11 +92,11 @@ def _darboux(darboux: DarbouxPolynomials, variables: Sequence[str], text: Write,
 
 def _darboux_along(setting: Setting, darboux: DarbouxAlong, text: Write) -> doc.DarbouxAlong:
     values = []
-    for one in darboux.values:
-        factors = [str(setting.quotient_over(one.field, f.cofactor)) for f in one.polynomials]
+    for value in darboux.values:
+        factors = [str(setting.quotient_over(value.field, f.cofactor)) for f in value.polynomials]
         polynomials = [
             doc.Polynomial.from_result(f, text, cofactor=factor)
-            for f, factor in zip(one.polynomials, factors, strict=True)
+            for f, factor in zip(value.polynomials, factors, strict=True)
         ]
-        values.append((one.value, polynomials, one.complete))
+        values.append((value.value, polynomials, value.complete))
     return doc.DarbouxAlong.from_result(darboux, text, values=values)

@@ -40,7 +40,7 @@ def with_meanings(
     ``told``: letters of which the blocks say it themselves.
     """
     yield from blocks
-    meant = [one for one in letters_of(system).definitions(used) if one[0] not in told]
+    meant = [definition for definition in letters_of(system).definitions(used) if definition[0] not in told]
     if meant:
         items = tuple(Relation(Name(name), "=", value) for name, value in meant)
         yield Beside(tuple(x.name for x in system.abbreviations), (Definitions(Said("Letters used here"), items),))

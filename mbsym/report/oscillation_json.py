@@ -30,45 +30,45 @@ def oscillations_json(
 
 def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
     """A periodic solution; formulas in Python syntax."""
-    found = told.found
+    oscillation = told.found
 
     def text(x: Any) -> str:
         return str(told.formula(x))
 
     # The ring grows as formulas are made, and their shape with it: in the order of the file.
     return doc.Oscillation.from_result(
-        found,
+        oscillation,
         phase=told.phase,
         amplitude=_amplitude(told),
         exponent=_exponent(told),
-        constants=[(name, text(x)) for name, x in found.constants],
-        frequency=text(found.frequency),
-        corrections=list(map(text, found.corrections)),
+        constants=[(name, text(x)) for name, x in oscillation.constants],
+        frequency=text(oscillation.frequency),
+        corrections=list(map(text, oscillation.corrections)),
         phase_rate=sum_of_powers(
             (
-                (n, text(found.frequency * x))
-                for n, x in enumerate((found.tower.one, *found.corrections))
+                (n, text(oscillation.frequency * x))
+                for n, x in enumerate((oscillation.tower.one, *oscillation.corrections))
                 if not x.is_zero()
             ),
-            found.small,
+            oscillation.small,
             "**",
         ),
         solution=[
             doc.Solution(
                 variable=name, residual=left, function=_function(told, name, one), coefficients=_series(told, one)
             )
-            for name, one, left in zip(found.names, found.series, found.residuals, strict=False)
+            for name, one, left in zip(oscillation.names, oscillation.series, oscillation.residuals, strict=False)
         ],
-        drifts=[(one.variable, list(map(text, one.rates)), _series(told, one.waves)) for one in found.drifts],
+        drifts=[(one.variable, list(map(text, one.rates)), _series(told, one.waves)) for one in oscillation.drifts],
         resonances=[
             doc.Resonance.from_result(
-                one,
-                vanishes=str(numerator(told, one.value)),
-                vanishes_too=UNSET if one.damping is None else str(numerator(told, one.damping)),
+                divisor,
+                vanishes=str(numerator(told, divisor.value)),
+                vanishes_too=UNSET if divisor.damping is None else str(numerator(told, divisor.damping)),
             )
-            for one in found.divisors
+            for divisor in oscillation.divisors
         ],
-        left_out=[(names, text(x)) for names, x in found.others],
+        left_out=[(names, text(x)) for names, x in oscillation.others],
         taylor=told.taylor,
         conditions=[str(x) for x in _positive(told)],
         measured=measured_data(measured),
@@ -76,9 +76,9 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
 
 
 def _amplitude(told: Oscillating) -> doc.AmplitudeValue:
-    found, others = told.found, told.found.other_amplitudes
-    value = str(told.formula(found.amplitude))
-    return doc.AmplitudeValue(found.kind, value, UNSET if others is None else str(told.formula(others)))
+    oscillation, others = told.found, told.found.other_amplitudes
+    value = str(told.formula(oscillation.amplitude))
+    return doc.AmplitudeValue(oscillation.kind, value, UNSET if others is None else str(told.formula(others)))
 
 
 def _exponent(told: Oscillating) -> doc.CycleExponent | UnsetType:
@@ -90,11 +90,11 @@ def _exponent(told: Oscillating) -> doc.CycleExponent | UnsetType:
 
 def _positive(told: Oscillating) -> Iterator[Formula]:
     """Squares that have to be positive for frequency and amplitude to be real, and are not known to be."""
-    found = told.found
+    oscillation = told.found
     if not told.real:
-        yield told.formula(found.frequency * found.frequency)
+        yield told.formula(oscillation.frequency * oscillation.frequency)
     if not told.real_amplitude:
-        yield told.formula(found.amplitude * found.amplitude)
+        yield told.formula(oscillation.amplitude * oscillation.amplitude)
 
 
 def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
@@ -119,7 +119,7 @@ def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
 def _function(told: Oscillating, name: str, series: Sequence[Harmonics]) -> str:
     """The variable itself, which the series stand for without its power of the small parameter."""
     shift = dict(told.found.powers).get(name, 0)
-    parts = [(n + shift, told.written(one)) for n, one in enumerate(series) if not one.is_zero]
+    parts = [(n + shift, told.written(harmonics)) for n, harmonics in enumerate(series) if not harmonics.is_zero]
     return sum_of_powers(parts, told.found.small, "**") or "0"
 
 

@@ -248,8 +248,8 @@ class Writer:
 
     def document(self, blocks: Iterable[content.Block]) -> Iterator[Line]:
         """The blocks one after the other."""
-        for one in blocks:
-            yield from self.block(one)
+        for block in blocks:
+            yield from self.block(block)
 
     def _line(self, *parts: Inline, indent: int = 0, style: str = "") -> Line:
         shown = self._shown(parts, style)
@@ -363,11 +363,11 @@ class Writer:
 
     def _aligned(self, value: content.Table) -> Iterator[Line]:
         """Columns of words take several lines where that is needed; what is too wide even so follows beneath."""
-        heads = [self.inline(one.title) for one in value.columns]
+        heads = [self.inline(column.title) for column in value.columns]
         rows = [[self._shown(cell) for cell in row] for row in value.rows]
         texts = [heads, *([_plain(cell) for cell in row] for row in rows)]
         widths = [max(map(len, cells)) for cells in zip(*texts, strict=True)]
-        folded = [k for k, one in enumerate(value.columns) if one.fold]
+        folded = [k for k, column in enumerate(value.columns) if column.fold]
         least = {k: max(min(widths[k], NARROW), *(len(x) for row in texts for x in row[k].split())) for k in folded}
         while folded and sum(widths) + 2 * len(widths) - 2 > self.width:
             k = max(folded, key=lambda k: widths[k] - least[k])
@@ -494,11 +494,11 @@ def _style(value: object) -> str:
 def in_powers(coefficients: Sequence[str], variable: str, power: str = "**", times: str = "*") -> str:
     """``m*z**2 + (a - b)*z - c`` of ``-c, a - b, m``: no factor 1, and brackets about sums only."""
     parts: list[str] = []
-    for k, one in reversed(list(enumerate(coefficients))):
-        if one == "0":
+    for k, coefficient in reversed(list(enumerate(coefficients))):
+        if coefficient == "0":
             continue
-        minus = one.startswith("-") and not (k and _is_sum(one[1:]))
-        factor = one[1:].lstrip() if minus else one
+        minus = coefficient.startswith("-") and not (k and _is_sum(coefficient[1:]))
+        factor = coefficient[1:].lstrip() if minus else coefficient
         if k:
             raised = variable if k == 1 else f"{variable}{power}{k}"
             written = f"({factor})" if _is_sum(factor) else factor

@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from mbsym.problems.regressor import Base, Regressor
 
 
-def named(one: Standard) -> str:
+def named(standard: Standard) -> str:
     """``Jxx(upper arm)``."""
-    return f"{one.kind}({one.body})"
+    return f"{standard.kind}({standard.body})"
 
 
-def sum_of(one: Base) -> str:
+def sum_of(base: Base) -> str:
     """``Jzz(one) + l**2 m(two)``."""
-    told = named(one.kept)
-    for other, factor in one.others:
+    told = named(base.kept)
+    for other, factor in base.others:
         text = _number(factor) or str(factor)
         sign, text = ("-", text[1:]) if text.startswith("-") and not set(text[1:]) & set("+-") else ("+", text)
         if set(text) & set("+-"):
@@ -53,13 +53,13 @@ def regressor_json(found: Regressor) -> str:
         standard=len(found.standard),
         base=[
             doc.Base.from_result(
-                one.kept,
-                others=[doc.Share(other.body, other.kind, str(factor)) for other, factor in one.others],
-                value=str(one.value),
+                base.kept,
+                others=[doc.Share(other.body, other.kind, str(factor)) for other, factor in base.others],
+                value=str(base.value),
             )
-            for one in found.base
+            for base in found.base
         ],
-        without_effect=[doc.Parameter(one.body, one.kind) for one in found.without_effect],
+        without_effect=[doc.Parameter(standard.body, standard.kind) for standard in found.without_effect],
         other_loads=found.besides,
     )
     return written(content)
@@ -74,9 +74,9 @@ def regressor_latex(found: Regressor) -> str:
         r"\begin{align}",
     ]
     rows = []
-    for k, one in enumerate(found.base, start=1):
-        told = _symbol(one.kept, numbers)
-        for other, factor in one.others:
+    for k, base in enumerate(found.base, start=1):
+        told = _symbol(base.kept, numbers)
+        for other, factor in base.others:
             text = _number(factor) or factor.latex()
             if text == "1":
                 told += f" + {_symbol(other, numbers)}"
@@ -88,9 +88,9 @@ def regressor_latex(found: Regressor) -> str:
     return "\n".join([*lines, " \\\\\n".join(rows), r"\end{align}"]) + "\n"
 
 
-def _symbol(one: Standard, numbers: dict[str, int]) -> str:
-    letter, index = one.kind[0], one.kind[1:]
-    return f"{letter}_{{{numbers[one.body]}{',' + index if index else ''}}}"
+def _symbol(standard: Standard, numbers: dict[str, int]) -> str:
+    letter, index = standard.kind[0], standard.kind[1:]
+    return f"{letter}_{{{numbers[standard.body]}{',' + index if index else ''}}}"
 
 
 def regressor_module(found: Regressor) -> str:
@@ -113,7 +113,7 @@ def regressor_module(found: Regressor) -> str:
         title=plain(system.name),
         n=n,
         rank=rank,
-        base=[(named(one.kept), plain(sum_of(one))) for one in found.base],
+        base=[(named(base.kept), plain(sum_of(base))) for base in found.base],
         meanings=[(item.name, plain(item.told)) for item in parameters_of(system, writer) if item.told],
         defaults=[(item.name, default(item.value)) for item in system.parameters],
         places=[(i, j) for i, j, _ in kept],
@@ -126,9 +126,9 @@ def regressor_module(found: Regressor) -> str:
 def _values(found: Regressor) -> tuple[Program, list[Node]]:
     program = Program()
     environment = program_environment(found.system, program)
-    rings = {id(one.value.ring): one.value.ring for one in found.base}
+    rings = {id(base.value.ring): base.value.ring for base in found.base}
     carry = {key: Carrier(ring, program, environment) for key, ring in rings.items()}
-    return program, [carry[id(one.value.ring)](one.value.polynomial) for one in found.base]
+    return program, [carry[id(base.value.ring)](base.value.polynomial) for base in found.base]
 
 
 def sentences(found: Regressor) -> Iterator[tuple[str, str]]:
@@ -136,8 +136,8 @@ def sentences(found: Regressor) -> Iterator[tuple[str, str]]:
     rank, standard = len(found.base), len(found.standard)
     kinds = f"{', '.join(KINDS[:2])}, ..., {', '.join(KINDS[6:])}"
     yield "base", f"{counted(rank, 'parameter')} of {standard} ({kinds} of each body) determine all generalised forces"
-    for k, one in enumerate(found.base, start=1):
-        yield f"{k}", sum_of(one)
+    for k, base in enumerate(found.base, start=1):
+        yield f"{k}", sum_of(base)
     if found.without_effect:
         told = ", ".join(map(named, found.without_effect))
         yield "none", f"{counted(len(found.without_effect), 'parameter')} that no motion tells: {told}"

@@ -60,13 +60,13 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
             doc.Parameter.from_result(item, text, unit=unit_of(system, item.name) or UNSET)
             for item in system.parameters
         ],
-        relations={one.name: text(one.value) for one in system.relations} or UNSET,
+        relations={relation.name: text(relation.value) for relation in system.relations} or UNSET,
         assumptions=[doc.Assumption.from_result(x, text) for x in system.assumptions] or UNSET,
         small_parameter=doc.SmallParameter.from_result(system.small) if system.small else UNSET,
         tables=[doc.Table.from_result(x, held=x.held if x.jumps else UNSET) for x in system.tables] or UNSET,
         checks=[doc.SelfCheck(**vars(check)) for check in analysis.checks],
         units=units_by_name(system, [("energy", energy_unit(system))]) or UNSET,
-        motion={one.coordinate: doc.Motion.from_result(one, text) for one in system.motion} or UNSET,
+        motion={entry.coordinate: doc.Motion.from_result(entry, text) for entry in system.motion} or UNSET,
         initial=_initial(system) or UNSET,
         inputs=[doc.Input.from_result(x, text) for x in system.inputs] or UNSET,
         outputs=[doc.Output.from_result(x, text) for x in system.outputs] or UNSET,
@@ -121,9 +121,9 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
 
 def _initial(system: System) -> dict[str, doc.Initial]:
     """What the description says of the state at t = 0, and of where prescribed motions begin, by name."""
-    given = [(one.coordinate, one.position, one.velocity) for one in system.initial]
-    given += [(one.coordinate, one.position, None) for one in system.start]
-    given += [(one.name, one.initial, None) for one in system.prescribed]
+    given = [(value.coordinate, value.position, value.velocity) for value in system.initial]
+    given += [(value.coordinate, value.position, None) for value in system.start]
+    given += [(prescribed.name, prescribed.initial, None) for prescribed in system.prescribed]
     found: dict[str, dict[str, Any]] = {
         name: {key: text(x) for key, x in (("position", position), ("velocity", velocity)) if x is not None}
         for name, position, velocity in given

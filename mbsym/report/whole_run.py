@@ -42,9 +42,9 @@ class Rendered:
 
 def rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> tuple[Rendered, ...]:
     """A target's files, its companions with it: all of them, or none."""
-    wanted = [part for part in target.companions if part.wanted(analysis, problems)]
-    without = tuple(Rendered(part.filename, None) for part in target.companions if part not in wanted)
-    files = tuple(_rendered(part, analysis, problems) for part in (target, *wanted))
+    targets = [part for part in target.companions if part.wanted(analysis, problems)]
+    without = tuple(Rendered(part.filename, None) for part in target.companions if part not in targets)
+    files = tuple(_rendered(part, analysis, problems) for part in (target, *targets))
     failed = next((file for file in files if file.text is None), None)
     if failed is None:
         return files + without

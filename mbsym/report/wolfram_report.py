@@ -45,7 +45,9 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     """The file's text."""
     from mbsym.analysis import PROBLEMS
 
-    told = contents(results(analysis, problems), Writer(readable=True, longest=LONGEST, file="results.json").document)
+    sections = contents(
+        results(analysis, problems), Writer(readable=True, longest=LONGEST, file="results.json").document
+    )
     names = wolfram_names(analysis.ring)
     stages = {number: analysis.stage(number) for number in problems}
     found = {number: stage.value for number, stage in stages.items() if stage.failure is None}
@@ -79,7 +81,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         system=analysis.system,
         names=names,
         found=found,
-        lines={n: [x.text for x in told[n]()][1:] for n in (8, 9, 10, 11, 12) if n in found},
+        lines={n: [x.text for x in sections[n]()][1:] for n in (8, 9, 10, 11, 12) if n in found},
         polynomial_formulas=[x.wolfram() for x in found[9].formulas] if 9 in found else [],
         small_parameter_formulas=list(_of_small_parameters(found[12], analysis.system, names)) if 12 in found else [],
         forms=forms,
@@ -122,17 +124,17 @@ def _of_small_parameters(found: SmallParameters, system: System, names: WolframN
             for x in oscillation_words.coefficients(found.oscillation)
         )
         yield "periodicSolution", listed(told)
-    for one in functions(found):
-        sums = {key: _sum(parts, one.small, names) for key, parts in one.series}
-        rate = sums.pop(one.phase, "")
+    for function in functions(found):
+        sums = {key: _sum(parts, function.small, names) for key, parts in function.series}
+        rate = sums.pop(function.phase, "")
         put = (
-            f" /. {wolfram_names(found.oscillation.ring)[one.phase]}[t] -> ({rate})*t"
+            f" /. {wolfram_names(found.oscillation.ring)[function.phase]}[t] -> ({rate})*t"
             if found.oscillation and rate
             else ""
         )
-        head, *rest = one.name.split("_")
+        head, *rest = function.name.split("_")
         yield f"{head}{''.join(map(str.title, rest))}Of", listed(f"{string(k)} -> {x}" for k, x in sums.items()) + put
-    potentials = [one.found for one in averages(found, system) if one.found is not None]
+    potentials = [average.found for average in averages(found, system) if average.found is not None]
     if potentials:
         yield (
             "effectivePotentials",
@@ -162,9 +164,9 @@ def _initial(system: System, names: WolframNames) -> Iterator[tuple[str, Express
 
 def _in_order(system: System, names: WolframNames) -> list[str]:
     """q(0) and q'(0) in the order of the coordinates, zero for what is not given."""
-    given = {item.coordinate: item for item in system.begun}
-    places = [given[name].position if name in given else None for name in system.coordinates]
-    rates = [given[name].velocity if name in given else None for name in system.coordinates]
+    values = {item.coordinate: item for item in system.begun}
+    places = [values[name].position if name in values else None for name in system.coordinates]
+    rates = [values[name].velocity if name in values else None for name in system.coordinates]
     return [wolfram_expression(ZERO if value is None else value, names) for value in places + rates]
 
 

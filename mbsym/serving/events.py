@@ -67,14 +67,14 @@ class Events:
     def tell(self, text: str) -> None:
         """To every page, now or when it connects again."""
         self._count += 1
-        told = SentEvent(self._count, text)
-        self._kept.append(told)
+        sent_event = SentEvent(self._count, text)
+        self._kept.append(sent_event)
         self._size += len(text)
         while len(self._kept) > MOST_KEPT or (self._size > MOST_CHARACTERS and len(self._kept) > 1):
             self._size -= len(self._kept.popleft().text)
         for page in self._pages.copy():
             try:
-                page.put_nowait(told)
+                page.put_nowait(sent_event)
             except asyncio.QueueFull:
                 self._pages.discard(page)
 
@@ -107,8 +107,8 @@ class Events:
             yield "retry: 1000\n\n"
             if lost:
                 yield self._lines(SentEvent(after, encoded({"kind": "lost"})))
-            for told in missed:
-                yield self._lines(told)
+            for sent_event in missed:
+                yield self._lines(sent_event)
             while queue in self._pages:
                 try:
                     now = await asyncio.wait_for(queue.get(), ALIVE)

@@ -63,9 +63,9 @@ def _single_threaded() -> Iterator[None]:
 def _context() -> BaseContext:
     if sys.platform != "linux":  # elsewhere libraries do not bear to be forked
         return multiprocessing.get_context("spawn")
-    found = multiprocessing.get_context("forkserver")
-    found.set_forkserver_preload(["mbsym.serving.warmed"])
-    return found
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["mbsym.serving.warmed"])
+    return context
 
 
 @dataclass(eq=False)
@@ -188,8 +188,8 @@ class Jobs:
                 self._running[job.name] = job
         for one in old:
             one.end("begun again")
-        for one in others[: max(0, len(others) + 1 - MOST_AT_ONCE)]:
-            one.end("it made room for another")
+        for other in others[: max(0, len(others) + 1 - MOST_AT_ONCE)]:
+            other.end("it made room for another")
         if begun is None:
             self._attended(job, task)
         else:
@@ -223,12 +223,12 @@ class Jobs:
 
         ``begun`` is told the name of the job, by which it can be cancelled.
         """
-        found: list[Event] = []
+        events: list[Event] = []
         over = threading.Event()
 
         def heard(event: Event) -> None:
             if event["kind"] not in ("done", "progress"):
-                found.append(event)
+                events.append(event)
             if event["kind"] in _ENDS:
                 over.set()
 
@@ -238,7 +238,7 @@ class Jobs:
         if not over.wait(seconds):
             self.cancel(name)
             return {"kind": "failed", "words": f"stopped after {seconds:g} s"}
-        return found[-1] if found else {"kind": "failed", "words": "its process told nothing"}
+        return events[-1] if events else {"kind": "failed", "words": "its process told nothing"}
 
     def close(self) -> None:
         """Ends all of them."""
@@ -315,11 +315,11 @@ class Jobs:
     def _taken(self) -> _Process:
         """The one that waits, and another in its place soon; raises OSError where there can be none."""
         with self._spare_lock:
-            found, self._spare = self._spare, None
-        if found is not None and not found.process.is_alive():
-            found.bury()
-            found = None
-        taken = found or self._started()
+            process, self._spare = self._spare, None
+        if process is not None and not process.process.is_alive():
+            process.bury()
+            process = None
+        taken = process or self._started()
         threading.Thread(target=self.warm, daemon=True, name="spare").start()
         return taken
 

@@ -63,7 +63,7 @@ def pasted(text: str) -> str:
     complaints = Complaints()
     made = convert(text, complaints, symbols=True)
     if made is None:
-        raise Wrong("; ".join(one.message for one in complaints.sorted()))
+        raise Wrong("; ".join(complaint.message for complaint in complaints.sorted()))
     return str(made.yaml)
 
 
@@ -114,18 +114,18 @@ def changed(text: str, name: str, operations: list[Any], folder: Path | None) ->
 def complaints_json(found: list[Complaint], places: Offsets) -> list[dict[str, Any]]:
     """Complaints of the seam."""
     listed = []
-    for one in found:
-        start, end = places.of_span(one.span)
+    for complaint in found:
+        start, end = places.of_span(complaint.span)
         listed.append(
             {
-                "severity": one.severity,
-                "code": one.code,
-                "message": one.message,
-                "hint": one.hint,
+                "severity": complaint.severity,
+                "code": complaint.code,
+                "message": complaint.message,
+                "hint": complaint.hint,
                 "from": start,
                 "to": end,
-                "line": one.span.line if one.span else 1,
-                "column": one.span.column if one.span else 1,
+                "line": complaint.span.line if complaint.span else 1,
+                "column": complaint.span.column if complaint.span else 1,
             }
         )
     return listed
@@ -140,13 +140,13 @@ def completed(text: str, offset: int, system: System | None) -> dict[str, Any]:
     found = suggestions(text, before.count("\n"), len(before) - start, system)
     items = [
         {
-            "label": one.label,
-            "kind": one.kind,
-            "detail": one.kind,
-            "insert": one.insert or one.label,
-            "documentation": one.meaning,
+            "label": suggestion.label,
+            "kind": suggestion.kind,
+            "detail": suggestion.kind,
+            "insert": suggestion.insert or suggestion.label,
+            "documentation": suggestion.meaning,
         }
-        for one in found
+        for suggestion in found
     ]
     return {"from": places.units(word.start() if word else len(before)), "items": items}
 
@@ -174,9 +174,9 @@ def hovered(text: str, offset: int) -> dict[str, Any] | None:
 
 def converted(text: str, name: str, to: str, folder: Path | None) -> dict[str, Any]:
     """The description in the other spelling, or the complaints for which there is none."""
-    system, found = understood(text, name, folder)
-    if system is None or any(one.severity == "error" for one in found):
-        return {"complaints": complaints_json(found, Offsets(text))}
+    system, complaints = understood(text, name, folder)
+    if system is None or any(complaint.severity == "error" for complaint in complaints):
+        return {"complaints": complaints_json(complaints, Offsets(text))}
     return {"text": to_text(system) if to == "text" else to_yaml(system)}
 
 

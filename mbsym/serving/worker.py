@@ -314,20 +314,20 @@ def _modes(task: Task, system: System) -> Iterator[Message]:
 
     values = {name: number(value) for name, value in _numbers(task).items()}
     wrong = [f"there is no parameter called {name}" for name in values if name not in system.parameter_names]
-    wrong = wrong or [one.text for one in contradictions_of(system, values)]
+    wrong = wrong or [contradiction.text for contradiction in contradictions_of(system, values)]
     if wrong:
         raise Refused("; ".join(wrong))
     yield {"kind": "modes", "value": modes_json(modes(Analysis(with_values(system, values), (4, 5, 6))))}
 
 
 def _numbers(task: Task) -> dict[str, Fraction]:
-    found = {}
+    numbers = {}
     for name, value in (task.get("set") or {}).items():
         try:
-            found[str(name)] = Fraction(str(value))
+            numbers[str(name)] = Fraction(str(value))
         except (ValueError, ZeroDivisionError) as error:
             raise Refused(f"{name}: a rational number is wanted, as 2/5 or 0.4") from error
-    return found
+    return numbers
 
 
 # --- maps -------------------------------------------------------------------------------------------------------------
@@ -366,7 +366,7 @@ def _map(task: Task, system: System) -> Iterator[Message]:
     image = next(iter(map_figure(system, found, language, ("png",)).values()))
     words = []
     if found.check is not None and not found.check.holds:
-        words = [f"withdrawn, as the map's own check fails: {one.mistake}" for one in found.check.findings[:20]]
+        words = [f"withdrawn, as the map's own check fails: {finding.mistake}" for finding in found.check.findings[:20]]
     yield {"kind": "map", "image": f"data:image/png;base64,{b64encode(image).decode()}", "words": words}
 
 

@@ -104,11 +104,11 @@ def simulate_accurately(
     request = replace(request, estimate=request.estimate is not False)
     with stage(PLANNING):
         plan, settled = plan_for(scenario, request, accuracy, pins, tried)
-    found = simulate(scenario, settled, watch, stage)
+    simulation = simulate(scenario, settled, watch, stage)
     for again in range(REPEATS + 1):
         finer = _finer(plan)
         last = again == REPEATS or pins.setting is not None or finer == plan.setting
-        missed = _missed(plan, found, 1.0 if last else DOUBLED)
+        missed = _missed(plan, simulation, 1.0 if last else DOUBLED)
         if not missed:
             break
         if last:
@@ -117,11 +117,13 @@ def simulate_accurately(
         missed = Message("[[missed]]: repeated more finely", missed=missed)
         plan = replace(plan, setting=finer, remarks=(*plan.remarks, missed))
         settled = replace(settled, tolerance=plan.setting.tolerance, step=plan.setting.step)
-        found = simulate(scenario, settled, watch, stage)
-    if isinstance(found.error, NoEstimate) and found.error.why in UNSHOWN:
-        plan = replace(plan, unshown=found.error.why)
-    plan = replace(plan, bounds=tuple(_proved(bound, found) for bound in _raised(plan, found)))
-    return replace(found, plan=plan, chosen=replace(found.chosen, why=Message("chosen for the accuracy asked for")))
+        simulation = simulate(scenario, settled, watch, stage)
+    if isinstance(simulation.error, NoEstimate) and simulation.error.why in UNSHOWN:
+        plan = replace(plan, unshown=simulation.error.why)
+    plan = replace(plan, bounds=tuple(_proved(bound, simulation) for bound in _raised(plan, simulation)))
+    return replace(
+        simulation, plan=plan, chosen=replace(simulation.chosen, why=Message("chosen for the accuracy asked for"))
+    )
 
 
 def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
@@ -131,7 +133,7 @@ def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
     """
     if not isinstance(found.error, ErrorEstimate):
         return plan.bounds
-    errors = {one.name: one.largest / one.scale for one in found.error.quantities}
+    errors = {difference.name: difference.largest / difference.scale for difference in found.error.quantities}
     others = {name: error for name, error in errors.items() if name not in plan.accuracy.named}
     bounds = []
     for bound in plan.bounds:

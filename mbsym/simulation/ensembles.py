@@ -35,7 +35,7 @@ class Spread:
 
 def simulate_many(
     scenario: Scenario,
-    asked: Spread,
+    spread: Spread,
     overrides: Mapping[str, Expression] | None = None,
     threads: int | None = None,
     watch: Callable[[float], None] = lambda t: None,
@@ -44,10 +44,10 @@ def simulate_many(
 
     Raises Unvaried for what cannot be varied, Failure where there is no program for the equations.
     """
-    request, system = asked.request, scenario.system
+    request, system = spread.request, scenario.system
     begun = prepared(scenario, request)[0]
-    values = drawn(system, asked.variations, asked.members, asked.seed, asked.sampling)
-    names = [one.name for one in asked.variations]
+    values = drawn(system, spread.variations, spread.members, spread.seed, spread.sampling)
+    names = [variation.name for variation in spread.variations]
     free = [name for name in names if name in system.parameter_names]
     found = members(parametrised(begun, free, overrides, request.fixed), names, values)
     method = "dop853" if request.method == "auto" else request.method

@@ -144,16 +144,16 @@ class _Numbers:
         """h(s, eps), exactly but for its square root."""
         at = self._at(s)
         total = []
-        for one in self.found.manifold.functions:
+        for function in self.found.manifold.functions:
             value = fmpq(0)
-            for k, c in one.coefficients.items():
+            for k, c in function.coefficients.items():
                 value += c.top(*at) / c.bottom(*at) * rationals.exact(self.eps) ** k
             total.append(rationals.fraction(value))
         return total
 
     def flow(self) -> Flow:
         """s -> s', in floating point, cut off after the order of the expansion."""
-        rows = [self._row(one) for one in self.found.manifold.flow]
+        rows = [self._row(series) for series in self.found.manifold.flow]
         root = self.found.manifold.root
         if root is None:
             return lambda s: np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
@@ -165,12 +165,12 @@ class _Numbers:
 
         return moved
 
-    def _row(self, one: Series) -> list[tuple[Evaluated, Evaluated]]:
+    def _row(self, series: Series) -> list[tuple[Evaluated, Evaluated]]:
         root = self.found.manifold.root
         place = None if root is None else root.place
         return [
             (self._polynomial(c.top, self.eps**k, place), self._polynomial(c.bottom, Fraction(1), place))
-            for k, c in one.coefficients.items()
+            for k, c in series.coefficients.items()
         ]
 
     def _polynomial(self, p: Any, factor: Fraction, root: int | None) -> Evaluated:

@@ -83,12 +83,12 @@ def find_orbit(
     energy = keep in ("energy", "auto") and conserved
     state = np.array([float(x) for x in scenario.state])
     guess = Guess(state, period, dict(turns or {}), tuple(shifted), keep == "period", energy)
-    found: Orbit = periodic_orbit(dynamics, guess, watch=watch)
-    times = np.linspace(0.0, found.period, ROWS)
-    run = METHODS["dop853"].start(dynamics, Setting(1e-13), initial=found.state)
+    orbit: Orbit = periodic_orbit(dynamics, guess, watch=watch)
+    times = np.linspace(0.0, orbit.period, ROWS)
+    run = METHODS["dop853"].start(dynamics, Setting(1e-13), initial=orbit.state)
     states = np.array(run.fill(times))
     sizes = scaled(np.max(np.abs(states), axis=1), sizes_of_scene(dynamics, times, states))
-    return PeriodicMotion(scenario, found, times, states, sizes)
+    return PeriodicMotion(scenario, orbit, times, states, sizes)
 
 
 def lyapunov_exponents(
@@ -108,16 +108,18 @@ def gradient_of(
 ) -> Gradient:
     """See ``mbsym.numerics.orbits.variational``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
-    found = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    expression = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}
     wrong = [item.message for item in complaints.items]
-    wrong += [f"unknown name {name}" for name in sorted((names(found) if found is not None else set()) - known)]
+    wrong += [
+        f"unknown name {name}" for name in sorted((names(expression) if expression is not None else set()) - known)
+    ]
     following = {relation.name for relation in system.relations}
     wrong += [f"there is nothing called {name} to differentiate by" for name in wanted if name not in known - {"pi"}]
     wrong += [f"{name} follows from other parameters" for name in wanted if name in following]
-    if wrong or found is None:
+    if wrong or expression is None:
         raise ValueError("; ".join(wrong))
-    return gradient_at_end(scenario_of(system, values), found, wanted, time, values)
+    return gradient_at_end(scenario_of(system, values), expression, wanted, time, values)
 
 
 # How a motion answers to changes of its initial state and of parameters, along the whole of it.

@@ -67,36 +67,38 @@ def measured_orders(
     """
     put = {name: number(x) for name, x in (values or {}).items() if name in system.parameter_names}
     given = scenario(system, put)
-    found = told.found
+    oscillation = told.found
     parameters = {name: Fraction(value) for name, value in given.parameters.items()}
-    powers = dict(found.powers)
-    whole = parameters[found.small] if found.small in told.field.parameters else Fraction(1)
+    powers = dict(oscillation.powers)
+    whole = parameters[oscillation.small] if oscillation.small in told.field.parameters else Fraction(1)
     symbols = symbol_values(given, told, powers, whole, values or {})
-    errors: list[list[float]] = [[] for _ in found.names]
+    errors: list[list[float]] = [[] for _ in oscillation.names]
     time = 0.0
     simulated = not system.speeds
     for part in PARTS:
         eps = whole * part
-        watch(f"{found.small}/{part.denominator}")
+        watch(f"{oscillation.small}/{part.denominator}")
         numbers = {name: value * part ** powers.get(name, 0) for name, value in parameters.items()}
-        if found.small in numbers:
-            numbers[found.small] = eps
+        if oscillation.small in numbers:
+            numbers[oscillation.small] = eps
         series = Numeric(told, parameters | symbols, eps)
         time = 2 * pi / abs(series.rate)  # a root in the frequency may stand above what is negative
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         if simulated:
             rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
         else:
-            start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in found.names]
-            rows = _integrated(told.field, found.names, numbers, start, times)
-        for place, name in enumerate(found.names):
+            start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in oscillation.names]
+            rows = _integrated(told.field, oscillation.names, numbers, start, times)
+        for place, name in enumerate(oscillation.names):
             unit = series.eps ** powers.get(name, 0)
             with ctx.workprec(BITS):
                 away = [abs(row[place] / unit - series.at(t, name)) for row, t in zip(rows, times, strict=True)]
             errors[place].append(max(float(x.mid()) for x in away))
     noise = NOISE_OF_A_RUN if simulated else NOISE_OF_BALLS
     orders, halved = zip(*(_order(x, noise) for x in errors), strict=True)
-    return MeasuredOrders(float(whole), time, PARTS, found.names, tuple(map(tuple, errors)), orders, halved, simulated)
+    return MeasuredOrders(
+        float(whole), time, PARTS, oscillation.names, tuple(map(tuple, errors)), orders, halved, simulated
+    )
 
 
 def _order(errors: Sequence[float], noise: float) -> tuple[float | None, int]:
@@ -118,7 +120,7 @@ def symbol_values(
 
     Raises NoClosedForm where an amplitude is needed, not ``put`` in, and zero.
     """
-    found = told.found
+    oscillation = told.found
     if given.system.speeds:
         seen = scenario_in_states(given)
         state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))
@@ -127,11 +129,11 @@ def symbol_values(
         for name, value in on_the_motion(given.system, told, given).items():
             state[name] -= value
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
-    values = {f"#{name}": scaled[name] for name, _ in found.constants if name in scaled}
-    values[AMPLITUDE] = scaled[found.leading]
-    needed = found.kind is Amplitude.FREE and told.symbols.get(AMPLITUDE) not in put
+    values = {f"#{name}": scaled[name] for name, _ in oscillation.constants if name in scaled}
+    values[AMPLITUDE] = scaled[oscillation.leading]
+    needed = oscillation.kind is Amplitude.FREE and told.symbols.get(AMPLITUDE) not in put
     if needed and values[AMPLITUDE] == 0:
-        raise NoClosedForm(f"{found.leading} begins at zero: the initial state gives no amplitude")
+        raise NoClosedForm(f"{oscillation.leading} begins at zero: the initial state gives no amplitude")
     return values
 
 
@@ -171,8 +173,8 @@ class Numeric:
 
     def _summed(self, series: Sequence[Harmonics]) -> dict[int, tuple[Any, Any]]:
         total: dict[int, tuple[Any, Any]] = {}
-        for n, one in enumerate(series):
-            for k, (c, s) in one.waves.items():
+        for n, harmonics in enumerate(series):
+            for k, (c, s) in harmonics.waves.items():
                 a, b = total.get(k, (arb(0), arb(0)))
                 total[k] = (a + self._of(c) * self.eps**n, b + self._of(s) * self.eps**n)
         return total

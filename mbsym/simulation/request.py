@@ -87,7 +87,7 @@ def read_values(system: System, given: Mapping[str, Expression | Fraction | floa
     a declared variable (its initial value).  Raises ValueError with everything that is wrong.
     """
     known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
-    found: dict[str, Expression] = {}
+    expressions: dict[str, Expression] = {}
     wrong = [f"there is nothing called {name} to set" for name in given if name not in known]
     for name, value in given.items():
         complaints = Complaints()
@@ -97,17 +97,17 @@ def read_values(system: System, given: Mapping[str, Expression | Fraction | floa
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             wrong += [f"{name} = {value}: unknown name {other}" for other in unknown]
             if read is not None:
-                found[name] = read
+                expressions[name] = read
         elif isinstance(value, (int, float, Fraction)):
             if not isfinite(value):
                 wrong.append(f"{name} = {value} is no number")
             else:
-                found[name] = number(Fraction(value))
+                expressions[name] = number(Fraction(value))
         else:
-            found[name] = value
+            expressions[name] = value
     if wrong:
         raise ValueError("; ".join(wrong))
-    return found
+    return expressions
 
 
 def wrong_with(request: Request) -> Iterator[str]:

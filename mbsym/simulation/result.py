@@ -214,9 +214,9 @@ class Simulation:
         rows = (*self.system.coordinates, *self.system.velocities)
         if name in rows:
             return self.trajectory.states[rows.index(name)]
-        for kept in self.invariants:
-            if kept.column == name:
-                return kept.values
+        for invariant in self.invariants:
+            if invariant.column == name:
+                return invariant.values
         if name in self.speeds:
             return self.speeds[name]
         raise KeyError(name)

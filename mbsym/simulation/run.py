@@ -106,23 +106,25 @@ def simulate(
         watching = Watching(dynamics, chosen.method, request.events) if request.events else None
     method = chosen.method if watching is None else watching.method
     with stage(INTEGRATING):
-        found = _trajectory(dynamics, method, chosen, request, watch, integrals)
+        trajectory = _trajectory(dynamics, method, chosen, request, watch, integrals)
     happened = None
     if watching is not None:
-        found, happened = watching.happened(found)
-    found = replace(found, between=found.between or kinetic_between(dynamics, found, chosen.completed))
-    error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if found.whole else Lacking.NOT_WHOLE)
+        trajectory, happened = watching.happened(trajectory)
+    trajectory = replace(
+        trajectory, between=trajectory.between or kinetic_between(dynamics, trajectory, chosen.completed)
+    )
+    error: ErrorEstimate | NoEstimate = NoEstimate(Lacking.NOT_ASKED if trajectory.whole else Lacking.NOT_WHOLE)
     with stage(ESTIMATING):
         held = resting.names if resting is not None and resting.proved else ()
-        dense = between_rows(dynamics, found, chosen.method, request.arithmetic)
-        pivot = nearest_to_singular(dynamics, found, dense, chosen.method, request.arithmetic)
-        found, dense = replace(found, least_pivot=pivot), replace(dense, least_pivot=pivot)
+        dense = between_rows(dynamics, trajectory, chosen.method, request.arithmetic)
+        pivot = nearest_to_singular(dynamics, trajectory, dense, chosen.method, request.arithmetic)
+        trajectory, dense = replace(trajectory, least_pivot=pivot), replace(dense, least_pivot=pivot)
         both = energies(dynamics, dense, held)
-        kept = kept_integrals(dynamics, found, integrals, held, dense)
-        own = cost(dynamics, found.method, request.arithmetic, found.work)
-        if found.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
+        kept = kept_integrals(dynamics, trajectory, integrals, held, dense)
+        own = cost(dynamics, trajectory.method, request.arithmetic, trajectory.work)
+        if trajectory.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
-            error = estimated(dynamics, found, chosen.method, request.arithmetic, chosen.completed, limit)
+            error = estimated(dynamics, trajectory, chosen.method, request.arithmetic, chosen.completed, limit)
     if both[0].standing is Standing.PROVED and contradicted(error, both[0].change):
         error = NoEstimate(Lacking.CONTRADICTED)
     certificate = None
@@ -132,12 +134,12 @@ def simulate(
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
             asked = (request.certify, request.certify_seconds, request.certify_limit)
-            certificate = certified(dynamics, found.times, found.states, *asked, watch, seen)
+            certificate = certified(dynamics, trajectory.times, trajectory.states, *asked, watch, seen)
     return Simulation(
-        *(scenario, dynamics, request, chosen, found, *both, kept, error, missing),
+        *(scenario, dynamics, request, chosen, trajectory, *both, kept, error, missing),
         *(certificate, happened, given, None, closed),
-        None if closed is None else drift_along(dynamics, found),
-        () if closed is None else stepped_over(dynamics, dense.times, dense.states, found.work.singular),
+        None if closed is None else drift_along(dynamics, trajectory),
+        () if closed is None else stepped_over(dynamics, dense.times, dense.states, trajectory.work.singular),
     )
 
 
@@ -151,10 +153,10 @@ def prepared(scenario: Scenario, request: Request) -> tuple[Scenario, Closed | N
     later = set(model.without) <= set(droppable(system))
     scenario = scenario if later else scenario_of(scenario, model)
     refuse_in_run(system, request)
-    found = begun(scenario, request.fixed, request.variables == DECLARED)
-    found = moving(found) if system.constraints else found
-    whole = scenario_of(found.scenario, model) if later else found.scenario
-    return whole, found if system.constraints else None
+    closed = begun(scenario, request.fixed, request.variables == DECLARED)
+    closed = moving(closed) if system.constraints else closed
+    whole = scenario_of(closed.scenario, model) if later else closed.scenario
+    return whole, closed if system.constraints else None
 
 
 def runs_in_states(system: System, request: Request) -> bool:
@@ -238,8 +240,8 @@ def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any
 
     try:
         known = tuple(item for item in analysis.integrals if item.kind != ENERGY)
-        found = (*known, *found_integrals(analysis, scenario.parameters))
-        return found, "" if found else "none is known beside the energy, which is watched in every run"
+        integrals = (*known, *found_integrals(analysis, scenario.parameters))
+        return integrals, "" if integrals else "none is known beside the energy, which is watched in every run"
     except Unavailable as reason:
         return (), str(reason)
 

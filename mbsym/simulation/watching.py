@@ -124,8 +124,8 @@ def read_watch(
     if wrong:
         raise ValueError("; ".join(wrong))
     return Watch(
-        tuple(one for one in found_events if one is not None),
-        tuple(one for one in found_stops if one is not None),
+        tuple(found_event for found_event in found_events if found_event is not None),
+        tuple(found_stop for found_stop in found_stops if found_stop is not None),
         None if condition is None else section_of(system, condition, written),
     )
 
@@ -157,7 +157,7 @@ class Watching:
     def __init__(self, dynamics: Dynamics, method: Method, asked: Watch) -> None:
         self._asked, self._dynamics = asked, dynamics
         wanted = [("event", one, Action.RECORD) for one in asked.events]
-        wanted += [("stop", one, Action.STOP) for one in asked.stops]
+        wanted += [("stop", stop, Action.STOP) for stop in asked.stops]
         wanted += [("section", asked.section.condition, Action.RECORD)] if asked.section is not None else []
         events: list[Event] = []
         for option, condition, action in wanted:

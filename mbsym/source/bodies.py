@@ -130,7 +130,7 @@ def _declare_inferred(draft: Draft, slips: set[str], reading: Reading) -> None:
     for item in _angles(draft)[:MAX_COORDINATES]:
         name = _bare_name(item)
         if name is not None and name not in reading.scope.kinds and why_no_name(name) is None:
-            slip = slip_of(name, [one for one in reading.scope.kinds if one not in slips])
+            slip = slip_of(name, [kind for kind in reading.scope.kinds if kind not in slips])
             if slip is not None:
                 slips.add(name)
                 message = Message("the undeclared angle '[[name]]' becomes a coordinate of its own", name=name)
@@ -442,11 +442,11 @@ def read_shapes(node: Node | None, what: str, reading: Reading) -> tuple[Shape, 
     if node is None:
         return ()
     items = reading.items(node, "'shapes'")
-    found = (
+    shapes = (
         _shape(reading.fields(item, Message("a shape of [[what]]", what=worded(what)), SHAPE), reading)
         for item in items
     )
-    return tuple(shape for shape in found if shape is not None)
+    return tuple(shape for shape in shapes if shape is not None)
 
 
 def _shape(fields: Fields, reading: Reading) -> Shape | None:

@@ -172,7 +172,7 @@ def _constraints(
 
 def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str, ...]:
     node = fields.get("reactions")
-    found: list[str] = []
+    reactions: list[str] = []
     for item in () if node is None else reading.items(node, "'reactions'"):
         name = read_body_name(item, "a joint", bodies, reading)
         if name is None:
@@ -180,11 +180,11 @@ def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str
         if name == INERTIAL:
             message = "the inertial frame 0 has no joint"
             reading.error("unknown-body", message, item.span, "name the body that the joint moves")
-        elif name in found:
+        elif name in reactions:
             reading.error("repeated-key", Message("[[name]] is given twice", name=ascii_safe(name)), item.span)
         else:
-            found.append(name)
-    return tuple(found)
+            reactions.append(name)
+    return tuple(reactions)
 
 
 def _coordinates(
@@ -192,15 +192,15 @@ def _coordinates(
 ) -> tuple[str, ...]:
     """A list of coordinates, or of names of other ``kinds``, none twice."""
     node, allowed = fields.get(key), Allowed(what, kinds)
-    found: list[str] = []
+    coordinates: list[str] = []
     for item in () if node is None else reading.items(node, f"'{key}'"):
         scalar = reading.scalar(item, "a coordinate")
         if scalar is None or not reading.scope.check_name(scalar.text, scalar.span, allowed):
             continue
-        if scalar.text in found:
+        if scalar.text in coordinates:
             reading.error("repeated-key", Message("[[what]] is given twice", what=ascii_safe(scalar.text)), scalar.span)
-        found.append(scalar.text)
-    return tuple(found)
+        coordinates.append(scalar.text)
+    return tuple(coordinates)
 
 
 def _with_units(system: System, fields: Fields, reading: Reading) -> System:
@@ -246,11 +246,11 @@ def read_inputs(node: Node | None, reading: Reading) -> tuple[Input, ...]:
     if node is None:
         return ()
     if isinstance(node, Sequence):
-        found = [one for item in reading.items(node, "'inputs'") if (one := _listed(item, reading)) is not None]
+        inputs = [one for item in reading.items(node, "'inputs'") if (one := _listed(item, reading)) is not None]
     else:
-        found = [one for entry in reading.entries(node, "'inputs'") if (one := _input(entry, reading)) is not None]
-    _bound(len(found), "inputs", node, reading)
-    return tuple(found)
+        inputs = [one for entry in reading.entries(node, "'inputs'") if (one := _input(entry, reading)) is not None]
+    _bound(len(inputs), "inputs", node, reading)
+    return tuple(inputs)
 
 
 def _listed(item: Node, reading: Reading) -> Input | None:
@@ -277,16 +277,16 @@ def _input(entry: Entry, reading: Reading) -> Input | None:
 
 def read_outputs(node: Node | None, reading: Reading) -> tuple[Output, ...]:
     """``y1: theta``: expressions in coordinates, velocities, parameters, prescribed motions and inputs."""
-    found = []
+    outputs = []
     for entry in () if node is None else reading.entries(node, "'outputs'"):
         errors = reading.errors
         value = reading.expression(entry.value, OUTPUT)
         declared = reading.scope.declare(entry.key.text, "output", entry.key.span)
         if declared and reading.errors == errors:
-            found.append(Output(entry.key.text, value, entry.key.span))
+            outputs.append(Output(entry.key.text, value, entry.key.span))
     if node is not None:
-        _bound(len(found), "outputs", node, reading)
-    return tuple(found)
+        _bound(len(outputs), "outputs", node, reading)
+    return tuple(outputs)
 
 
 def _bound(count: int, what: str, node: Node, reading: Reading) -> None:

@@ -107,10 +107,10 @@ def _check_relative_velocity(system: System, body: Body, draft: Draft, reading: 
         return
     rates = _rates(system)
     relations = {relation.name: relation.value for relation in system.relations}
-    for index, (given, radius) in enumerate(zip(body.relative_velocity, body.connection_point, strict=True)):
+    for index, (expression, radius) in enumerate(zip(body.relative_velocity, body.connection_point, strict=True)):
         derived = Derivation(rates)(radius)
-        if vanishes(subtract(given, derived), relations) is False:
-            span = given.span or draft.fields.key_span("relative velocity")
+        if vanishes(subtract(expression, derived), relations) is False:
+            span = expression.span or draft.fields.key_span("relative velocity")
             message = Message("component [[index]] is not the derivative of the connection point", index=index + 1)
             reading.error(
                 "relative-velocity",
@@ -217,7 +217,7 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
 
 def _is_fixed(system: System, body: Body) -> bool:
     """Whether the body's connection point rests in space, for sure."""
-    moving = {*system.coordinates, *(one.name for one in system.prescribed), "t"}
+    moving = {*system.coordinates, *(prescribed.name for prescribed in system.prescribed), "t"}
     bodies = {one.name: one for one in system.bodies}
     for _ in bodies:
         if any(names(x) & moving for x in body.connection_point):
@@ -274,7 +274,7 @@ def _is_enough(system: System, body: Body, index: int) -> bool:
     """
     if system.newtonian_fields:
         return False
-    moving = {*system.coordinates, *(one.name for one in system.prescribed), "t"}
+    moving = {*system.coordinates, *(prescribed.name for prescribed in system.prescribed), "t"}
     bodies = {one.name: one for one in system.bodies}
     direction: list[float] | None = [float(k == index) for k in range(3)]  # in the axes after the turn; None: unknown
     part, passed = body, 0
@@ -329,10 +329,10 @@ def check_system(system: System, reading: Reading) -> None:
 
 def _check_use(system: System, reading: Reading) -> None:
     """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
-    used = {one.name for one in system.relations}
-    used |= set(_occurring([getattr(system, one.name) for one in fields(system)]))
-    declared = [("parameter", one.name, one.span) for one in system.parameters]
-    declared += [("prescribed motion", one.name, one.span) for one in system.prescribed]
+    used = {relation.name for relation in system.relations}
+    used |= set(_occurring([getattr(system, field.name) for field in fields(system)]))
+    declared = [("parameter", parameter.name, parameter.span) for parameter in system.parameters]
+    declared += [("prescribed motion", prescribed.name, prescribed.span) for prescribed in system.prescribed]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
         declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
@@ -345,7 +345,7 @@ def _check_use(system: System, reading: Reading) -> None:
 def in_formulas(system: System) -> frozenset[str]:
     """The names that formulas of bodies, loads, constraints, prescribed motions and relations hold."""
     held = (system.bodies, system.loads, system.constraints, system.prescribed, system.relations, system.linear)
-    return frozenset(_occurring(held)) | {one.name for one in system.relations}
+    return frozenset(_occurring(held)) | {relation.name for relation in system.relations}
 
 
 def _occurring(value: Any) -> Iterator[str]:
@@ -363,7 +363,7 @@ def _occurring(value: Any) -> Iterator[str]:
 @cache
 def _field_names(kind: Any) -> tuple[str, ...]:
     """The fields of a dataclass; of what is none, nothing."""
-    return tuple(one.name for one in fields(kind)) if is_dataclass(kind) else ()
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else ()
 
 
 def _check_given(system: System, reading: Reading) -> None:
@@ -381,7 +381,7 @@ def _check_given(system: System, reading: Reading) -> None:
     held = [relation.value for relation in system.relations]
     held += [one for entry in (*system.initial, *system.start) for one in (entry.position, entry.velocity) if one]
     held += [one for limit in system.limits for one in (limit.lower, limit.upper)]
-    held += [one.initial for one in system.prescribed if one.initial]
+    held += [prescribed.initial for prescribed in system.prescribed if prescribed.initial]
     for expression in held:
         if not names(expression) or not names(expression) <= known.keys():
             continue  # without names it has been judged where it stands
@@ -415,7 +415,7 @@ def _check_relation_values(system: System, reading: Reading) -> None:
 
 def _check_assumption_values(system: System, reading: Reading) -> None:
     """The given values keep every assumption, and some values can keep them all."""
-    roots = {one.name: one.value for one in system.parameters if one.value is not None}
+    roots = {parameter.name: parameter.value for parameter in system.parameters if parameter.value is not None}
 
     def about(expression: Expression, known: Mapping[str, Fraction]) -> Fraction | None:
         value = in_floats(expression, roots | {name: number(value) for name, value in known.items()})

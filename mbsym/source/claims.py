@@ -95,7 +95,7 @@ _MISSPELT = 0.8
 
 def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviation, ...]:
     """Symbols in order: each may use every name of the system and the symbols above it."""
-    found = []
+    abbreviations = []
     allowed = Allowed("an abbreviation", (*_PLACES, "acceleration", *OSCILLATION_KINDS))
     entries = [] if node is None else list(reading.entries(node, "'abbreviations'"))
     reading.scope.later, reading.scope.ordered = {entry.key.text for entry in entries}, "abbreviations are"
@@ -104,9 +104,9 @@ def read_abbreviations(node: Node | None, reading: Reading) -> tuple[Abbreviatio
         value = reading.expression(entry.value, allowed)
         kind = kind_of_abbreviation(value, reading)
         if reading.scope.declare(entry.key.text, kind, entry.key.span) and reading.errors == errors:
-            found.append(Abbreviation(entry.key.text, value, entry.key.span))
+            abbreviations.append(Abbreviation(entry.key.text, value, entry.key.span))
         reading.scope.later.discard(entry.key.text)
-    return tuple(found)
+    return tuple(abbreviations)
 
 
 def read_claims(
@@ -144,8 +144,8 @@ def _claims(item: Node, bodies: list[str], system: System, reading: Reading, sma
         _check_names(fields, reading)
         return []
     kind = _KINDS[word]
-    one = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading, small)
-    return one.conditions() if one.kind.inequality else [one.single()]
+    reader = _Reader(kind, CLAIMS[kind], fields, bodies, system, reading, small)
+    return reader.conditions() if reader.kind.inequality else [reader.single()]
 
 
 def _check_names(fields: Fields, reading: Reading) -> None:
@@ -233,10 +233,12 @@ class _Reader:
         scalar = None if node is None else self.reading.scalar(node, "a condition")
         place, span = self.fields.text("place"), self.fields.key_span("claim")
         word = self.fields.word("as", "the role of a condition")
-        found = [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
+        assumptions = (
+            [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
+        )
         return [
             Claim(self.word, one.left, relation=one.relation, right=one.right, role=word, place=place, span=span)
-            for one in found
+            for one in assumptions
         ]
 
     def refuse_keys(self) -> None:

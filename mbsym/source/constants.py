@@ -67,8 +67,8 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
     refused = Complaints()
     value = parse_expression(scalar.text, refused, scalar.place, named=False)
     if value is not None and refused.errors:  # log(0)
-        for one in refused:
-            reading.error(one.code, one.message, one.span, one.hint)
+        for complaint in refused:
+            reading.error(complaint.code, complaint.message, complaint.span, complaint.hint)
         return Parameter(name, span=span)
     if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)

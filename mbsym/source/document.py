@@ -62,8 +62,8 @@ def read(text: str, filename: str = "<string>", folder: Path | None = None) -> t
     The text itself tells its spelling; where it does not, a name ending in ``.txt`` means editor text.  Files that it
     names are looked for in ``folder``.
     """
-    found = read_placed(text, filename, folder)
-    return found.system, found.complaints
+    read_result = read_placed(text, filename, folder)
+    return read_result.system, read_result.complaints
 
 
 @dataclass(frozen=True, slots=True)

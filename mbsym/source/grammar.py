@@ -182,7 +182,7 @@ class Way:
         if self.parts is not None:
             return self.parts(made)
         apart = ("span", "as_written", *dict(self.fixed))
-        return tuple(getattr(made, one.name) for one in fields(made) if one.name not in apart)
+        return tuple(getattr(made, field.name) for field in fields(made) if field.name not in apart)
 
 
 @dataclass(eq=False, repr=False)

@@ -61,9 +61,9 @@ def independent(rows: Sequence[Sequence[Expression]]) -> list[int]:
 def _pivots(
     rows: list[list[Any]], inverse: Callable[[Any], Any], normal: Callable[[Any], Any], small: float
 ) -> list[int]:
-    found: list[int] = []
+    pivots: list[int] = []
     for column in range(len(rows[0]) if rows else 0):
-        k = len(found)
+        k = len(pivots)
         best = max(range(k, len(rows)), key=lambda i: abs(rows[i][column]), default=None)
         if best is None or abs(rows[best][column]) <= small:
             continue
@@ -72,8 +72,8 @@ def _pivots(
         for i in range(k + 1, len(rows)):
             share = normal(rows[i][column] * factor)
             rows[i] = [normal(x - share * y) for x, y in zip(rows[i], rows[k], strict=True)]
-        found.append(column)
-    return found
+        pivots.append(column)
+    return pivots
 
 
 def _needed(expression: Expression, replaced: Mapping[str, Expression]) -> dict[str, Expression]:

@@ -204,7 +204,7 @@ class Item:
                     self.reading.scope.check_name(scalar.text, scalar.span, Allowed(what, (of,)))
                 return "" if scalar is None else scalar.text
             case Word(choices):
-                known = {str(one): one for one in choices}
+                known = {str(choice): choice for choice in choices}
                 return known.get(self.reading.word(node, what, known) or "", choices[0])
             case Ends(record):
                 return self._ends(node, record, what)
@@ -221,12 +221,12 @@ class Item:
             self.reading.error("bad-direction", "an axis has a direction: this one is zero", node.span)
         return vector
 
-    def _body(self, node: Node, wanted: BodyName, what: str) -> str:
+    def _body(self, node: Node, body_name: BodyName, what: str) -> str:
         """A body by its name; ``ground`` is the inertial frame where that may be and no body is called so."""
         written = node.text.strip() if isinstance(node, Scalar) else ""
-        if wanted.ground and written == _GROUND and _GROUND not in self.bodies:
+        if body_name.ground and written == _GROUND and _GROUND not in self.bodies:
             return INERTIAL
-        if wanted.moving and written == INERTIAL:
+        if body_name.moving and written == INERTIAL:
             self.reading.error("unknown-body", "a force on the inertial frame 0 does nothing", node.span)
         return read_body_name(node, what, self.bodies, self.reading) or INERTIAL
 
@@ -252,7 +252,7 @@ class Item:
             values.append(_nothing(key.type) if inner is None else self._value(key.type, inner, f"'{name}'"))
         return record.made(*values)
 
-    def _equation(self, node: Node, wanted: Equation) -> tuple[Expression, Expression] | None:
+    def _equation(self, node: Node, equation: Equation) -> tuple[Expression, Expression] | None:
         """``left = right``; without an equals sign the expression is meant to be zero, and that is complained about."""
         scalar = self.reading.scalar(node, f"'{self.name}'")
         if scalar is None:
@@ -263,13 +263,13 @@ class Item:
             how = "no '='" if not signs else "more than one '='"
             message = Message("a [[name]] is one equation, and this has [[how]]", name=self.name, how=how)
             self.reading.error(
-                "bad-equation", message, scalar.span, Message("write for example [[example]]", example=wanted.example)
+                "bad-equation", message, scalar.span, Message("write for example [[example]]", example=equation.example)
             )
             return None
         whole = Scalar(written, scalar.span, scalar.literal)
         sides = [whole.part(0, signs[0]), whole.part(signs[0] + 1, len(written))]
         errors = self.reading.errors
-        left, right = (self.reading.expression(side, wanted.allowed) for side in sides)
+        left, right = (self.reading.expression(side, equation.allowed) for side in sides)
         return (left, right) if self.reading.errors == errors else None
 
     def _named(self, node: Node, allowed: Allowed, of: str) -> tuple[tuple[str, Expression], ...]:

@@ -31,8 +31,8 @@ def read_law(
     scope = _scope(system, complaints)
     before = len(complaints.items)
     tree = parse_expression(text, complaints, place, True, tables=scope.tables)
-    for one in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
-        scope.check(one, allowed)
+    for expression in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
+        scope.check(expression, allowed)
     if tree is not None and (why := out_of_range(tree)):
         complaints.error(
             "no-number", Message("nothing can be computed with this number: [[why]]", why=why), place(0, len(text))
@@ -65,7 +65,7 @@ def _read(
     allowed: Allowed,
     every: bool = False,
 ) -> dict[str, Expression]:
-    found: dict[str, Expression] = {}
+    expressions: dict[str, Expression] = {}
     wrong = [f"there is no {kind} called {name}" for name in given if name not in known]
     wrong += [f"no motion is given for {name}" for name in known if every and name not in given]
     for name, value in given.items():
@@ -74,16 +74,16 @@ def _read(
             law = read_law(value, system, complaints, _span, allowed)
             wrong += [f"{name} = {value}: {item.message}" for item in complaints.items]
             if law is not None:
-                found[name] = law
+                expressions[name] = law
         elif not isinstance(value, (int, float, Fraction)):
-            found[name] = value
+            expressions[name] = value
         elif isfinite(value):
-            found[name] = number(Fraction(value))
+            expressions[name] = number(Fraction(value))
         else:
             wrong.append(f"{name} = {value} is no number")
     if wrong:
         raise ValueError("; ".join(wrong))
-    return found
+    return expressions
 
 
 def _span(start: int, end: int) -> Span:

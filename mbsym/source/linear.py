@@ -56,19 +56,19 @@ def read_linear(fields: Fields, coordinates: tuple[str, ...], inputs: int, readi
     if not {*MATRICES} - {"B"} & {*fields.found}:
         hint = "stiffness K, damping D, gyroscopic G, ...: K: [[k1, 0], [0, k2]]"
         reading.error("missing-key", "a linear system without matrices: x'' = 0", fields.span, hint)
-    given, rows = [], len(coordinates)
+    matrices, rows = [], len(coordinates)
     for key in MATRICES:
         node = fields.get(key)
         if node is not None and rows:
-            found = _matrix(key, node, (rows, inputs if key == "B" else rows), reading)
-            if found is not None:
-                given.append(found)
+            matrix = _matrix(key, node, (rows, inputs if key == "B" else rows), reading)
+            if matrix is not None:
+                matrices.append(matrix)
     if "B" in fields.found and not inputs:
         reading.error("idle-inputs", "B has no inputs: there are none", fields.key_span("B"), "declare 'inputs: [u]'")
     elif inputs and "B" not in fields.found:
         message = "the inputs act nowhere: there is no B"
         reading.error("missing-key", message, fields.span, "the equations are M x'' + ... = B u, B: [[1], [0]]")
-    return LinearModel(coordinates, tuple(given), fields.span)
+    return LinearModel(coordinates, tuple(matrices), fields.span)
 
 
 def _matrix(key: str, node: Node, shape: tuple[int, int], reading: Reading) -> GivenMatrix | None:

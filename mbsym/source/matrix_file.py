@@ -209,7 +209,7 @@ def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int,
                 "[[name]] holds [[body]] entries, and [[count]] are announced", name=name, body=len(body), count=count
             )
         )
-    found = []
+    entries = []
     for number, cells in body:
         if len(cells) != 3 or not _WHOLE.match(cells[0]) or not _WHOLE.match(cells[1]):
             raise Unreadable(
@@ -228,8 +228,8 @@ def _placed(body: list[tuple[int, list[str]]], count: int, name: str, rows: int,
                     columns=columns,
                 )
             )
-        found.append((number, i - 1, j - 1, _number(cells[2], name, number)))
-    return found
+        entries.append((number, i - 1, j - 1, _number(cells[2], name, number)))
+    return entries
 
 
 def _number(cell: str, name: str, line: int) -> Fraction:

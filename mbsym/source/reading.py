@@ -367,7 +367,7 @@ class Reading:
 
     def fields(self, node: Node, what: str, known: Mapping[str, Key], hint: str | None = None) -> Fields:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
-        found: dict[str, Entry] = {}
+        entries: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
         given = keys_of(node)
         left = [key for key in known if key not in given]
@@ -377,7 +377,7 @@ class Reading:
         for entry in () if other else self.entries(node, what, hint):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in known:
-                found[key] = entry
+                entries[key] = entry
             else:
                 unsupported = _unsupported(entry.key.text)
                 guess = None if unsupported else closest(entry.key.text, left)
@@ -393,7 +393,7 @@ class Reading:
                 if guess:
                     misspelt[guess] = entry
         sound = isinstance(node, placed.Mapping) and not other
-        return Fields(self, what, {**misspelt, **found}, node.span, sound, known)
+        return Fields(self, what, {**misspelt, **entries}, node.span, sound, known)
 
     def _other_keys(self, node: Node, what: str, known: Mapping[str, Key]) -> bool:
         """Whether all of several keys are those of something else, which is one mistake."""

@@ -32,10 +32,10 @@ def read_reduction(text: str, complaints: Complaints) -> Reducing | None:
             items = list(assignments(left, complaints, start))
             of = list(assignments(right, complaints, start + len(left) + len(by)))
             for one in [x for x in items if x.bare and not by] + [x for x in of if not x.bare]:
-                told = Message("[[text]] is no step of a reduction", text=ascii_safe(one.name) or "nothing")
+                message = Message("[[text]] is no step of a reduction", text=ascii_safe(one.name) or "nothing")
                 hint = "for example 'r=1 by integrals', 'q by p', 'p=p1+eps*a', and 'O(eps**3)' as the last one"
-                complaints.error("bad-step", told, one.span, hint)
-            given = {one.name: one.value for one in items if not one.bare}
-            steps.append(Asked(tuple(one.name for one in items), given, tuple(one.name for one in of)))
+                complaints.error("bad-step", message, one.span, hint)
+            expressions = {item.name: item.value for item in items if not item.bare}
+            steps.append(Asked(tuple(item.name for item in items), expressions, tuple(one.name for one in of)))
         start += len(piece) + 1
     return None if complaints.errors else Reducing(tuple(steps), small, known)

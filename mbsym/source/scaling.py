@@ -64,55 +64,55 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
     seen = [node.name for one in items for node in walk(one.value) if isinstance(node, Name)]
     fresh = [name for name in dict.fromkeys(seen) if name not in known]
     taken = _taken(system)
-    for one in items:
-        for node in walk(one.value):
+    for item in items:
+        for node in walk(item.value):
             if isinstance(node, Name) and node.name in fresh and node.span is not None:
-                if node.name == one.name and one.name in own:
+                if node.name == item.name and item.name in own:
                     continue
                 reason = why_no_name(node.name)
                 if node.name in taken and node.name != "t":
                     reason = "the description has it", "what is put in holds parameters and new names"
                 if reason is not None:
-                    told = Message(
+                    message = Message(
                         "[[name]] cannot be a new name: [[reason]]", name=ascii_safe(node.name), reason=reason[0]
                     )
-                    complaints.error("bad-name", told, node.span, reason[1])
+                    complaints.error("bad-name", message, node.span, reason[1])
     if complaints.errors:
         return None
     variables: list[Scaled] = []
     time: Scaled | None = None
-    for one in items:
-        if one.name != "t" and one.name not in moving:
+    for item in items:
+        if item.name != "t" and item.name not in moving:
             continue
-        there = [node.name for node in walk(one.value) if isinstance(node, Name) and node.name in fresh]
+        there = [node.name for node in walk(item.value) if isinstance(node, Name) and node.name in fresh]
         linear = [
-            name for name in dict.fromkeys(there) if seen.count(name) == 1 and factor_of(one.value, name) is not None
+            name for name in dict.fromkeys(there) if seen.count(name) == 1 and factor_of(item.value, name) is not None
         ]
         if not linear:
-            told = Message("[[name]] is to be a factor times a new name that stands nowhere else", name=one.name)
-            example = "t=tau/omega0" if one.name == "t" else f"{one.name}=L*{one.name}1"
-            complaints.error("bad-scale", told, one.span, Message("for example [[example]]", example=example))
+            message = Message("[[name]] is to be a factor times a new name that stands nowhere else", name=item.name)
+            example = "t=tau/omega0" if item.name == "t" else f"{item.name}=L*{item.name}1"
+            complaints.error("bad-scale", message, item.span, Message("for example [[example]]", example=example))
             continue
-        told_as = Scaled(one.name, linear[-1], factor_of(one.value, linear[-1]) or ONE)
-        if one.name == "t":
+        told_as = Scaled(item.name, linear[-1], factor_of(item.value, linear[-1]) or ONE)
+        if item.name == "t":
             time = told_as
         else:
             variables.append(told_as)
     images = _resolved({one.name: one.value for one in items if one.name in system.parameter_names}, items, complaints)
     if complaints.errors:
         return None
-    named = {one.new for one in (*variables, *([time] if time else []))}
-    variables = [replace(one, factor=substitute(one.factor, images)) for one in variables]
+    named = {scaled.new for scaled in (*variables, *([time] if time else []))}
+    variables = [replace(variable, factor=substitute(variable.factor, images)) for variable in variables]
     time = None if time is None else replace(time, factor=substitute(time.factor, images))
     new = tuple(name for name in fresh if name not in named)
-    found = Scaling(tuple(variables), time, tuple(images.items()), new, {})
-    dimensions = _dimensions(system, items, found, named, complaints)
+    scaling = Scaling(tuple(variables), time, tuple(images.items()), new, {})
+    dimensions = _dimensions(system, items, scaling, named, complaints)
     if complaints.errors:
         return None
     left = [name for name in system.parameter_names if name not in images]
-    driven = (*(one.name for one in system.prescribed), *system.input_names)
+    driven = (*(prescribed.name for prescribed in system.prescribed), *system.input_names)
     weights = {name: _weights(dimensions, name) for name in (*left, *new, *moving, *driven)}
-    return Scaling(found.variables, found.time, found.parameters, found.new, weights)
+    return Scaling(scaling.variables, scaling.time, scaling.parameters, scaling.new, weights)
 
 
 def _items(text: str, system: System, complaints: Complaints) -> Iterator[Item]:
@@ -120,8 +120,10 @@ def _items(text: str, system: System, complaints: Complaints) -> Iterator[Item]:
     done: set[str] = set()
     for one in assignments(text, complaints):
         if one.bare:
-            told = Message("[[text]] says of no name what it is", text=ascii_safe(one.name) or "nothing")
-            complaints.error("bad-assignment", told, one.span, "write name=expression, for example x=L*x1,t=tau/omega0")
+            message = Message("[[text]] says of no name what it is", text=ascii_safe(one.name) or "nothing")
+            complaints.error(
+                "bad-assignment", message, one.span, "write name=expression, for example x=L*x1,t=tau/omega0"
+            )
         elif one.name in done:
             complaints.error("repeated-name", Message("'[[name]]' is given twice", name=one.name), one.span)
         elif _known(one.name, one.span, system, complaints):
@@ -155,12 +157,12 @@ def _known(name: str, span: Span, system: System, complaints: Complaints) -> boo
     there = ("t", *moving, *system.parameter_names)
     if name not in there:
         hint = did_you_mean(name, there) or listed("there are", there)
-        told = Message("there is nothing called [[name]] to scale", name=ascii_safe(name))
-        complaints.error("unknown-name", told, span, hint)
+        message = Message("there is nothing called [[name]] to scale", name=ascii_safe(name))
+        complaints.error("unknown-name", message, span, hint)
         return False
-    if name in {one.name for one in system.relations}:
-        told = Message("'[[name]]' follows from a relation", name=name)
-        complaints.error("misplaced-name", told, span, "say what the names are that it is made of")
+    if name in {relation.name for relation in system.relations}:
+        message = Message("'[[name]]' follows from a relation", name=name)
+        complaints.error("misplaced-name", message, span, "say what the names are that it is made of")
         return False
     return True
 
@@ -179,8 +181,8 @@ def _resolved(images: dict[str, Expression], items: list[Item], complaints: Comp
         images = {name: substitute(value, images) for name, value in images.items()}
     for one in items:
         if one.name in images and names(images[one.name]) & images.keys():
-            told = Message("'[[name]]' is made of itself", name=one.name)
-            complaints.error("circular", told, one.span, "one of these names is to be left, or a new one to come in")
+            message = Message("'[[name]]' is made of itself", name=one.name)
+            complaints.error("circular", message, one.span, "one of these names is to be left, or a new one to come in")
     return images
 
 
@@ -197,9 +199,9 @@ def _dimensions(
         complaints.error("dimension", message, span, own or hint)
 
     dimensions = dimensions_of(system, complain, {name: Form() for name in numbers})
-    for one in sorted(items, key=lambda one: one.name in found.images):
-        wanted = dimensions.name_form(one.name)
-        dimensions.expect(one.value, wanted, f"'{one.name}'")
+    for item in sorted(items, key=lambda one: one.name in found.images):
+        form = dimensions.name_form(item.name)
+        dimensions.expect(item.value, form, f"'{item.name}'")
     return dimensions
 
 

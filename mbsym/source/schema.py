@@ -96,8 +96,8 @@ def _schema(value: Type, definitions: Schema) -> Schema:
             names = {"type": "object", "patternProperties": {_NAME: _schema(item, definitions)}}
             return {**names, "additionalProperties": False, **(_ONE if one else {})}
         case Either(types, called):
-            found: Schema = {"anyOf": [_schema(one, definitions) for one in types]}
-            return _defined(called, lambda: found, definitions) if called else found
+            schema: Schema = {"anyOf": [_schema(one, definitions) for one in types]}
+            return _defined(called, lambda: schema, definitions) if called else schema
         case Ends(record):
             return _list(_schema(record, definitions), 2, 2)
         case Record():
@@ -125,14 +125,14 @@ def _defined(name: str, make: Any, definitions: Schema) -> Schema:
 
 
 def _list(item: Schema, least: int, most: int | None) -> Schema:
-    found: Schema = {"type": "array", "items": item}
-    return found | ({"minItems": least} if least else {}) | ({} if most is None else {"maxItems": most})
+    schema: Schema = {"type": "array", "items": item}
+    return schema | ({"minItems": least} if least else {}) | ({} if most is None else {"maxItems": most})
 
 
 def _choices(choices: tuple[str | int, ...]) -> list[str | int]:
     """Words in all their spellings; numbers may be quoted."""
-    found = [other for one in choices for other in (one, *spellings(str(one)))]
-    return [*found, *(str(one) for one in choices if isinstance(one, int))]
+    found = [other for choice in choices for other in (choice, *spellings(str(choice)))]
+    return [*found, *(str(choice) for choice in choices if isinstance(choice, int))]
 
 
 def _spellings(keys: Mapping[str, Schema]) -> Schema:
@@ -158,7 +158,7 @@ def _required(names: list[str], any_of: tuple[str, ...] = ()) -> Schema:
     several = [(name, *spellings(name)) for name in names if spellings(name)]
     several += [any_of] if any_of else []
     either = [
-        {"if": {"not": {"anyOf": [{"required": [one]} for one in others]}}, "then": {"required": [first]}}
+        {"if": {"not": {"anyOf": [{"required": [other]} for other in others]}}, "then": {"required": [first]}}
         for first, *others in several
     ]
     return {**({"required": plain} if plain else {}), **({"allOf": either} if either else {})}

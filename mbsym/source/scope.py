@@ -278,7 +278,7 @@ class Scope:
         if name.endswith(ACCELERATION_ENDING) and "acceleration" not in allowed.kinds:
             none = "this claim holds none" if "abbreviation" in allowed.kinds else "they stand in no description"
             return Message("accelerations are what the equations are solved for; [[why]]", why=none)
-        known = [one for one in self.kinds if self.kinds[one] in allowed.kinds and one not in self.beside]
+        known = [kind for kind in self.kinds if self.kinds[kind] in allowed.kinds and kind not in self.beside]
         if "velocity" in allowed.kinds:
             known += [velocity_name(one) for one in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
@@ -350,7 +350,7 @@ def closest(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | None:
     from difflib import get_close_matches
 
     candidates = list(known)[:200]
-    same = [one for one in candidates if one.lower() == word.lower()]
+    same = [candidate for candidate in candidates if candidate.lower() == word.lower()]
     close = same or get_close_matches(word[:MAX_NAME], candidates, n=1, cutoff=cutoff)
     return close[0] if close else None
 

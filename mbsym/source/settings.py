@@ -129,9 +129,9 @@ def read_motion(node: Node | None, reading: Reading) -> tuple[MotionEntry, ...]:
 
 def of_coordinates(motion: tuple[MotionEntry, ...], reading: Reading) -> tuple[MotionEntry, ...]:
     """The motion without its entries of inputs; where only these are given, the rest of all coordinates at 0."""
-    kept = tuple(entry for entry in motion if reading.scope.kinds.get(entry.coordinate) != "input")
-    if kept or not motion:
-        return kept
+    entries = tuple(entry for entry in motion if reading.scope.kinds.get(entry.coordinate) != "input")
+    if entries or not motion:
+        return entries
     return tuple(MotionEntry(name, ZERO, ZERO, motion[0].span) for name in reading.scope.of_kind("coordinate"))
 
 

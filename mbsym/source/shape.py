@@ -69,7 +69,7 @@ def input_shape(one: Input) -> dict[str, Shape]:
 
 def motion_shapes(system: System) -> dict[str, Shape]:
     """The unperturbed motion of coordinates, and the values at which inputs are held there."""
-    shapes = {one.coordinate: motion_shape(one) for one in system.motion}
+    shapes = {entry.coordinate: motion_shape(entry) for entry in system.motion}
     return shapes | {one.name: text(one.held) for one in system.inputs if one.held != ZERO}
 
 
@@ -106,12 +106,12 @@ def linear_shape(linear: LinearModel) -> dict[str, Shape]:
     """Coordinates and matrices; those of files by the files' names."""
     names: list[Shape] = [*linear.coordinates]
     shape: dict[str, Shape] = {"coordinates": names}
-    for one in linear.matrices:
-        if one.source is not None:
-            shape[one.key] = {"file": one.source.file, "sha256": one.source.digest}
+    for matrix in linear.matrices:
+        if matrix.source is not None:
+            shape[matrix.key] = {"file": matrix.source.file, "sha256": matrix.source.digest}
         else:
-            rows: list[Shape] = [[text(x) for x in row] for row in one.rows]
-            shape[one.key] = rows
+            rows: list[Shape] = [[text(x) for x in row] for row in matrix.rows]
+            shape[matrix.key] = rows
     return shape
 
 
@@ -136,7 +136,7 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     if body.coordinates != inferred:
         shape["coordinates"] = list(body.coordinates)
     if body.speeds:
-        shape["speeds"] = {one.name: speed_text(one) for one in body.speeds}
+        shape["speeds"] = {speed.name: speed_text(speed) for speed in body.speeds}
     if body.orientation:
         shape["orientation"] = {one.name: one.word for one in body.orientation}
     if body.shapes:
@@ -248,7 +248,7 @@ def _of_type(of: Type, value: Any) -> Shape:
 
 
 def _end(record: Record, end: Point | Axis) -> Shape:
-    values = (getattr(end, one.name) for one in fields(end))
+    values = (getattr(end, field.name) for field in fields(end))
     return {name: _of_type(key.type, value) for (name, key), value in zip(record.keys.items(), values, strict=True)}
 
 

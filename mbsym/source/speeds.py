@@ -71,9 +71,9 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
             return _quaternion(_free(Quaternion, "e", (), reading), node.span, reading)
         if word != COSINES:
             return ()
-        found = _unnamed([], node.span, reading, asked=True)
+        unit_vectors = _unnamed([], node.span, reading, asked=True)
     else:
-        found = []
+        unit_vectors = []
         entries = list(reading.entries(node, "'orientation'"))
         for entry in entries:
             axis = reading.word(entry.value, "the axis of a unit vector", _AXES)
@@ -85,11 +85,11 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
             elif axis == QUATERNION:
                 return _quaternion(entry.key.text, entry.key.span, reading)
             elif axis is not None:
-                found.append(UnitVector(entry.key.text, _AXES[axis], entry.key.span))
-        found += _unnamed(found, node.span, reading, asked=False)
+                unit_vectors.append(UnitVector(entry.key.text, _AXES[axis], entry.key.span))
+        unit_vectors += _unnamed(unit_vectors, node.span, reading, asked=False)
     axes: set[int] = set()
     sound: list[UnitVector] = []
-    for vector in found:
+    for vector in unit_vectors:
         assert vector.span is not None
         if vector.axis in axes:
             reading.error(
@@ -106,39 +106,39 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
 
 def _quaternion(name: str, span: Span, reading: Reading) -> tuple[Quaternion, ...]:
     """The quaternion of that name; none where a component cannot be called so."""
-    found = Quaternion(name, span)
-    declared = [reading.scope.declare(one, "quaternion", span) for one in found.components]
-    return (found,) if all(declared) else ()
+    quaternion = Quaternion(name, span)
+    declared = [reading.scope.declare(component, "quaternion", span) for component in quaternion.components]
+    return (quaternion,) if all(declared) else ()
 
 
 def _unnamed(named: Sequence[UnitVector], span: Span, reading: Reading, asked: bool) -> list[UnitVector]:
     """The unit vectors that nobody named: the place of a body is told by all three."""
-    found: list[UnitVector] = []
-    axes, words = {one.axis for one in named}, {one.name for one in named}
+    unit_vectors: list[UnitVector] = []
+    axes, words = {unit_vector.axis for unit_vector in named}, {unit_vector.name for unit_vector in named}
     for axis, word in enumerate(("alpha", "beta", "gamma"), start=1):
         if axis not in axes:
             make = partial(UnitVector, axis=axis)
-            found.append(UnitVector(_free(make, word, words, reading), axis, span, asked))
-    return found
+            unit_vectors.append(UnitVector(_free(make, word, words, reading), axis, span, asked))
+    return unit_vectors
 
 
 def _free(make: Callable[[str], UnitVector | Quaternion], word: str, taken: Collection[str], reading: Reading) -> str:
     """The word, with a letter behind it where components of that name are declared already."""
     for name in (word, *(f"{word}_{letter}" for letter in "abcdefgh")):
-        if name not in taken and not any(one in reading.scope.kinds for one in make(name).components):
+        if name not in taken and not any(component in reading.scope.kinds for component in make(name).components):
             return name
     return word
 
 
 def read_speeds(draft: Draft, drafts: Sequence[Draft], reading: Reading) -> tuple[Speed, ...]:
     """The second pass: the forms."""
-    found = []
+    speeds = []
     for key, value in draft.speeds:
         errors = reading.errors
         body, form = _form(value, draft, drafts, reading)
         if reading.errors == errors:
-            found.append(Speed(key.text, form, body, key.span))
-    return tuple(found)
+            speeds.append(Speed(key.text, form, body, key.span))
+    return tuple(speeds)
 
 
 def _form(node: Node, draft: Draft, drafts: Sequence[Draft], reading: Reading) -> tuple[str, Expression]:
@@ -330,18 +330,18 @@ _LOAD, _FORCE = "a load", "a load on bodies"
 
 def _uses(system: System, body: Body) -> list[tuple[str, str]]:
     """Names in other places than the angles of a body's joint, with these places."""
-    found = [(name, _FORCE if load.bodies else _LOAD) for load in system.loads for name in _held(load.written)]
-    found += [(name, "a constraint") for one in system.constraints for name in _held(as_written(one))]
-    found += [(name, "its connection point") for x in body.connection_point for name in names(x)]
+    uses = [(name, _FORCE if load.bodies else _LOAD) for load in system.loads for name in _held(load.written)]
+    uses += [(name, "a constraint") for constraint in system.constraints for name in _held(as_written(constraint))]
+    uses += [(name, "its connection point") for x in body.connection_point for name in names(x)]
     for other in system.bodies:
         if other is not body:
             place = Message("the joint of [[name]]", name=ascii_safe(other.name))
             expressions = (*other.rotation.angles, *other.connection_point)
-            found += [(name, place) for x in expressions for name in names(x)]
+            uses += [(name, place) for x in expressions for name in names(x)]
         for speed in other.speeds:
             held = {without_velocity(name) for name in names(speed.form)}
-            found += [(name, Message("the speed '[[name]]'", name=speed.name)) for name in held]
-    return found
+            uses += [(name, Message("the speed '[[name]]'", name=speed.name)) for name in held]
+    return uses
 
 
 def _held(load: object) -> set[str]:
@@ -355,5 +355,5 @@ def _held(load: object) -> set[str]:
         elif isinstance(part, tuple):
             pending.extend(part)
         elif is_dataclass(part):
-            pending.extend(getattr(part, one.name) for one in fields(part) if one.name != "span")
+            pending.extend(getattr(part, field.name) for field in fields(part) if field.name != "span")
     return found

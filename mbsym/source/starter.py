@@ -84,7 +84,7 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
             *(f"  {name}: 0" for name in _coordinates(bodies)),
             "",
             "# Numbers, for simulations only; results stay in symbols.",
-            f"values: {{{', '.join(f'{name}: {one.value}' for name, one in parameters.items())}}}",
+            f"values: {{{', '.join(f'{name}: {parameter.value}' for name, parameter in parameters.items())}}}",
             f"initial: {{{', '.join(f'{name}: {value}' for name, value in _initial(bodies).items())}}}",
             "",
         ]
@@ -102,13 +102,13 @@ def _check(bodies: Iterable[NewBody]) -> None:
 
 
 def _parameters(bodies: Sequence[NewBody], gravity: bool) -> dict[str, NewParameter]:
-    found: dict[str, NewParameter] = {}
+    parameters: dict[str, NewParameter] = {}
     carriers, turning = {body.carrier for body in bodies}, _turning(bodies)
     for number, body in enumerate(bodies, 1):
-        found |= parameters_of(number, body, body.name in turning)
+        parameters |= parameters_of(number, body, body.name in turning)
         if body.name in carriers & turning:
-            found[f"d{number}"] = NewParameter(f"distance from the joint of {body.name} to the next one", "1")
-    return found | ({"g": NewParameter("acceleration of gravity", "9.81")} if gravity else {})
+            parameters[f"d{number}"] = NewParameter(f"distance from the joint of {body.name} to the next one", "1")
+    return parameters | ({"g": NewParameter("acceleration of gravity", "9.81")} if gravity else {})
 
 
 @dataclass(frozen=True)

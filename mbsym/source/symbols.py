@@ -39,7 +39,7 @@ class _Wrong(Exception):
 
 def read_symbols(node: Node | None, reading: Reading) -> tuple[WrittenSymbol, ...]:
     """``name: symbol`` for names of the description; no two of the same look."""
-    found: list[WrittenSymbol] = []
+    symbols: list[WrittenSymbol] = []
     kinds = ("coordinate", "speed", "unit vector", "quaternion", "prescribed", "parameter", "notation", *_FURTHER)
     allowed = Allowed("a name with a symbol", kinds)
     for entry in () if node is None else reading.entries(node, "'latex'"):
@@ -48,15 +48,15 @@ def read_symbols(node: Node | None, reading: Reading) -> tuple[WrittenSymbol, ..
         if scalar is None or not known or not _is_symbol(scalar, reading):
             continue
         symbol = " ".join(scalar.text.split())
-        other = next((one.name for one in found if one.latex == symbol), None)
+        other = next((written_symbol.name for written_symbol in symbols if written_symbol.latex == symbol), None)
         if other is not None:
             message = Message(
                 "[[what]] and [[other]] have the same symbol", what=ascii_safe(entry.key.text), other=ascii_safe(other)
             )
             reading.error("repeated-symbol", message, scalar.span)
             continue
-        found.append(WrittenSymbol(entry.key.text, symbol, entry.key.span))
-    return tuple(found)
+        symbols.append(WrittenSymbol(entry.key.text, symbol, entry.key.span))
+    return tuple(symbols)
 
 
 def _is_symbol(scalar: Scalar, reading: Reading) -> bool:

@@ -66,19 +66,19 @@ def _from_file(fields: Fields, reading: Reading) -> tuple[Points, Source | None]
     if scalar is None or columns is None:
         return (), None
 
-    found = read_points(reading.folder, scalar.text.strip(), columns)
-    for message, hint in found.complaints:
+    rows = read_points(reading.folder, scalar.text.strip(), columns)
+    for message, hint in rows.complaints:
         reading.error("table-file", message, scalar.span, hint)
     wanted = fields.get("sha256")
     stated = None if wanted is None else reading.scalar(wanted, "'sha256'")
-    if stated is not None and found.digest and stated.text.strip().lower() != found.digest:
+    if stated is not None and rows.digest and stated.text.strip().lower() != rows.digest:
         message = Message(
             "[[file]] is not the file that is meant: its SHA-256 is [[digest]]",
             file=scalar.text.strip(),
-            digest=found.digest,
+            digest=rows.digest,
         )
         reading.error("table-file", message, stated.span, "leave the key out where any content will do")
-    return found.points, Source(scalar.text.strip(), columns, found.digest)
+    return rows.points, Source(scalar.text.strip(), columns, rows.digest)
 
 
 def _columns(node: Node | None, reading: Reading) -> tuple[str, str] | None:
@@ -113,9 +113,9 @@ def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:
     return tuple(point for point, _ in found) if increasing else ()
 
 
-def _disordered(one: Place, later: Place, span: Span, reading: Reading) -> None:
+def _disordered(place: Place, later: Place, span: Span, reading: Reading) -> None:
     message = "the arguments of a table increase from point to point"
-    hint = "for a jump add a step or a pulse to it" if later[0] == one[0] else "sort the points"
+    hint = "for a jump add a step or a pulse to it" if later[0] == place[0] else "sort the points"
     reading.error("table-order", message, span, hint)
 
 

@@ -36,21 +36,21 @@ class Lines:
 
 def lines_of_data(data: dict[str, Data]) -> Lines:
     """The lines of a whole description."""
-    found, numbers = Lines(), _numbers(data)
+    lines, numbers = Lines(), _numbers(data)
     for key, value in data.items():
         plain = ALIASES.get(key, key)
         if plain in BLOCKS and isinstance(value, list):
-            found.blocks[plain] = [block(plain, one, numbers) for one in value]
+            lines.blocks[plain] = [block(plain, one, numbers) for one in value]
         elif plain == "assumptions" and isinstance(value, list):
-            found.sections["assumptions"] = [(_flat(one), "") for one in value]
+            lines.sections["assumptions"] = [(_flat(one), "") for one in value]
         elif plain in _TITLES and isinstance(value, dict):
             first = _FIRST[plain]
-            found.sections[_TITLES[plain]] = [(name, entry(plain, one, first)) for name, one in value.items()]
+            lines.sections[_TITLES[plain]] = [(name, entry(plain, one, first)) for name, one in value.items()]
         elif plain != "mbsym":
-            found.header += _header(plain, value, numbers)
-    count = len(found.blocks.get("bodies", ()))
-    found.header.append(("number of bodies", str(count)))
-    return found
+            lines.header += _header(plain, value, numbers)
+    count = len(lines.blocks.get("bodies", ()))
+    lines.header.append(("number of bodies", str(count)))
+    return lines
 
 
 def title_shown(title: str) -> str:
@@ -59,7 +59,7 @@ def title_shown(title: str) -> str:
 
 def _numbers(data: dict[str, Data]) -> dict[str, str]:
     bodies = data.get("bodies")
-    names = [one.get("name") for one in bodies if isinstance(one, dict)] if isinstance(bodies, list) else []
+    names = [body.get("name") for body in bodies if isinstance(body, dict)] if isinstance(bodies, list) else []
     return {" ".join(name.split()): str(k) for k, name in enumerate(names, start=1) if isinstance(name, str)}
 
 

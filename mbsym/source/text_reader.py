@@ -220,21 +220,21 @@ class TextReader:
             return read
         name = next((one.value for one in read.entries if one.key.text == "name"), value)
         entries = []
-        for one in read.entries:
-            if one.key.text == "name" or not isinstance(one.value, Scalar):
+        for entry in read.entries:
+            if entry.key.text == "name" or not isinstance(entry.value, Scalar):
                 continue
-            if one.key.text == "leading":
-                entries.append(one)
+            if entry.key.text == "leading":
+                entries.append(entry)
                 continue
-            listed = items(one.value)
-            if one.key.text == "powers":
+            listed = items(entry.value)
+            if entry.key.text == "powers":
                 flat = [x for x in listed.items if isinstance(x, Scalar)] if isinstance(listed, Sequence) else []
                 if len(flat) % 2:
-                    self.error("syntax", "here pairs of a parameter and its power are wanted", one.value.span)
+                    self.error("syntax", "here pairs of a parameter and its power are wanted", entry.value.span)
                 pairs = zip(flat[::2], flat[1::2], strict=False)
-                entries.append(Entry(one.key, Mapping(tuple(Entry(a, b) for a, b in pairs), one.value.span)))
+                entries.append(Entry(entry.key, Mapping(tuple(Entry(a, b) for a, b in pairs), entry.value.span)))
             else:
-                entries.append(Entry(one.key, listed))
+                entries.append(Entry(entry.key, listed))
         if not isinstance(name, Scalar):
             return value
         return Mapping((Entry(name, Mapping(tuple(entries), value.span)),), value.span)
@@ -260,13 +260,13 @@ class TextReader:
     def body_form(self, block: _Block) -> Mapping:
         """A body as the paper's Figure 3 has it: without a name it is "Body 2", and its tensor is about O_k."""
         read = self.body(block)
-        given = {entry.key.text: entry for entry in read.entries}
+        entries = {entry.key.text: entry for entry in read.entries}
         more = []
         match = HEADING.match(block.heading.text)
-        if "name" not in given and match is not None:
+        if "name" not in entries and match is not None:
             more.append(Entry(key_of(block.heading, "name"), key_of(block.heading, _unnamed(int(match.group(2))))))
-        if "inertia" in given and "inertia about" not in given:
-            tensor = given["inertia"].key
+        if "inertia" in entries and "inertia about" not in entries:
+            tensor = entries["inertia"].key
             more.append(Entry(key_of(tensor, "inertia about"), key_of(tensor, "joint")))
         return Mapping((*read.entries, *more), read.span)
 
@@ -297,7 +297,7 @@ class TextReader:
             if word == "tensor of inertia" and not value.text:
                 rows = _rows(lines, position)
                 position += len(rows)
-                entries.append(Entry(key, Sequence(tuple(row(one) for one in rows), label.span)))
+                entries.append(Entry(key, Sequence(tuple(row(scalar) for scalar in rows), label.span)))
             elif key.text in ("axes", "angles"):
                 rotation.append(Entry(key, filled(value, vector=False)))
             elif key.text == "accept":

@@ -51,10 +51,10 @@ def to_text(system: System) -> str:
         lines.append(f"Dimensionless time: {text(system.time_scale)}")
     if system.small is not None:
         lines.append(f"Small parameter: {small(small_shape(system.small))}")
-    lines += _section("parameters", {one.name: parameter_shape(one) for one in system.parameters})
-    lines += _section("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _section("parameters", {parameter.name: parameter_shape(parameter) for parameter in system.parameters})
+    lines += _section("prescribed", {prescribed.name: prescribed_shape(prescribed) for prescribed in system.prescribed})
     lines += _section("inputs", {one.name: input_shape(one) for one in system.inputs})
-    lines += _section("tables", {one.name: table_shape(one) for one in system.tables})
+    lines += _section("tables", {table.name: table_shape(table) for table in system.tables})
     lines += _section("units", {one.name: one.text for one in system.units.declared})
     numbers = {body.name: str(number) for number, body in enumerate(system.bodies, start=1)}
     for number, body in enumerate(system.bodies, start=1):
@@ -63,16 +63,16 @@ def to_text(system: System) -> str:
         lines += _section("linear system", linear_shape(system.linear))
     lines += _blocks("loads", [dict([load_shape(load)]) for load in system.loads], numbers)
     lines += _blocks("constraints", [dict([constraint_shape(one)]) for one in system.constraints], numbers)
-    lines += _section("relations", {one.name: text(one.value) for one in system.relations})
+    lines += _section("relations", {relation.name: text(relation.value) for relation in system.relations})
     lines += _section("motion", motion_shapes(system))
-    lines += _section("notation", {one.name: text(one.value) for one in system.notation})
-    lines += _section("outputs", {one.name: text(one.value) for one in system.outputs})
+    lines += _section("notation", {notation.name: text(notation.value) for notation in system.notation})
+    lines += _section("outputs", {output.name: text(output.value) for output in system.outputs})
     if system.assumptions:
         compared = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
         lines += ["", "Assumptions", *(f"  {one}" for one in compared)]
-    lines += _section("initial", {one.coordinate: initial_shape(one) for one in (*system.initial, *system.start)})
-    lines += _section("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
-    lines += _section("latex", {one.name: one.latex for one in system.symbols})
+    lines += _section("initial", {value.coordinate: initial_shape(value) for value in (*system.initial, *system.start)})
+    lines += _section("limits", {limit.coordinate: [text(limit.lower), text(limit.upper)] for limit in system.limits})
+    lines += _section("latex", {symbol.name: symbol.latex for symbol in system.symbols})
     lines += _section("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
     lines += _blocks("claims", [claim_shape(claim, system) for claim in system.claims], numbers)
     return "\n".join(lines) + "\n"
@@ -131,10 +131,10 @@ def _body(body: Body, numbers: dict[str, str]) -> list[str]:
         lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
     lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
     if body.speeds:
-        lines.append("  Speeds: " + "; ".join(f"{one.name} = {speed_text(one)}" for one in body.speeds))
+        lines.append("  Speeds: " + "; ".join(f"{speed.name} = {speed_text(speed)}" for speed in body.speeds))
     if body.orientation:
         lines.append("  Orientation: " + "; ".join(f"{one.name} = {one.word}" for one in body.orientation))
-    return [*lines, *(f"  Shape: {_look(one)}" for one in body.shapes)]
+    return [*lines, *(f"  Shape: {_look(shape)}" for shape in body.shapes)]
 
 
 def _look(look: Shape) -> str:

@@ -20,7 +20,7 @@ WIDTH = 110
 
 def description() -> str:
     """Every key of a description, loads, constraints and claims apart."""
-    return "\n\n".join([*(_titled(one) for one in records(DESCRIPTION)), _SEE])
+    return "\n\n".join([*(_titled(record) for record in records(DESCRIPTION)), _SEE])
 
 
 def loads() -> str:
@@ -37,7 +37,7 @@ def _kinds(what: str, kinds: Mapping[str, Kind]) -> str:
     parts = [f"{what}s:  a list; each {what} is  - kind: {{key: value, ...}}  or  - kind: {_BARE[what]}"]
     for name, kind in kinds.items():
         parts.append(f"{name}: {kind.meaning}" + (f"\n\n{_listed(kind.keys)}" if kind.keys else ""))
-    return "\n\n".join([*parts, *(_titled(one) for one in ends(kinds))])
+    return "\n\n".join([*parts, *(_titled(end) for end in ends(kinds))])
 
 
 #: What the value of a kind without keys is.
@@ -110,7 +110,7 @@ def _listed(table: Mapping[str, Key]) -> str:
 
 def meanings(word: str) -> list[str]:
     """What a word means as a key of a description, or a kind of load, constraint or claim; none for other words."""
-    named = [(one.title, one.keys) for one in records(DESCRIPTION)]
+    named = [(record.title, record.keys) for record in records(DESCRIPTION)]
     named += [("A claim", CLAIM)]
     found = [f"{title}\n\n{_listed({word: keys[word]})}" for title, keys in named if word in keys]
     for what, kinds in (("load", LOADS), ("constraint", CONSTRAINTS)):
@@ -137,7 +137,7 @@ def _shipped(what: str, kind: str) -> str:
 
 def words() -> list[str]:
     """Every word that ``meanings`` knows."""
-    tables: list[Iterable[str]] = [*(one.keys for one in records(DESCRIPTION)), CLAIM, LOADS, CONSTRAINTS, CLAIMS]
+    tables: list[Iterable[str]] = [*(record.keys for record in records(DESCRIPTION)), CLAIM, LOADS, CONSTRAINTS, CLAIMS]
     tables += [kind.keys for kinds in (LOADS, CONSTRAINTS) for kind in kinds.values()]
     return list(dict.fromkeys(word for table in tables for word in table))
 

@@ -44,33 +44,33 @@ def to_yaml(system: System) -> str:
         lines.append(f"language: {system.language}")
     if system.order:
         lines.append(f"order: [{', '.join(system.order)}]")
-    lines += _mapping("parameters", {one.name: parameter_shape(one) for one in system.parameters})
-    lines += _mapping("prescribed", {one.name: prescribed_shape(one) for one in system.prescribed})
+    lines += _mapping("parameters", {parameter.name: parameter_shape(parameter) for parameter in system.parameters})
+    lines += _mapping("prescribed", {prescribed.name: prescribed_shape(prescribed) for prescribed in system.prescribed})
     lines += _mapping("inputs", {one.name: input_shape(one) for one in system.inputs})
-    lines += _mapping("tables", {one.name: table_shape(one) for one in system.tables})
+    lines += _mapping("tables", {table.name: table_shape(table) for table in system.tables})
     lines += _mapping("units", {one.name: one.text for one in system.units.declared})
     lines += _bodies(system) if system.linear is None else _linear(system.linear)
     lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
-    lines += _list("constraints", [_load(*constraint_shape(one)) for one in system.constraints])
+    lines += _list("constraints", [_load(*constraint_shape(constraint)) for constraint in system.constraints])
     if system.dependent:
         lines += ["", f"dependent: [{', '.join(system.dependent)}]"]
     if system.reactions:
         lines += ["", f"reactions: {_flow(list(system.reactions))}"]
-    lines += _mapping("relations", {one.name: text(one.value) for one in system.relations})
+    lines += _mapping("relations", {relation.name: text(relation.value) for relation in system.relations})
     lines += _mapping("motion", motion_shapes(system))
-    lines += _mapping("notation", {one.name: text(one.value) for one in system.notation})
-    lines += _mapping("outputs", {one.name: text(one.value) for one in system.outputs})
+    lines += _mapping("notation", {notation.name: text(notation.value) for notation in system.notation})
+    lines += _mapping("outputs", {output.name: text(output.value) for output in system.outputs})
     assumptions = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
-    lines += _list("assumptions", [scalar_text(one) for one in assumptions])
+    lines += _list("assumptions", [scalar_text(assumption) for assumption in assumptions])
     if system.time_scale is not None:
         lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
     if system.small is not None:
         lines += ["", f"small parameter: {_flow(small_shape(system.small))}"]
-    lines += _mapping("initial", {one.coordinate: initial_shape(one) for one in (*system.initial, *system.start)})
-    lines += _mapping("limits", {one.coordinate: [text(one.lower), text(one.upper)] for one in system.limits})
-    lines += _mapping("latex", {one.name: one.latex for one in system.symbols})
+    lines += _mapping("initial", {value.coordinate: initial_shape(value) for value in (*system.initial, *system.start)})
+    lines += _mapping("limits", {limit.coordinate: [text(limit.lower), text(limit.upper)] for limit in system.limits})
+    lines += _mapping("latex", {symbol.name: symbol.latex for symbol in system.symbols})
     lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
-    lines += _list("claims", [_flow(claim_shape(one, system)) for one in system.claims])
+    lines += _list("claims", [_flow(claim_shape(claim, system)) for claim in system.claims])
     return "\n".join(lines) + "\n"
 
 

@@ -85,8 +85,8 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
         yield Unfit("--phase", "no-phase", listed, hint)
     for phase in phases:
         if phase not in known:
-            told = Message("[[name]] is no prescribed quantity whose rate is a parameter", name=repr(phase))
-            yield Unfit("--phase", "unknown-name", told, listed)
+            message = Message("[[name]] is no prescribed quantity whose rate is a parameter", name=repr(phase))
+            yield Unfit("--phase", "unknown-name", message, listed)
     for option, names in (("--small", request.small), ("--order", request.order)):
         for name in names:
             if name not in system.parameter_names:
@@ -148,8 +148,8 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    one = Averaging(found.averaged.phases, found.averaged, Analysis(found.system, (6,)))
-    return Answer(map(ragged, of_averaging(JudgedAverage(one, found.measured, False))))
+    averaging = Averaging(found.averaged.phases, found.averaged, Analysis(found.system, (6,)))
+    return Answer(map(ragged, of_averaging(JudgedAverage(averaging, found.measured, False))))
 
 
 def document(asked: Asked, request: Request, found: Found) -> Document:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 MOST_GAPS = 8
 
 
-def closed_motion(given: Scenario, declared: bool = False) -> tuple[Scenario, tuple[str, ...]]:
+def closed_motion(scenario: Scenario, declared: bool = False) -> tuple[Scenario, tuple[str, ...]]:
     """The scenario on its constraints, in ``declared`` variables if it has any and they are integrated; what is said.
 
     Raises NotClosed.
@@ -24,9 +24,9 @@ def closed_motion(given: Scenario, declared: bool = False) -> tuple[Scenario, tu
     from mbsym.numerics.closing import begun, closed
     from mbsym.report.runs.constrained_run_words import start_lines
 
-    found = begun(given) if declared else closed(given)
-    say = Language(given.system.language).say
-    notes = (Message("note: [[text]]", text=text) for text in start_lines(found, given.system))
+    found = begun(scenario) if declared else closed(scenario)
+    say = Language(scenario.system.language).say
+    notes = (Message("note: [[text]]", text=text) for text in start_lines(found, scenario.system))
     return found.scenario, tuple(map(say, notes)) if found.moves else ()
 
 
@@ -59,5 +59,5 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
         hint = Message("check lengths and the initial position; a start nearer to a closed one may succeed")
     lines.append(Message("hint: [[hint]]", hint=hint))
     code, say = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN, Language(system.language).say
-    told = [f"  {say(one)}" for one in lines]
+    told = [f"  {say(line)}" for line in lines]
     return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*told, say(Message("nothing was written."))))

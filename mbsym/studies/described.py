@@ -124,8 +124,8 @@ def public(
             return derive((asked or asked_of)(source, wanted), wanted, unwatched)
 
         taken = (
-            one.replace(annotation=_plain(str(one.annotation)), default=_shown(one.default))
-            for one in signature(request).parameters.values()
+            parameter.replace(annotation=_plain(str(parameter.annotation)), default=_shown(parameter.default))
+            for parameter in signature(request).parameters.values()
         )
         own = Parameter("source", Parameter.POSITIONAL_OR_KEYWORD, annotation="str | Path | Analysis")
         shown = signature(derive).replace(parameters=[own, *taken])
@@ -139,7 +139,7 @@ def public(
 def asked_of(source: Source, request: Any) -> Asked:
     """The system with its inputs held; the motion, too, where the request has values of one."""
     system = moving_system(source)
-    settings = [one.kind for one in fields_of(type(request)) if isinstance(one.kind, Settings)]
+    settings = [field.kind for field in fields_of(type(request)) if isinstance(field.kind, Settings)]
     if not settings:
         return Asked(system)
     from mbsym.numerics.scenario import scenario

@@ -52,10 +52,10 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     if request.sequences and "as_json" in asked.typed:
         yield Unfit("--json", "conflicting-options", "there is no JSON of a ranking", "leave --sequences out")
     if request.sequences and system.constraints:
-        told = Message(
+        message = Message(
             "sequences are ranked without constraints, and here are some ([[which]])", which=listed(system.constraints)
         )
-        yield Unfit("--sequences", "constraints", told, "without them this would be another system")
+        yield Unfit("--sequences", "constraints", message, "without them this would be another system")
 
 
 @dataclass(frozen=True)
@@ -81,27 +81,27 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Measured | Ranked:
     from mbsym.numerics.extremes.extremes import extremes
     from mbsym.simulation.request import read_values
 
-    given, notes = closed_motion(asked.motion)
+    scenario, notes = closed_motion(asked.motion)
     values = read_values(asked.system, request.values)
-    return Measured(extremes(given, ring_of(given.system), values, request.budget, watch), notes)
+    return Measured(extremes(scenario, ring_of(scenario.system), values, request.budget, watch), notes)
 
 
-def _ranked(given: Scenario, watch: Watch) -> Ranked:
+def _ranked(scenario: Scenario, watch: Watch) -> Ranked:
     from mbsym.numerics.probes import motion_state
     from mbsym.numerics.sequences import rankings
 
-    states = [[float(x) for x in given.state]]
-    moving = motion_state(given)
+    states = [[float(x) for x in scenario.state]]
+    moving = motion_state(scenario)
     if moving is not None:
         states.append([float(x) for x in moving])
-    return Ranked(tuple(rankings(given, states, watch)))
+    return Ranked(tuple(rankings(scenario, states, watch)))
 
 
 def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
     from mbsym.report.content import Graded, paragraph
 
     if isinstance(found, Ranked):
-        said = [one.sentence for one in found.rankings] or [Message("no body is oriented by three turns.")]
+        said = [ranking.sentence for ranking in found.rankings] or [Message("no body is oriented by three turns.")]
         brief = [paragraph(text) for text in said]
         return Answer((*brief, *_sequences(found.rankings)), brief=brief)
     from mbsym.numerics.extremes.extremes_told import sentences

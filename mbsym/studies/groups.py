@@ -100,15 +100,15 @@ def _said(found: Groups, effects: bool = True) -> Iterator[str]:
         yield Message(told, scalings=Counted(found.unused, "scaling more is", "scalings more are"))
     if found.units:
         yield ", ".join(f"{name} = 1" for name in found.units)
-    for one in found.groups:
-        stands = text(group_of(one.parameter, one.powers))
-        told = Message("[[name]] stands for [[group]]", name=one.parameter, group=stands)
-        yield one.parameter if stands == one.parameter else told
+    for group in found.groups:
+        stands = text(group_of(group.parameter, group.powers))
+        told = Message("[[name]] stands for [[group]]", name=group.parameter, group=stands)
+        yield group.parameter if stands == group.parameter else told
     if found.rate:
         unit = text(product((name, -power) for name, power in found.rate))
         yield Message("time in units of [[unit]]", unit=unit)
-    for one in found.lengths:
-        yield Message("[[name]] in units of [[unit]]", name=one.parameter, unit=text(product(one.powers)))
+    for length in found.lengths:
+        yield Message("[[name]] in units of [[unit]]", name=length.parameter, unit=text(product(length.powers)))
     if found.idle and effects:
         yield Message("without effect on the motion: [[names]]", names=", ".join(found.idle))
 
@@ -127,11 +127,11 @@ def _linear(analysis: Analysis) -> Iterator[str]:
     from mbsym.algebra.failures import Failure
 
     try:
-        found = _of_linear(analysis)
+        groups = _of_linear(analysis)
     except Failure as error:
         yield Message("none: [[reason]]", reason=error.reason)
         return
-    yield from _said(found, effects=False)
+    yield from _said(groups, effects=False)
 
 
 def in_scale(system: System, scaling: Scaling) -> System:

@@ -64,7 +64,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
             "at most a million",
         )
     if time / every < LEAST_INTERVALS * (1 - 1e-12):
-        told = Message(
+        message = Message(
             "--every [[every]] goes with a --time of [[time]] and more: [[least]] intervals",
             every=f"{every:g}", time=f"{LEAST_INTERVALS * every:g}", least=LEAST_INTERVALS,
         )  # fmt: skip
@@ -72,7 +72,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
             "at most [[most]] here; with fewer nothing can be said of the uncertainty",
             most=f"{time / LEAST_INTERVALS:.3g}",
         )
-        yield Unfit("--every", "too-large", told, hint)
+        yield Unfit("--every", "too-large", message, hint)
 
 
 @public(Request)
@@ -86,8 +86,8 @@ def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
     def at(t: float) -> None:
         watch("", t, request.time)
 
-    given, _ = closed_motion(asked.motion)
-    return lyapunov_exponents(given, request.time, request.every, request.count, request.tolerance, at)
+    scenario, _ = closed_motion(asked.motion)
+    return lyapunov_exponents(scenario, request.time, request.every, request.count, request.tolerance, at)
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

@@ -68,24 +68,24 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.model.assumptions import has_sign
 
     system = asked.system
-    signs = {one.name: one.sign for one in system.parameters}
-    related = {one.name for one in system.relations}
+    signs = {parameter.name: parameter.sign for parameter in system.parameters}
+    related = {relation.name for relation in system.relations}
     for name, value in request.values.items():
         if name not in signs:
-            told = Message("[[name]] is a symbol of the notation", name=name)
-            yield Unfit("--set", "unknown-name", told, "set the parameters in it")
+            message = Message("[[name]] is a symbol of the notation", name=name)
+            yield Unfit("--set", "unknown-name", message, "set the parameters in it")
         elif name in related:
-            told = Message("'[[name]]' follows from a relation", name=name)
-            yield Unfit("--set", "wrong-use", told, "set the parameters in it")
+            message = Message("'[[name]]' follows from a relation", name=name)
+            yield Unfit("--set", "wrong-use", message, "set the parameters in it")
         elif not has_sign(value, signs[name]):
             sign = worded(str(signs[name]))
-            told = Message("[[name]] is declared [[sign]], [[value]] is not", name=name, sign=sign, value=str(value))
-            yield Unfit("--set", "sign-contradiction", told)
+            message = Message("[[name]] is declared [[sign]], [[value]] is not", name=name, sign=sign, value=str(value))
+            yield Unfit("--set", "sign-contradiction", message)
     if request.vary is not None:
         varied = request.vary.name
         if varied in request.values:
-            told = Message("'[[name]]' has an interval and a number", name=varied)
-            yield Unfit("--set", "repeated-name", told, "leave one of them out")
+            message = Message("'[[name]]' has an interval and a number", name=varied)
+            yield Unfit("--set", "repeated-name", message, "leave one of them out")
         names = [name for name in _lacking(system, request.values) if name != varied]
         if names:
             yield missing(names, "rational number")
@@ -135,12 +135,12 @@ def _at_values(system: System, numbers: Mapping[str, Fraction]) -> AtValues:
     )
     analysis = Analysis(replace(system, parameters=tuple(parameters)))
     with analysis.strictly():
-        found = analysis.normal_forms
+        forms = analysis.normal_forms
         solved = {name for name, _ in analysis.equilibrium.solved}
     lacking = tuple(name for name in _lacking(system, numbers) if name not in solved)
-    if found.at_values is None and lacking and found.in_symbols is None:
+    if forms.at_values is None and lacking and forms.in_symbols is None:
         raise NotFit([missing(lacking, "rational number")])
-    return AtValues(analysis, found, lacking if found.at_values is None else ())
+    return AtValues(analysis, forms, lacking if forms.at_values is None else ())
 
 
 def answer(asked: Asked, request: Request, found: AtValues | Along) -> Answer:

@@ -63,9 +63,9 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     for option, names in (("--turns", request.turns), ("--shifted", request.shifted)):
         for name in names:
             if name not in system.coordinates:
-                told = Message("there is no coordinate [[name]]", name=repr(name))
+                message = Message("there is no coordinate [[name]]", name=repr(name))
                 yield Unfit(
-                    option, "unknown-name", told, Message("there are [[names]]", names=", ".join(system.coordinates))
+                    option, "unknown-name", message, Message("there are [[names]]", names=", ".join(system.coordinates))
                 )
 
 

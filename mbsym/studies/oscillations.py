@@ -107,8 +107,8 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
         yield Unfit(DESCRIPTION, "missing-key", "the description names no small parameter", hint)
     known = (*system.coordinates, *system.velocities, *system.variables)
     if leading and leading not in known:
-        told = Message("there is no variable called [[name]]", name=repr(leading[:60]))
-        yield Unfit("--of", "unknown-name", told, Message("there are [[names]]", names=", ".join(known)))
+        message = Message("there is no variable called [[name]]", name=repr(leading[:60]))
+        yield Unfit("--of", "unknown-name", message, Message("there are [[names]]", names=", ".join(known)))
     for name in request.values:
         if small is not None and (name == small.name or name in {*dict(small.powers)} - {*system.parameter_names}):
             yield Unfit(
@@ -130,10 +130,10 @@ def _unscaled(text: str, system: System) -> Iterator[Unfit]:
     from mbsym.source.scaling import read_scaling
 
     complaints = Complaints()
-    found = read_scaling(text, system, complaints)
-    for one in complaints.sorted():
-        yield Unfit("--scale", one.code, one.message, one.hint)
-    if found is not None and system.small is not None and system.small.name in found.new:
+    scaling = read_scaling(text, system, complaints)
+    for complaint in complaints.sorted():
+        yield Unfit("--scale", complaint.code, complaint.message, complaint.hint)
+    if scaling is not None and system.small is not None and system.small.name in scaling.new:
         hint = "the series are in its powers, which stand before what is scaled"
         yield Unfit(
             "--scale", "misplaced-name", Message("[[name]] is the small parameter", name=system.small.name), hint
@@ -144,7 +144,7 @@ def _rates(text: str, complaints: Complaints) -> dict[str, Item]:
     """Formulas by the names of their integrals."""
     from mbsym.source.scaling import assignments
 
-    return {one.name: one for one in assignments(text, complaints)}
+    return {assignment.name: assignment for assignment in assignments(text, complaints)}
 
 
 def _no_rates(text: str, system: System) -> Iterator[Unfit]:
@@ -156,8 +156,8 @@ def _no_rates(text: str, system: System) -> Iterator[Unfit]:
 
     complaints = Complaints()
     rates = _rates(text, complaints)
-    for one in complaints.sorted():
-        yield Unfit("--integral", one.code, one.message, one.hint)
+    for complaint in complaints.sorted():
+        yield Unfit("--integral", complaint.code, complaint.message, complaint.hint)
     variables = (*system.coordinates, *system.velocities, *system.variables)
     known = (*variables, *system.parameter_names)
     for name, item in rates.items():
@@ -169,11 +169,13 @@ def _no_rates(text: str, system: System) -> Iterator[Unfit]:
         if reason is None and name in {*known, *symbols(system)} - {*system.coordinates}:
             reason = "the description has it", "what is put in holds parameters and new names"
         if reason is not None:
-            told = Message("[[name]] cannot be a new name: [[reason]]", name=ascii_safe(name), reason=reason[0])
-            yield Unfit("--integral", "bad-name", told, reason[1])
+            message = Message("[[name]] cannot be a new name: [[reason]]", name=ascii_safe(name), reason=reason[0])
+            yield Unfit("--integral", "bad-name", message, reason[1])
         for unknown in sorted(names(item.value) - {*known}):
-            told = Message("there is no variable called [[name]]", name=repr(unknown[:60]))
-            yield Unfit("--integral", "unknown-name", told, did_you_mean(unknown, known) or listed("there are", known))
+            message = Message("there is no variable called [[name]]", name=repr(unknown[:60]))
+            yield Unfit(
+                "--integral", "unknown-name", message, did_you_mean(unknown, known) or listed("there are", known)
+            )
 
 
 @dataclass(frozen=True)

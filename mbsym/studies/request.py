@@ -306,12 +306,12 @@ def fields_of(request: type) -> tuple[Field, ...]:
     """The fields that have a kind, in their order."""
     hints = get_type_hints(request, include_extras=True)
     found = []
-    for one in fields(request):
-        kind = next((item for item in get_args(hints[one.name]) if isinstance(item, Kind)), None)
+    for field in fields(request):
+        kind = next((item for item in get_args(hints[field.name]) if isinstance(item, Kind)), None)
         if kind is not None:
-            made = one.default_factory() if one.default_factory is not MISSING else one.default
+            made = field.default_factory() if field.default_factory is not MISSING else field.default
             required = made is MISSING
-            found.append(Field(one.name, kind, None if required else made, required))
+            found.append(Field(field.name, kind, None if required else made, required))
     return tuple(found)
 
 

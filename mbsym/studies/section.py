@@ -27,8 +27,8 @@ def distinct(axes: Sequence[Axis], settings: Mapping[str, Fraction]) -> Iterator
         )
     for name in names:
         if name in settings:
-            told = Message("'[[name]]' has an interval and a number", name=name)
-            yield Unfit("--set", "repeated-name", told, "leave one of them out")
+            message = Message("'[[name]]' has an interval and a number", name=name)
+            yield Unfit("--set", "repeated-name", message, "leave one of them out")
 
 
 def unless_parameter(option: str, name: str, system: System) -> Iterator[Unfit]:
@@ -37,31 +37,31 @@ def unless_parameter(option: str, name: str, system: System) -> Iterator[Unfit]:
 
     related = next((item for item in system.relations if item.name == name), None)
     if related is not None:
-        told = Message(FOLLOWS, name=name, how=f"{name} = {text(related.value)}")
-        yield Unfit(option, "given-by-relation", told, "take one of those of which its relation is made")
+        message = Message(FOLLOWS, name=name, how=f"{name} = {text(related.value)}")
+        yield Unfit(option, "given-by-relation", message, "take one of those of which its relation is made")
     elif name not in system.parameter_names and name in [item.name for item in system.notation]:
-        told = Message("'[[name]]' is no parameter but a symbol of the notation", name=name)
-        yield Unfit(option, "misplaced-name", told, "take the parameters of which it is made")
+        message = Message("'[[name]]' is no parameter but a symbol of the notation", name=name)
+        yield Unfit(option, "misplaced-name", message, "take the parameters of which it is made")
 
 
 def against_sign(option: str, axis: Axis, system: System) -> Iterator[Unfit]:
     """An interval against the declared sign of its parameter."""
-    sign = next((str(one.sign) for one in system.parameters if one.name == axis.name), "")
+    sign = next((str(parameter.sign) for parameter in system.parameters if parameter.name == axis.name), "")
     if (sign in ("positive", "nonnegative") and axis.low < 0) or (
         sign in ("negative", "nonpositive") and axis.high > 0
     ):
-        told = Message(
+        message = Message(
             "[[name]] is declared [[sign]], and the interval from [[low]] to [[high]] is not",
             name=axis.name, sign=worded(sign), low=str(axis.low), high=str(axis.high),
         )  # fmt: skip
-        yield Unfit(option, "against-sign", told, "choose an interval of that sign")
+        yield Unfit(option, "against-sign", message, "choose an interval of that sign")
 
 
 def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfit]:
     """Why a section cannot be made: everything at once, each with what to do."""
     from mbsym.maps.section import Fault
 
-    lacking = list(dict.fromkeys(one.name for one in wrong if one.fault is Fault.MISSING))
+    lacking = list(dict.fromkeys(complaint.name for complaint in wrong if complaint.fault is Fault.MISSING))
     if lacking:
         example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
         lacks = Message("no number for [[names]]", names=", ".join(lacking))
@@ -69,31 +69,31 @@ def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfi
     for one in dict.fromkeys(wrong):
         match one.fault:
             case Fault.RELATED:
-                told = Message(FOLLOWS, name=one.name, how=one.about)
-                yield Unfit(axis_option, "given-by-relation", told, "take those of which its relation is made")
+                message = Message(FOLLOWS, name=one.name, how=one.about)
+                yield Unfit(axis_option, "given-by-relation", message, "take those of which its relation is made")
             case Fault.SOLVED:
-                told = Message("[[name]] has one value on the motion only: [[how]]", name=one.name, how=one.about)
-                yield Unfit(axis_option, "given-by-motion", told, "take those of which its value is made")
+                message = Message("[[name]] has one value on the motion only: [[how]]", name=one.name, how=one.about)
+                yield Unfit(axis_option, "given-by-motion", message, "take those of which its value is made")
             case Fault.DEPENDENT:
-                told = Message("[[name]] is not independent of the parameters", name=one.name)
+                message = Message("[[name]] is not independent of the parameters", name=one.name)
                 if one.about:
-                    told = Message("[[name]] is not independent of [[others]]", name=one.name, others=one.about)
-                yield Unfit(axis_option, "not-independent", told, "leave one of them out")
+                    message = Message("[[name]] is not independent of [[others]]", name=one.name, others=one.about)
+                yield Unfit(axis_option, "not-independent", message, "leave one of them out")
             case Fault.SIGN:
-                told = Message(
+                message = Message(
                     "[[name]] is declared [[sign]], or is by its definition", name=one.name, sign=worded(one.about)
                 )
-                yield Unfit("--set", "against-sign", told, "choose a number of that sign")
+                yield Unfit("--set", "against-sign", message, "choose a number of that sign")
             case Fault.NOWHERE:
                 text = "the motion of the description exists nowhere there: [[why]]"
-                told = Message(text, why=worded(one.name or one.about))
-                yield Unfit("--set", "no-motion", told, "see problem 4 for the conditions")
+                message = Message(text, why=worded(one.name or one.about))
+                yield Unfit("--set", "no-motion", message, "see problem 4 for the conditions")
             case Fault.OUTSIDE:
-                told = Message("no point of the map keeps what has to be kept: [[what]]", what=worded(one.about))
-                yield Unfit("--set", "outside", told, "choose other values, or another interval")
+                message = Message("no point of the map keeps what has to be kept: [[what]]", what=worded(one.about))
+                yield Unfit("--set", "outside", message, "choose other values, or another interval")
             case Fault.IRRATIONAL:
-                told = Message("the matrices hold what is no rational number there: [[what]]", what=worded(one.name))
-                yield Unfit("--set", "irrational", told, "choose values at which roots and angles are rational")
+                message = Message("the matrices hold what is no rational number there: [[what]]", what=worded(one.name))
+                yield Unfit("--set", "irrational", message, "choose values at which roots and angles are rational")
             case Fault.SINGULAR:
-                told = Message("a division by zero in [[what]]", what=worded(one.name))
-                yield Unfit("--set", "division-by-zero", told, "choose other values")
+                message = Message("a division by zero in [[what]]", what=worded(one.name))
+                yield Unfit("--set", "division-by-zero", message, "choose other values")

@@ -203,7 +203,7 @@ class NotFit(Exception):
     """A request that does not go with what was derived first."""
 
     def __init__(self, reasons: Sequence[Unfit]) -> None:
-        super().__init__("; ".join(one.message for one in reasons))
+        super().__init__("; ".join(reason.message for reason in reasons))
         self.reasons = tuple(reasons)
 
 
@@ -288,8 +288,8 @@ def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | N
 
     if not isinstance(error, Failure):
         return None
-    told = refused(before, error)
-    return Refusal(joined((told.text, error.remedy), "; ")) if remedied and error.remedy else told
+    refusal = refused(before, error)
+    return Refusal(joined((refusal.text, error.remedy), "; ")) if remedied and error.remedy else refusal
 
 
 def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:

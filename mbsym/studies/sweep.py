@@ -113,8 +113,8 @@ class Request:
         from mbsym.sweeps.points import Points
         from mbsym.sweeps.sweep import Asked
 
-        points = Points(tuple(one.variation for one in self.vary), self.points or 0, self.seed, self.sampling)
-        ends = {one.variation.name: one.ends for one in self.vary}
+        points = Points(tuple(varied.variation for varied in self.vary), self.points or 0, self.seed, self.sampling)
+        ends = {varied.variation.name: varied.ends for varied in self.vary}
         measure = "" if self.measure.formula is not None else self.measure.text
         return Asked(points, ends, self.values, measure, self.measure.formula, self.time)
 
@@ -133,18 +133,18 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
             Message("for example [[example]]", example="--time 60"),
         )
     if not moving and "time" in asked.typed:
-        told = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
-        yield Unfit("--time", "conflicting-options", told, "leave it out")
+        message = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
+        yield Unfit("--time", "conflicting-options", message, "leave it out")
     if "parquet" in request.format and not _arrow():
         yield Unfit("--format", "missing-package", "parquet needs PyArrow", "pip install 'mbsym[parquet]'")
-    variations = [one.variation for one in request.vary or ()]
+    variations = [varied.variation for varied in request.vary or ()]
     if request.points is not None or "points" not in asked.typed:
         known = _names(system, request.measure.text)
         wrong = complaints(variations, request.points, known, (), "points", MOST_POINTS, 100_000)
         for name, text, hint in wrong:
             code = "bad-variation" if name in known else "unknown-name"
             yield Unfit(f"--vary {name}", code, text, hint or None)
-    for name in request.values.keys() & {one.name for one in variations}:
+    for name in request.values.keys() & {variation.name for variation in variations}:
         yield Unfit(
             f"--set {name}", "conflicting-options", Message("[[name]] is varied", name=name), "leave one of the two out"
         )
@@ -197,17 +197,17 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
     every = sweep.chunks(wanted.points.count)
     digest = wanted.digest(meaning(system), derivation())
-    kept = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
+    folder = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
     mine = every if request.shard is None else sweep.shard(every, *request.shard)
     executor, done, cut = _executor(system, request, wanted, measure), 0, False
     try:
-        for _ in sweep.measured(mine, executor, kept):
+        for _ in sweep.measured(mine, executor, folder):
             done += 1
             watch("", done, len(mine))
     except KeyboardInterrupt:
         cut = True
     executor.close()
-    return Swept(measure, wanted.points, kept, every, len(mine), done, cut)
+    return Swept(measure, wanted.points, folder, every, len(mine), done, cut)
 
 
 def _executor(system: System, request: Request, wanted: Wanted, measure: Measure) -> Executor:
@@ -235,15 +235,15 @@ def _fixed(system: System, points: Points, request: Request) -> dict[str, Any]:
 def answer(asked: Asked, request: Request, found: Swept) -> Answer:
     if found.cut:
         words = "interrupted; [[done]] of [[all]] chunks are kept: the same command goes on from there"
-        told = Message(words, done=found.done, all=found.asked)
-        return Answer(complaints=(told,), code=Exit.INTERRUPTED)
+        message = Message(words, done=found.done, all=found.asked)
+        return Answer(complaints=(message,), code=Exit.INTERRUPTED)
     if request.shard is not None:
         from mbsym.report.language import Language
 
         number, of = request.shard
         words = "shard [[number]] of [[all]]: [[count]] chunks are done; without --shard all are put together"
-        told = Message(words, number=number, all=of, count=found.asked)
-        return Answer((line(f"  {Language(asked.system.language).say(told)}"),))
+        message = Message(words, number=number, all=of, count=found.asked)
+        return Answer((line(f"  {Language(asked.system.language).say(message)}"),))
     from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total

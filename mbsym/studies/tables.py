@@ -163,7 +163,7 @@ def _tradeoff(
         if name not in METHODS:
             raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
     given = scenario(system, read_values(system, values), declared=True)
-    found = studied(given, [METHODS[name] for name in names], time, budget, models)
+    study = studied(given, [METHODS[name] for name in names], time, budget, models)
     strayed = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
     runs = Table.of(
         (
@@ -193,14 +193,14 @@ def _tradeoff(
                 row.seconds,
                 row.front,
             )
-            for row in found.trade.rows
+            for row in study.trade.rows
         ),
     )
     compared = Table.of(
         ("model", "error", "operations", "seconds"),
-        ((row.label, row.error, row.operations, row.seconds) for row in found.models),
+        ((row.label, row.error, row.operations, row.seconds) for row in study.models),
     )
-    return TradeoffStudy(runs, compared, advice(found.trade, target), found.trade.reference.error, found)
+    return TradeoffStudy(runs, compared, advice(study.trade, target), study.trade.reference.error, study)
 
 
 def _extremes(system: System, values: Mapping[str, Fraction | float | str], budget: float) -> ExtremesStudy:

@@ -92,25 +92,25 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.numerics.methods import table
     from mbsym.numerics.trade.tradeoff import studied
 
-    given, notes = closed_motion(asked.motion, declared=True)
+    scenario, notes = closed_motion(asked.motion, declared=True)
     methods = [table.METHODS[name] for name in request.methods]
 
     def measure() -> trade_study.Study:
-        return studied(given, methods, request.time, request.budget, request.fidelity, watch)
+        return studied(scenario, methods, request.time, request.budget, request.fidelity, watch)
 
     how = repr((request.methods, request.time, request.budget, request.fidelity))
     measured, before = asked.remember(
-        ("tradeoff", identity(given), how), measure, lambda found: not found.trade.interrupted, request.anew
+        ("tradeoff", identity(scenario), how), measure, lambda found: not found.trade.interrupted, request.anew
     )
     return Found(measured, notes, before)
 
 
-def identity(given: Scenario) -> str:
+def identity(scenario: Scenario) -> str:
     """A text that two scenarios share only if they are the same motion of the same description."""
     from mbsym.source.yaml_writer import meaning
 
-    numbers = {name: getattr(given, name) for name in given.__dataclass_fields__ if name != "system"}
-    return repr((meaning(given.system), numbers))
+    numbers = {name: getattr(scenario, name) for name in scenario.__dataclass_fields__ if name != "system"}
+    return repr((meaning(scenario.system), numbers))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
@@ -144,20 +144,20 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     from mbsym.numerics.trade.fidelity import model_advice
     from mbsym.numerics.trade.tradeoff import advice
 
-    found = answered.measured
-    trade, models, target = found.trade, found.models, request.target
+    study = answered.measured
+    trade, models, target = study.trade, study.models, request.target
     truth = trade.reference
     if answered.before:
         yield line("  ", say(Message(BEFORE)))
     text = "reference: [[method]], estimated error [[error]], [[time]]; errors below [[least]] are not told apart"
     error, least, time = f"{truth.error:.1e}", f"{trade.smallest_judged:.0e}", duration(truth.seconds)
     yield line("  ", say(Message(text, method=truth.method, error=error, time=time, least=least)))
-    yield _runs(request, found)
+    yield _runs(request, study)
     for order in trade.orders:
         if order.pairs > 1:
             text = "measured order [[order]], nominal [[nominal]] (halvings of the step: [[count]])"
-            told = Message(text, order=f"{order.measured:.2f}", nominal=order.nominal, count=order.pairs)
-            yield line(f"  {order.method}, {order.scalar}: ", say(told))
+            message = Message(text, order=f"{order.measured:.2f}", nominal=order.nominal, count=order.pairs)
+            yield line(f"  {order.method}, {order.scalar}: ", say(message))
     for name, reason in trade.unusable:
         yield line("  ", (say(Message("[[method]]: not used: [[why]]", method=name, why=reason)), "yellow"))
     text = (
@@ -167,7 +167,7 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
     yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
     if len(models) > 1:
-        yield _models(found)
+        yield _models(study)
     advised = joined(filter(None, (advice(trade, target), model_advice(models, target))))
     yield line((say(advised), "bold"), always=True)
 
@@ -239,8 +239,8 @@ def together(found: Sequence[tuple[Asked, Request, Found]]) -> Iterator[Block]:
     yield aligned(columns, compared(rows))
     before = [asked.system.name for asked, _, one in found if one.before]
     if before:
-        told = Message(BEFORE)
-        yield paragraph(told if len(before) == len(found) else joined([", ".join(before), told], ": "))
+        message = Message(BEFORE)
+        yield paragraph(message if len(before) == len(found) else joined([", ".join(before), message], ": "))
 
 
 STUDY = Study(

@@ -44,13 +44,15 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     names = (*system.input_names, *system.parameter_names)
     for name in request.solve or ():
         if name not in names:
-            told = Message("there is no input or parameter '[[name]]'", name=name)
-            yield Unfit("--solve", "unknown-name", told, Message("there are [[names]]", names=", ".join(names)), name)
+            message = Message("there is no input or parameter '[[name]]'", name=name)
+            yield Unfit(
+                "--solve", "unknown-name", message, Message("there are [[names]]", names=", ".join(names)), name
+            )
         elif name in {item.name for item in system.relations}:
             yield Unfit("--solve", "misplaced-name", Message("'[[name]]' follows from a relation", name=name), "", name)
     if not request.solve and not system.inputs:
-        told = Message("the system has no inputs")
-        yield Unfit(DESCRIPTION, "no-inputs", told, "add --solve NAME of a parameter")
+        message = Message("the system has no inputs")
+        yield Unfit(DESCRIPTION, "no-inputs", message, "add --solve NAME of a parameter")
 
 
 def _asked(source: Source, request: Request) -> Asked:
@@ -75,14 +77,14 @@ def trim(asked: Asked, request: Request, watch: Watch) -> Trim:
     watch("deriving")
     analysis = _with_letters(asked.system, request.solve)
     unknowns = request.solve or asked.system.input_names
-    found = analysis.equilibrium
-    if found.unsteady:
+    equilibrium = analysis.equilibrium
+    if equilibrium.unsteady:
         from mbsym.algebra.failures import NoClosedForm
 
-        told = Message("the equations vary with [[names]] on this motion", names=", ".join(found.unsteady))
-        raise NoClosedForm(told)
+        message = Message("the equations vary with [[names]] on this motion", names=", ".join(equilibrium.unsteady))
+        raise NoClosedForm(message)
     assumed = [x.polynomial for x in analysis.reduced.about.assumed] if analysis.system.constraints else []
-    residuals = [x.polynomial for x in found.residuals]
+    residuals = [x.polynomial for x in equilibrium.residuals]
     return found_of(analysis.parameters_scene, residuals, unknowns, analysis.signs, assumed)
 
 
@@ -93,9 +95,9 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
     from mbsym.model.substitution import driven
     from mbsym.model.system import Parameter
 
-    asked = [one for one in system.inputs if not solve or one.name in solve]
-    laws = {one.name: Name(one.name) for one in asked}
-    letters = tuple(Parameter(one.name, meaning=one.meaning) for one in asked)
+    inputs = [one for one in system.inputs if not solve or one.name in solve]
+    laws = {one.name: Name(one.name) for one in inputs}
+    letters = tuple(Parameter(one.name, meaning=one.meaning) for one in inputs)
     return Analysis(replace(driven(system, laws), parameters=(*system.parameters, *letters)), ())
 
 

@@ -274,17 +274,17 @@ def _same(a: Coefficients, b: Coefficients) -> bool:
     return len(a) == len(b) and all((x * b[-1] - y * a[-1]).is_zero() for x, y in zip(a, b, strict=True))
 
 
-def _product(factors: Sequence[Coefficients], one: Polynomial) -> Coefficients:
-    found: Coefficients = (one,)
+def _product(factors: Sequence[Coefficients], polynomial: Polynomial) -> Coefficients:
+    coefficients: Coefficients = (polynomial,)
     for factor in factors:
         if len(factor) < 2:
             continue
-        longer = [one * 0] * (len(found) + len(factor) - 1)
-        for i, a in enumerate(found):
+        longer = [polynomial * 0] * (len(coefficients) + len(factor) - 1)
+        for i, a in enumerate(coefficients):
             for j, b in enumerate(factor):
                 longer[i + j] = longer[i + j] + a * b
-        found = tuple(longer)
-    return found
+        coefficients = tuple(longer)
+    return coefficients
 
 
 def classes(keys: Any, certain: Any) -> Iterator[tuple[tuple[int, ...], Any]]:

@@ -101,11 +101,11 @@ class StabilityMeasure:
         line, constant = len(numbers) == 1, self.section.constant is not None
         place: Any = numbers[0] if line else Point(*numbers) if constant else tuple(numbers)
         try:
-            found = self._judge(Shape.INTERVAL if line else Shape.REGION, 0, place)
+            cell = self._judge(Shape.INTERVAL if line else Shape.REGION, 0, place)
         except Failure:  # a limit was reached: nothing is wrong with the formulas
             return WORDS.index(Word.UNDECIDED), -1
         except (ValueError, ZeroDivisionError):
             return WORDS.index(UNDEFINED), -1
-        if found.judged is None:
-            return WORDS.index(NO_WORDS[found.lack]), -1
-        return WORDS.index(found.judged.verdict.word.value), -1 if found.right is None else found.right
+        if cell.judged is None:
+            return WORDS.index(NO_WORDS[cell.lack]), -1
+        return WORDS.index(cell.judged.verdict.word.value), -1 if cell.right is None else cell.right

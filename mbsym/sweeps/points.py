@@ -31,25 +31,25 @@ class Points:
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(one.name for one in self.variations)
+        return tuple(variation.name for variation in self.variations)
 
     @property
     def grids(self) -> tuple[Grid, ...]:
         """The axes of a grid; nothing where points are drawn."""
-        return tuple(one for one in self.variations if isinstance(one, Grid))
+        return tuple(variation for variation in self.variations if isinstance(variation, Grid))
 
     @cached_property
     def count(self) -> int:
-        return prod(one.count for one in self.grids) if self.grids else self.members
+        return prod(grid.count for grid in self.grids) if self.grids else self.members
 
     def part(self, start: int, stop: int) -> Any:
         """The points number ``start`` to ``stop`` - 1, shape (names, stop - start)."""
         if self.grids:
-            places = np.unravel_index(np.arange(start, stop), [one.count for one in self.grids])
-            return np.array([one.values[place] for one, place in zip(self.grids, places, strict=True)])
+            places = np.unravel_index(np.arange(start, stop), [grid.count for grid in self.grids])
+            return np.array([grid.values[place] for grid, place in zip(self.grids, places, strict=True)])
         chances = self._chances(start, stop)
-        draws = [one for one in self.variations if isinstance(one, Draw)]
-        return np.array([one.at(row) for one, row in zip(draws, chances, strict=True)])
+        draws = [variation for variation in self.variations if isinstance(variation, Draw)]
+        return np.array([draw.at(row) for draw, row in zip(draws, chances, strict=True)])
 
     def _chances(self, start: int, stop: int) -> Any:
         """Points of the unit cube, shape (names, stop - start)."""

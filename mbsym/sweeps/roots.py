@@ -103,9 +103,9 @@ def _eigenvalues(m: Any, c: Any, k: Any, following: Sequence[int]) -> Any:
         right = np.where(good[:, None, None], np.concatenate([by_place, by_speed], axis=2), 0)
         solved = np.linalg.solve(np.where(good[:, None, None], own, np.eye(len(lines))), right)
         first[:, target] = -solved
-    found = np.linalg.eigvals(first).astype(complex)
-    found[~sound] = NONE
-    return found
+    eigenvalues = np.linalg.eigvals(first).astype(complex)
+    eigenvalues[~sound] = NONE
+    return eigenvalues
 
 
 class DampingMeasure:

@@ -151,7 +151,7 @@ def _spearman(first: Any, second: Any) -> float:
 
 def total(columns: Sequence[Column], names: Sequence[str], parts: Iterable[tuple[Any, Mapping[str, Any]]]) -> Totals:
     """All chunks together."""
-    found = Totals(columns, names)
+    totals = Totals(columns, names)
     for points, measured in parts:
-        found.add(points, measured)
-    return found
+        totals.add(points, measured)
+    return totals

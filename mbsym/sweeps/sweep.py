@@ -156,10 +156,10 @@ class Store(Protocol):
     def save(self, chunk: Chunk, columns: Columns) -> None: ...
 
 
-def measured(wanted: Sequence[Chunk], executor: Executor, store: Store) -> Iterator[Chunk]:
+def measured(wanted_chunks: Sequence[Chunk], executor: Executor, store: Store) -> Iterator[Chunk]:
     """Measures what is not kept yet; yields every chunk when it is kept."""
     pending: dict[Future[Columns], Chunk] = {}
-    waiting = iter(wanted)
+    waiting = iter(wanted_chunks)
     following = next(waiting, None)
     while following is not None or pending:
         while following is not None and len(pending) < executor.width:

@@ -164,16 +164,16 @@ class Arrangement:
     @cached_property
     def _by_signs(self) -> tuple[dict[tuple[int, ...], list[int]], ...]:
         """For every strip, the cells by the signs of the curves there."""
-        found = []
+        by_signs = []
         for at, column in enumerate(self.columns):
             table: dict[tuple[int, ...], list[int]] = {}
             for cell in range(len(column.sections) - 1):
                 y = column.middle(cell)
                 signs = tuple(sign(curve.polynomial(column.x, y)) for curve in self.curves)
                 table.setdefault(signs, []).append(cell)
-            found.append(table)
+            by_signs.append(table)
             assert at < len(self.columns)
-        return tuple(found)
+        return tuple(by_signs)
 
 
 def sample_of(root: Any) -> Any:

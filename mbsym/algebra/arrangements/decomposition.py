@@ -125,14 +125,14 @@ class _Assembly:
         return {key: numbers.setdefault(top(key), len(numbers)) for key in keys}
 
     def _intervals(self, cells: dict[Key, int]) -> dict[Key, int]:
-        found = {}
+        intervals = {}
         for at, fibre in enumerate(self.fibres):
             if fibre.abscissa.vertical:
                 continue
             for j in range(len(fibre.points) - 1):
                 key = (at, fibre.right[j + 1] - 1) if at < len(self.columns) else (at - 1, fibre.left[j + 1] - 1)
-                found[at, j] = cells[key]
-        return found
+                intervals[at, j] = cells[key]
+        return intervals
 
     def _regions(self, cells: dict[Key, int], arcs: dict[int, list[int]]) -> tuple[Region, ...]:
         members: dict[int, list[Key]] = {}

@@ -69,9 +69,9 @@ def nothing_else(_: str, number: int) -> object:
     return None
 
 
-def alike(first: Arrangement, second: Arrangement, one: Labels = nothing_else, other: Labels = nothing_else) -> bool:
+def alike(first: Arrangement, second: Arrangement, labels: Labels = nothing_else, other: Labels = nothing_else) -> bool:
     """Whether the arrangements correspond, ``one`` and ``other`` being the labels of their parts."""
-    return corresponding(graph_of(first, one), graph_of(second, other))
+    return corresponding(graph_of(first, labels), graph_of(second, other))
 
 
 def corresponding(first: Graph, second: Graph) -> bool:
@@ -89,7 +89,7 @@ def corresponding(first: Graph, second: Graph) -> bool:
 def graph_of(found: Arrangement, label: Labels = nothing_else) -> Graph:
     """Regions, arcs and corners with their labels; edges go from arcs to what they adjoin."""
     regions, arcs = len(found.regions), len(found.arcs)
-    labels: list[object] = [("region", one.signs, label("region", one.id)) for one in found.regions]
+    labels: list[object] = [("region", region.signs, label("region", region.id)) for region in found.regions]
     edges = []
     for arc in found.arcs:
         missing = (sum(k is None for k in arc.regions), sum(k is None for k in arc.corners))

@@ -100,12 +100,12 @@ def column(curves: Sequence[Curve], box: Box, x: Rational) -> Column:
 
 def points_over(curves: Sequence[Curve], box: Box, at: Abscissa) -> list[FibrePoint]:
     """The points of the curves over a critical abscissa, in the box, with its edges."""
-    found = _over_rational(curves, box, at.x) if at.rational else _over_algebraic(curves, box, at)
+    fibre_points = _over_rational(curves, box, at.x) if at.rational else _over_algebraic(curves, box, at)
     ends = {BOTTOM: box.y0, TOP: box.y1}
     for y in ends.values():
-        if not any(isinstance(p.y, fmpq) and p.y == y for p in found):
-            found.append(FibrePoint(y, ()))
-    return sorted(found, key=lambda point: _Ordered(point.y))
+        if not any(isinstance(p.y, fmpq) and p.y == y for p in fibre_points):
+            fibre_points.append(FibrePoint(y, ()))
+    return sorted(fibre_points, key=lambda point: _Ordered(point.y))
 
 
 class _Ordered:
@@ -140,12 +140,12 @@ def _over_rational(curves: Sequence[Curve], box: Box, x: Rational) -> list[Fibre
         for factor, power in primitive(curve.over(x)).factor()[1]:
             if factor.degree() > 0:
                 through.setdefault(str(factor), (factor, {}))[1][k] = int(power)
-    found = []
+    fibre_points = []
     for factor, powers in through.values():
         roots = [number(root) for root in roots_between(factor, box.y0, box.y1)]
         roots += [y for y in (box.y0, box.y1) if factor(y) == 0]
-        found += [FibrePoint(y, tuple(sorted(powers.items()))) for y in roots]
-    return found
+        fibre_points += [FibrePoint(y, tuple(sorted(powers.items()))) for y in roots]
+    return fibre_points
 
 
 @dataclass(eq=False)

@@ -91,10 +91,10 @@ class ElementPolynomial:
     """A polynomial in one variable; coefficients from low to high powers."""
 
     def __init__(self, coefficients: Sequence[Element]) -> None:
-        kept = list(coefficients)
-        while kept and not kept[-1]:
-            kept.pop()
-        self._coefficients = kept
+        elements = list(coefficients)
+        while elements and not elements[-1]:
+            elements.pop()
+        self._coefficients = elements
 
     def coeffs(self) -> list[Element]:
         return list(self._coefficients)
@@ -337,11 +337,11 @@ class ElementMatrix:
         depends on those before.
         """
         n, zero = self._size[0], self._zero()
-        found = ElementPolynomial([zero + 1])
+        polynomial = ElementPolynomial([zero + 1])
         for unit in range(n):
             w: list[Any] = [zero + int(i == unit) for i in range(n)]
             total = [zero] * n
-            for c in reversed(found.coeffs()):
+            for c in reversed(polynomial.coeffs()):
                 total = [a + c * b for a, b in zip(self._applied(total), w, strict=True)]
             if all(not x for x in total):
                 continue
@@ -353,8 +353,8 @@ class ElementMatrix:
                 if len(pivots) < len(rows):
                     break
             relation = [-reduced[k][len(rows) - 1] for k in range(len(rows) - 1)]
-            found = found * ElementPolynomial([*(zero + c for c in relation), zero + 1])
-        return found
+            polynomial = polynomial * ElementPolynomial([*(zero + c for c in relation), zero + 1])
+        return polynomial
 
     def _applied(self, vector: Sequence[Any]) -> list[Any]:
         return [_ENTRIES.dot(row, vector) for row in self._rows]

@@ -150,7 +150,7 @@ def _reconstructed(p: Sequence[Image], prime: int) -> list[Element] | None:
     """The polynomial over the rationals with these images, of numerators and denominators below sqrt(prime/2)."""
     most = int(fmpz(prime // 2).isqrt())
     below = 1  # what the denominators so far have for a common multiple
-    found = []
+    elements = []
     for x in p:
         row = []
         for c in x.coeffs():
@@ -159,8 +159,8 @@ def _reconstructed(p: Sequence[Image], prime: int) -> list[Element] | None:
                 return None
             below *= value[1]
             row.append(fmpq(value[0], below))
-        found.append(fmpq_poly(row))
-    return found
+        elements.append(fmpq_poly(row))
+    return elements
 
 
 def _fraction(value: int, prime: int, most: int) -> tuple[int, int] | None:
@@ -216,10 +216,10 @@ class Extension:
 
     def trimmed(self, p: Sequence[Element]) -> OverField:
         """Reduced modulo m, without vanishing leading elements."""
-        found = [x % self.modulus for x in p]
-        while found and found[-1] == 0:
-            found.pop()
-        return found
+        over_field = [x % self.modulus for x in p]
+        while over_field and over_field[-1] == 0:
+            over_field.pop()
+        return over_field
 
     def monic(self, p: OverField) -> OverField:
         if not p or p[-1] == 1:
@@ -284,9 +284,9 @@ class Extension:
             return []
         bits = 64
         while bits <= MOST_BITS:
-            found = self._roots(p, bits)
-            if found is not None:
-                return found
+            overs = self._roots(p, bits)
+            if overs is not None:
+                return overs
             bits *= 2
         raise TooLargeError("roots over a number field lie too close together", limit=Limit.DIGITS)
 
@@ -302,7 +302,7 @@ class Extension:
 
     def _real(self, p: OverField, balls: Sequence[Any]) -> list[Over] | None:
         """The real ones among isolated simple roots of p, ascending; None where the balls are too wide for that."""
-        found = []
+        overs = []
         for ball in balls:
             if not ball.imag.contains(0):
                 continue
@@ -315,9 +315,9 @@ class Extension:
                 low = high = low if signs[0] == 0 else high
             elif signs[0] == signs[1]:  # its own mirror image, so real, and simple: the ends are too far in
                 return None
-            found.append(Over(self, p, low, high))
-        found.sort(key=lambda root: root.low + root.high)
-        return found if all(a.high < b.low for a, b in pairwise(found)) else None
+            overs.append(Over(self, p, low, high))
+        overs.sort(key=lambda root: root.low + root.high)
+        return overs if all(a.high < b.low for a, b in pairwise(overs)) else None
 
     def common_roots(self, p: OverField, q: OverField) -> tuple[list[Over], int] | None:
         """(the real common roots, the number of all) of polynomials that have at least one; all are simple ones of p.
@@ -330,9 +330,9 @@ class Extension:
         while bits <= MOST_BALL_BITS:
             with ctx.workprec(bits):
                 common = self._orbit(p, q, bits)
-            found = None if common is None else self._real(p, common)
-            if common is not None and found is not None:
-                return found, len(common)
+            overs = None if common is None else self._real(p, common)
+            if common is not None and overs is not None:
+                return overs, len(common)
             bits *= 2
         return None
 

@@ -260,7 +260,7 @@ def roots_between(p: Integer, low: Rational, high: Rational) -> list[Root]:
     if p.degree() == 1:
         value = fmpq(-p[0], p[1])
         return [Root(p, value, value)] if low < value < high else []
-    found: list[Root] = []
+    roots: list[Root] = []
     work = [(_on_unit(p, low, high), low, high)]
     while work:
         q, a, b = work.pop()
@@ -268,17 +268,17 @@ def roots_between(p: Integer, low: Rational, high: Rational) -> list[Root]:
         if count == 0:
             continue
         if count == 1:
-            found.append(_open_ended(p, a, b))
+            roots.append(_open_ended(p, a, b))
             continue
         middle = (a + b) / 2
         n = q.degree()
         left = fmpz_poly([c << (n - k) for k, c in enumerate(q.coeffs())])
         right = left(_SHIFT)
         if right[0] == 0:
-            found.append(Root(p, middle, middle))
+            roots.append(Root(p, middle, middle))
             right = fmpz_poly(right.coeffs()[1:])
         work += [(left, a, middle), (right, middle, b)]
-    return sorted(found, key=lambda root: root.low + root.high)
+    return sorted(roots, key=lambda root: root.low + root.high)
 
 
 def _open_ended(p: Integer, low: Rational, high: Rational) -> Root:

@@ -145,11 +145,11 @@ def coefficients(p: Polynomial, generator: int) -> tuple[Univariate, ...]:
     table: dict[int, dict[int, Any]] = {}
     for powers, value in p.to_dict().items():
         table.setdefault(int(powers[generator]), {})[int(powers[other])] = value
-    found = []
+    univariates = []
     for k in range(max(table, default=0) + 1):
         row = table.get(k, {})
-        found.append(fmpq_poly([row.get(j, fmpq(0)) for j in range(max(row, default=0) + 1)]))
-    return tuple(found)
+        univariates.append(fmpq_poly([row.get(j, fmpq(0)) for j in range(max(row, default=0) + 1)]))
+    return tuple(univariates)
 
 
 def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Vertical, ...]]:

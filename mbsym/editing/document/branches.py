@@ -174,18 +174,18 @@ def delete_branch(found: Written, operation: Json) -> Meant:
     branch, tree = branch_of(found, name), found.tree
     assert isinstance(tree, Mapping)
     gone = {bodies_of(found)[index][0] for index in branch}
-    names = {one for index in branch for one in own_names(found, tree, index)}
-    names |= {f"{one}{k}" for one in vectors(found, branch) for k in range(4)}
+    names = {own_name for index in branch for own_name in own_names(found, tree, index)}
+    names |= {f"{vector}{k}" for vector in vectors(found, branch) for k in range(4)}
     taken: dict[Path, None] = {}
     while True:
         word = pattern(sorted(names)) if names else None
         before = len(taken)
-        for one in places(found):
-            if one.path[0] == "bodies":
+        for place in places(found):
+            if place.path[0] == "bodies":
                 continue
-            named = one.role == "body" and " ".join(one.node.text.split()) in gone
-            if named or (one.role == "formula" and word is not None and word.search(one.node.text)):
-                unit = one.path[:2]
+            named = place.role == "body" and " ".join(place.node.text.split()) in gone
+            if named or (place.role == "formula" and word is not None and word.search(place.node.text)):
+                unit = place.path[:2]
                 taken[unit] = None
                 if unit[0] in ("abbreviations", "outputs") and isinstance(unit[1], str):
                     names.add(unit[1])
@@ -202,12 +202,12 @@ def delete_branch(found: Written, operation: Json) -> Meant:
 def _check_outside(found: Written, branch: list[int], names: set[str]) -> None:
     """Other bodies may not use the coordinates of a branch that goes."""
     word = pattern(sorted(names)) if names else None
-    for one in places(found):
-        if one.path[0] != "bodies" or one.path[1] in branch or one.role != "formula" or word is None:
+    for place in places(found):
+        if place.path[0] != "bodies" or place.path[1] in branch or place.role != "formula" or word is None:
             continue
-        if word.search(one.node.text):
-            where = _flat(node_at(found.tree, (*one.path[:2], "name")))
-            message = f"body {where} uses a coordinate of this branch: {one.node.text[:60]}"
+        if word.search(place.node.text):
+            where = _flat(node_at(found.tree, (*place.path[:2], "name")))
+            message = f"body {where} uses a coordinate of this branch: {place.node.text[:60]}"
             raise Refused("used-elsewhere", message, "change that body first")
 
 

@@ -70,11 +70,11 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
     offsets = original_offsets(text)
     edits = [
         {
-            "from": one.start if offsets is None else offsets[one.start],
-            "to": one.end if offsets is None else offsets[one.end],
-            "insert": one.insert.replace("\n", ends),
+            "from": edit.start if offsets is None else offsets[edit.start],
+            "to": edit.end if offsets is None else offsets[edit.end],
+            "insert": edit.insert.replace("\n", ends),
         }
-        for one in pieces.edits()
+        for edit in pieces.edits()
     ]
     told = {"taken": [list(path) for path in taken], "left": [list(path) for path in left]}
     return {"edits": edits, "select": list(select), **told}
@@ -104,7 +104,7 @@ def _done(found: Written, done: Meant, pieces: Pieces) -> Written:
     return found
 
 
-def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, pieces: Pieces) -> Written:
+def _checked(found: Written, edits: list[Edit], data: Data, done: Meant, pieces: Pieces) -> Written:
     """The text after edits.  Refused where it says anything else than what is wanted."""
     text = applied(found.text, edits)
     if len(text) > MAX_TEXT:
@@ -112,7 +112,7 @@ def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, piece
     renaming = done.edits is not None
     after = written(text, found.name, renaming and found.system is not None, found.folder)
     said = None if after.tree is None else data_of(after.tree)
-    if said is None or after.editor != found.editor or not _same(said, wanted, found.editor):
+    if said is None or after.editor != found.editor or not _same(said, data, found.editor):
         raise Refused("not-so", "this cannot be written here without saying something else", "change it in the text")
     if renaming and found.system is not None and not corresponds(found.system, after.system, done):
         raise Refused("not-so", "with this name the description would be another one", "take another name")
@@ -120,9 +120,9 @@ def _checked(found: Written, edits: list[Edit], wanted: Data, done: Meant, piece
     return after
 
 
-def _same(said: Data, wanted: Data, editor: bool) -> bool:
+def _same(said: Data, data: Data, editor: bool) -> bool:
     """Equal, the order of keys counted; in editor text that of sections and of the lines of a block is nothing."""
-    return json.dumps(_sorted(said, 0) if editor else said) == json.dumps(_sorted(wanted, 0) if editor else wanted)
+    return json.dumps(_sorted(said, 0) if editor else said) == json.dumps(_sorted(data, 0) if editor else data)
 
 
 def _sorted(data: Data, depth: int) -> Data:
@@ -171,5 +171,5 @@ def _reworded(old: str, new: str, done: Meant) -> bool:
     from mbsym.editing.document.words import pattern
 
     if not done.names:
-        return any(one in old for one in done.bodies) and old.replace(*next(iter(done.bodies.items()))) == new
+        return any(body in old for body in done.bodies) and old.replace(*next(iter(done.bodies.items()))) == new
     return pattern(list(done.names)).sub(lambda match: done.names[match[1]], old) == new

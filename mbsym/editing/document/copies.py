@@ -41,39 +41,39 @@ class _Copying:
     places: dict[Path, list[Place]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for one in places(self.found):
-            self.places.setdefault(one.path[:2], []).append(one)
+        for place in places(self.found):
+            self.places.setdefault(place.path[:2], []).append(place)
 
-    def turned(self, one: Place) -> str:
-        text = one.node.text
-        if one.role != "formula":
+    def turned(self, place: Place) -> str:
+        text = place.node.text
+        if place.role != "formula":
             return self.bodies.get(" ".join(text.split()), text)
         named = spins_renamed(text, self.bodies)
         return pattern(list(self.symbols)).sub(lambda match: self.symbols[match[1]], named) if self.symbols else named
 
-    def names_own(self, one: Place) -> bool:
-        return self.turned(one) != one.node.text
+    def names_own(self, place: Place) -> bool:
+        return self.turned(place) != place.node.text
 
-    def names_others(self, one: Place) -> bool:
+    def names_others(self, place: Place) -> bool:
         """Whether it names another body, or a coordinate of one; neither the fixed axes nor, as a body, the parent."""
-        if one.role != "formula":
-            name = " ".join(one.node.text.split())
+        if place.role != "formula":
+            name = " ".join(place.node.text.split())
             return name not in (*self.bodies, self.parent, "0", "ground")
-        return bool(self.others and pattern(sorted(self.others)).search(one.node.text))
+        return bool(self.others and pattern(sorted(self.others)).search(place.node.text))
 
     def copy(self, path: Path) -> Data:
         """What stands at a path (a body, a load, an entry of a section), with the new names."""
         node = node_at(self.found.tree, path)
         assert node is not None
         data: Data = [data_of(node)]
-        for one in sorted(self.places.get(path[:2], ()), key=lambda one: (one.is_key, -len(one.path))):
-            inner = one.path[len(path) :]
-            if one.path[: len(path)] != path or (one.is_key and not inner):
+        for place in sorted(self.places.get(path[:2], ()), key=lambda one: (one.is_key, -len(one.path))):
+            inner = place.path[len(path) :]
+            if place.path[: len(path)] != path or (place.is_key and not inner):
                 continue
-            turned = self.turned(one)
-            if turned != one.node.text:
+            turned = self.turned(place)
+            if turned != place.node.text:
                 at: Path = (0, *inner)
-                data = applied_to(data, Rekey(at, turned) if one.is_key else Replace(at, turned))
+                data = applied_to(data, Rekey(at, turned) if place.is_key else Replace(at, turned))
         assert isinstance(data, list)
         return data[0]
 
@@ -119,11 +119,11 @@ def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Co
     every = [(own_names(found, tree, index), vectors(found, [index])) for index in range(len(bodies))]
     copying.lost, copying.slowed = _dependent_speeds(found, branch, [every[index][0] for index in branch])
     for names, turning in every:
-        words |= {*names, *(one for vector in turning for one in _components(vector))}
+        words |= {*names, *(component for vector in turning for component in _components(vector))}
     for index, (name, _) in enumerate(bodies):
         names, turning = every[index]
         if index not in branch:
-            copying.others |= {*names, *(one for vector in turning for one in _components(vector))}
+            copying.others |= {*names, *(component for vector in turning for component in _components(vector))}
             continue
         copying.bodies[name] = free(name, taken.__contains__, " ")
         taken.add(copying.bodies[name])
@@ -206,7 +206,7 @@ def _load(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
     if isinstance(node, Mapping) and entry is not None and isinstance(entry.value, Scalar):
         # A function of coordinates: its derivatives by those of other bodies are not to be counted twice.
         return (None, True) if any(map(copying.names_others, here)) else (copying.copy(path), False)
-    acted = [one for one in here if one.path[-1] in _ACTED_ON]
+    acted = [place for place in here if place.path[-1] in _ACTED_ON]
     return (copying.copy(path), False) if any(map(copying.names_own, acted)) else (None, True)
 
 

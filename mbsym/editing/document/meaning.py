@@ -39,7 +39,7 @@ class Meant:
 def path_of(found: Written, operation: Json, key: str = "path") -> Path:
     given = operation.get(key)
     steps = given if isinstance(given, list | tuple) else ()
-    if not 0 < len(steps) <= _DEEPEST or not all(isinstance(one, str | int) for one in steps):
+    if not 0 < len(steps) <= _DEEPEST or not all(isinstance(step, str | int) for step in steps):
         raise Refused("bad-operation", f"'{key}' is a list of keys and numbers")
     return spelled_path(found.tree, tuple(steps))
 
@@ -76,7 +76,7 @@ def _missing(holder: Node | None, above: Path, step: str | int, data: Data, sour
     if isinstance(holder, Sequence) and isinstance(step, int) and 0 <= step <= len(holder.items):
         return Add((*above, step), data, source) if holder.items else Replace(above, [data])
     if isinstance(holder, Sequence) and isinstance(step, str) and above == ("parameters",):
-        names: dict[str, Data] = {one.text: "real" for one in holder.items if isinstance(one, Scalar)}
+        names: dict[str, Data] = {item.text: "real" for item in holder.items if isinstance(item, Scalar)}
         return Replace(above, {**names, step: data})
     if isinstance(holder, Scalar) and above:
         if not holder.text:

@@ -123,7 +123,7 @@ def _rename(found: Written, operation: Json) -> Meant:
         raise Refused("no-name", f"a {kind} has no name of its own")
     if old == new:
         return Meant([])
-    if not any(one.role == "formula" and pattern([old]).fullmatch(one.node.text) for one in places(found)):
+    if not any(place.role == "formula" and pattern([old]).fullmatch(place.node.text) for place in places(found)):
         raise Refused("unknown-name", f"there is no {kind[:20]} {old[:40]!r}")
     why = why_no_name(new)
     if why is not None:

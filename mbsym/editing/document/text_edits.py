@@ -252,7 +252,7 @@ def _listed(
         inner = _patched(found, blocks[origin], old[origin], new[number]) + _numbered(found, blocks[origin], number + 1)
         if isinstance(primitive, Shift) and primitive.path[:1] == (section,) and primitive.path[1:2] == (origin,):
             start, end = _region(found, blocks[origin])
-            moved = [Edit(one.start - start, one.end - start, one.insert) for one in inner]
+            moved = [Edit(edit.start - start, edit.end - start, edit.insert) for edit in inner]
             texts[number] = applied(found.text[start:end], moved).strip("\n")
             edits.append(Edit(start, end, ""))
         else:

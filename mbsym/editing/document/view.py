@@ -56,7 +56,7 @@ def look(text: str, name: str) -> Json:
         "bodies": bodies,
         "constraints": [] if tree is None else list(ties(shown, tree, "constraints")),
         "loads": [] if tree is None else list(ties(shown, tree, "loads", _moved_by(bodies))),
-        "complaints": [complaint_view(found, one) for one in found.complaints],
+        "complaints": [complaint_view(found, complaint) for complaint in found.complaints],
     }
     offsets = original_offsets(text)
     return view if offsets is None else _moved(view, offsets)
@@ -68,10 +68,10 @@ def formula(source: str) -> Json:
     tree = parse_expression(source, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     if tree is not None and not complaints.errors:
         return {"mathml": math(content(tree))}
-    one = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))
-    start = one.span.column - 1 if one.span else 0
-    end = start + one.span.length if one.span else len(source)
-    return {"complaint": _told(one, start, end, 1, start + 1)}
+    complaint = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))
+    start = complaint.span.column - 1 if complaint.span else 0
+    end = start + complaint.span.length if complaint.span else len(source)
+    return {"complaint": _told(complaint, start, end, 1, start + 1)}
 
 
 # --- what cannot be read ----------------------------------------------------------------------------------------------
@@ -81,7 +81,7 @@ def _what_can_be_had(found: Written) -> Written:
     """The text with the section in which it cannot be read left out (as blanks: all places stay)."""
     text, complaints = found.text, found.complaints
     for _ in range(_TRIES):
-        place = next((one.span for one in complaints.errors if one.span is not None), None)
+        place = next((error.span for error in complaints.errors if error.span is not None), None)
         if place is None:
             break
         lines = text.split("\n")
@@ -191,7 +191,7 @@ def ties(found: Written, tree: Mapping, section: str, owners: dict[str, str] | N
 def _coordinates_in(kind: str, node: Node) -> list[str]:
     """Those that a load acts on by name."""
     if kind == "generalized force" and isinstance(node, Mapping):
-        return [one.key.text for one in node.entries]
+        return [entry.key.text for entry in node.entries]
     value = child(node, "coordinate") if isinstance(node, Mapping) else None
     return [value.text] if isinstance(value, Scalar) else []
 
@@ -283,7 +283,7 @@ def math(inner: str) -> str:
 
 
 def vector(trees: Items[Expression]) -> str:
-    return math(row([content(one) for one in trees]))
+    return math(row([content(tree) for tree in trees]))
 
 
 def mathml_of(node: Node) -> str | None:
@@ -381,7 +381,7 @@ def _velocity(body: Node, rates: dict[str, Expression]) -> dict[str, Any] | None
     node = child(body, "connection point")
     if node is None:
         return _shown(_ZEROS)
-    radius = [one for one in _trees(node) if one is not None]
+    radius = [tree for tree in _trees(node) if tree is not None]
     if len(radius) != 3:
         return None
 
@@ -390,7 +390,7 @@ def _velocity(body: Node, rates: dict[str, Expression]) -> dict[str, Any] | None
     except ValueError:  # of a function that jumps
         return None
     sources = [text(one) for one in derived]
-    if any(len(one) > _LONGEST for one in sources):
+    if any(len(source) > _LONGEST for source in sources):
         return None
     return _shown(f"[{', '.join(sources)}]", vector(derived))
 

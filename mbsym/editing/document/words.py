@@ -64,8 +64,8 @@ def places(found: Written) -> Iterator[Place]:
 def _goes_without_saying(section: Node, place: Place) -> bool:
     """Whether it is an entry of an item of a list that is not written."""
     items = section.items if isinstance(section, Sequence) else ()
-    entries = (one for item in items if isinstance(item, Mapping) for one in item.entries)
-    return any(one.value is place.node and is_understood(one) for one in entries)
+    entries = (entry for item in items if isinstance(item, Mapping) for entry in item.entries)
+    return any(entry.value is place.node and is_understood(entry) for entry in entries)
 
 
 def _places(of: Type, node: Node, path: Path) -> Iterator[Place]:
@@ -140,14 +140,14 @@ def pattern(names: list[str]) -> re.Pattern[str]:
 
 def words_of(found: Written) -> set[str]:
     """Every word of formulas and keys, those of velocities and accelerations by what they are derivatives of, too."""
-    plain = {word for one in places(found) if one.role == "formula" for word in _WORD.findall(one.node.text)}
+    plain = {word for place in places(found) if place.role == "formula" for word in _WORD.findall(place.node.text)}
     return plain | {word.removesuffix(ending) for word in plain for ending in ("_dot", "_ddot")}
 
 
 def uses(found: Written, name: str) -> bool:
     """Whether a name, or its velocity, stands anywhere."""
     word = pattern([name])
-    return any(one.role == "formula" and word.search(one.node.text) for one in places(found))
+    return any(place.role == "formula" and word.search(place.node.text) for place in places(found))
 
 
 def renamed(found: Written, names: dict[str, str]) -> tuple[list[Primitive], list[Edit]]:
@@ -158,16 +158,16 @@ def renamed(found: Written, names: dict[str, str]) -> tuple[list[Primitive], lis
     changed: list[Primitive] = []
     keys: list[Primitive] = []
     edits: list[Edit] = []
-    for one in places(found):
-        text = one.node.text
+    for place in places(found):
+        text = place.node.text
         turned = word.sub(lambda match: names[match[1]], text)
-        if one.role != "formula" or turned == text:
+        if place.role != "formula" or turned == text:
             continue
-        if one.is_key:
-            keys.append(Rekey(one.path, turned))
+        if place.is_key:
+            keys.append(Rekey(place.path, turned))
         else:
-            changed.append(Replace(one.path, turned))
-        start, end = found.extent(one.node)
+            changed.append(Replace(place.path, turned))
+        start, end = found.extent(place.node)
         for match in word.finditer(found.text[start:end]):
             edits.append(Edit(start + match.start(1), start + match.end(1), names[match[1]]))
     # Inner keys first, for paths hold the old ones.
@@ -178,21 +178,21 @@ def body_renamed(found: Written, old: str, new: str) -> tuple[list[Primitive], l
     """A body by another name wherever it is named."""
     changed: list[Primitive] = []
     edits: list[Edit] = []
-    for one in places(found):
-        text = one.node.text
-        start, end = found.extent(one.node)
-        if one.role == "formula":
+    for place in places(found):
+        text = place.node.text
+        start, end = found.extent(place.node)
+        if place.role == "formula":
             # omega[body][k] in a speed is the only formula that names bodies.
             spins = [match for match in _SPIN.finditer(found.text[start:end]) if match[2] == old]
             if spins:
-                changed.append(Replace(one.path, _SPIN.sub(lambda match: _spin(match, old, new), text)))
+                changed.append(Replace(place.path, _SPIN.sub(lambda match: _spin(match, old, new), text)))
                 edits += [Edit(start + match.start(2), start + match.end(2), new) for match in spins]
         elif " ".join(text.split()) == old:
-            changed.append(Replace(one.path, new))
+            changed.append(Replace(place.path, new))
             if not found.editor:
-                flow = any(found.style(node) == "flow" for node in found.above(one.path))
+                flow = any(found.style(node) == "flow" for node in found.above(place.path))
                 edits.append(Edit(start, end, scalar(new, flow)))
-            elif one.role == "new body":
+            elif place.role == "new body":
                 edits.append(Edit(start, end, new))
     return changed, edits
 

@@ -59,9 +59,9 @@ class Written:
 
     def key(self, entry: Entry) -> tuple[int, int]:
         """The characters of a key as written."""
-        found = self.extents.get(id(entry.key))
-        if found is not None:
-            return found.start, found.end
+        extent = self.extents.get(id(entry.key))
+        if extent is not None:
+            return extent.start, extent.end
         start = self.offset(entry.key.span)
         return start, start + entry.key.span.length
 
@@ -93,8 +93,8 @@ class Written:
         return start, end
 
     def style(self, node: Node) -> str:
-        found = self.extents.get(id(node))
-        return found.style if found is not None else ""
+        extent = self.extents.get(id(node))
+        return extent.style if extent is not None else ""
 
     def above(self, path: Path) -> list[Node]:
         """What a path goes through, the whole first, what it leads to left out."""
@@ -128,13 +128,23 @@ def written(text: str, name: str, understand: bool = True, folder: Folder | None
     Files that it names are looked for in ``folder``.
     """
     extents: dict[int, Extent] = {}
-    found = read_placed(text, name, folder, extents, understand)
+    read_result = read_placed(text, name, folder, extents, understand)
     plain = normalised(text)
     starts, position = [0], plain.find("\n")
     while position >= 0:
         starts.append(position + 1)
         position = plain.find("\n", position + 1)
-    return Written(plain, name, found.tree, found.editor, found.system, found.complaints, extents, starts, folder)
+    return Written(
+        plain,
+        name,
+        read_result.tree,
+        read_result.editor,
+        read_result.system,
+        read_result.complaints,
+        extents,
+        starts,
+        folder,
+    )
 
 
 def original_offsets(text: str) -> list[int] | None:
@@ -158,13 +168,13 @@ def data_of(node: Node) -> Data:
             return text
         case Sequence(items):
             return [data_of(item) for item in items]
-    found: dict[str, Data] = {}
+    datas: dict[str, Data] = {}
     for entry in node.entries:
-        if entry.key.text in found:
+        if entry.key.text in datas:
             message = f"the key '{entry.key.text}' stands twice in line {entry.key.span.line}"
             raise Refused("repeated-key", message, "take one of them out, in the text")
-        found[entry.key.text] = data_of(entry.value)
-    return found
+        datas[entry.key.text] = data_of(entry.value)
+    return datas
 
 
 def child(node: Node, step: str | int) -> Node | None:

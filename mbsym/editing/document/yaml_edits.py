@@ -130,7 +130,7 @@ def _added(found: Written, path: Path, data: Data, source: str | None, after: st
     if not isinstance(holder, Mapping) or not holder.entries:
         raise Refused("bad-path", "there is no mapping to add to")
     entries = holder.entries
-    before = next((one for one in entries if one.key.text == after), entries[-1])
+    before = next((entry for entry in entries if entry.key.text == after), entries[-1])
     start = found.key(entries[0])[0]
     indent = start - found.line_start(start)
     position = found.line_end(max(found.extent(before.value)[1], found.key(before)[1]))
@@ -147,7 +147,7 @@ def _added_in_flow(found: Written, holder: Node, path: Path, data: Data, source:
     if isinstance(holder, Mapping):
         entries = holder.entries
         value = f"{key(str(path[-1]))}: {value}"
-        before = next((one for one in entries if one.key.text == after), entries[-1] if entries else None)
+        before = next((entry for entry in entries if entry.key.text == after), entries[-1] if entries else None)
         end = 0 if before is None else max(found.extent(before.value)[1], found.key(before)[1])
     else:
         items = holder.items if isinstance(holder, Sequence) else ()

@@ -62,8 +62,8 @@ def dependent_sets(relations: Iterable[Collection[int]], independent: Collection
             joined |= one
             sets.remove(one)
         sets.append(joined)
-    found = (Dependent(tuple(sorted(one)), len(one & set(independent))) for one in sets)
-    return tuple(sorted(found, key=lambda one: one.rows))
+    dependents = (Dependent(tuple(sorted(one)), len(one & set(independent))) for one in sets)
+    return tuple(sorted(dependents, key=lambda one: one.rows))
 
 
 def counted_anew(
@@ -82,7 +82,7 @@ def counted_anew(
         behind = {*one.rows} - {*independent} if len(one.rows) > MOST_DEPENDENT else ()
         return Dependent(tuple(places[i] for i in sorted(one.rows, key=lambda i: (i in behind, places[i]))), one.rank)
 
-    return rows, [tuple(counted(one) for one in sets if not long & {*one.rows}) for sets in kinds]
+    return rows, [tuple(counted(dependent) for dependent in sets if not long & {*dependent.rows}) for sets in kinds]
 
 
 def measured(name: RowName) -> Hashable:
@@ -147,9 +147,9 @@ class Compliance:
         return tuple(found[i] for i in range(len(found)))
 
 
-def _pivots_of(one: Dependent) -> int:
+def _pivots_of(dependent: Dependent) -> int:
     """Of rows in turn each has one, and one more vanishes where too few are taken."""
-    return one.rank if len(one.rows) <= MOST_DEPENDENT else len(one.rows) + 1
+    return dependent.rank if len(dependent.rows) <= MOST_DEPENDENT else len(dependent.rows) + 1
 
 
 class _Chosen:
@@ -171,18 +171,18 @@ class _Chosen:
         self._left: list[tuple[range, list[int]]] = []  # of each set the places of its pivots, and those without
         self._pivots: list[Node] = []
         start = 0
-        for one in sets:
-            end = start + len(one.rows)
-            if len(one.rows) > MOST_DEPENDENT:
-                self._take_in_turn(range(start, end), one.rank)
+        for dependent in sets:
+            end = start + len(dependent.rows)
+            if len(dependent.rows) > MOST_DEPENDENT:
+                self._take_in_turn(range(start, end), dependent.rank)
                 start = end
                 continue
-            for k in range(start, start + one.rank):
+            for k in range(start, start + dependent.rank):
                 for i in range(k + 1, end):
                     self._exchange(k, i, [*range(k, n)])
                 self._eliminate(k, [*range(k + 1, end), *range(end, n)])
                 self._pivots.append(self._a[k][k])
-            self._left.append((range(start, start + one.rank), [*range(start + one.rank, end)]))
+            self._left.append((range(start, start + dependent.rank), [*range(start + dependent.rank, end)]))
             start = end
 
     @property
@@ -243,19 +243,19 @@ class _Chosen:
 
     def solution(self, least: bool) -> list[Node]:
         program = self.program
-        found = [program.zero] * len(self._b)
+        nodes = [program.zero] * len(self._b)
         for k in reversed(self._taken):
             value = program.divide(self._b[k], self._a[k][k])
             for i in self._taken:
                 if i > k:
-                    value = value - self._factors[i][k] * found[i]
-            found[k] = value
+                    value = value - self._factors[i][k] * nodes[i]
+            nodes[k] = value
         if least:
             for pivots, without in self._left:
-                self._shorten(found, pivots, without)
+                self._shorten(nodes, pivots, without)
         for k, i, chosen in reversed(self._exchanges):
-            found[k], found[i] = self._exchanged(found[k], found[i], chosen)
-        return found
+            nodes[k], nodes[i] = self._exchanged(nodes[k], nodes[i], chosen)
+        return nodes
 
     def _shorten(self, x: list[Node], pivots: Sequence[int], without: Sequence[int]) -> None:
         """x - N (N^T w N)^-1 N^T w x, where N spans the null space: a column for each row without pivot."""
@@ -273,16 +273,16 @@ class _Chosen:
                 column[k] = value
             columns.append(column)
 
-        def measured_product(one: dict[int, Node], other: dict[int, Node]) -> Node:
+        def measured_product(nodes: dict[int, Node], other: dict[int, Node]) -> Node:
             total = program.zero
-            for k, value in one.items():
+            for k, value in nodes.items():
                 if k in other:
                     total = total + self._sizes[k] * value * other[k]
             return total
 
         whole = {k: x[k] for k in pivots}
-        squares = [[measured_product(one, other) for other in columns] for one in columns]
-        solved = Elimination(program, squares, [[measured_product(one, whole) for one in columns]])
+        squares = [[measured_product(nodes, other) for other in columns] for nodes in columns]
+        solved = Elimination(program, squares, [[measured_product(nodes, whole) for nodes in columns]])
         for weight, column in zip(solved.backward(solved.forward[0]), columns, strict=True):
             for k, value in column.items():
                 x[k] = x[k] - weight * value

@@ -214,15 +214,15 @@ def _state_dynamics(form: SpeedForm, chosen: Chosen, massless: bool) -> Constrai
     forces: Sequence[Node] = tree.forcing
     if massless:
         masses, forces = _added(tree.scene, rows, masses, forces)
-    found = _solved(program, tree.environment, rows, masses, forces, chosen)
+    dynamics = _solved(program, tree.environment, rows, masses, forces, chosen)
     moved = restoring(program, form.system)
     placed = [
-        program.dot(row, found.position_correction) + moved.get(name, program.zero)
+        program.dot(row, dynamics.position_correction) + moved.get(name, program.zero)
         for name, row in zip(
             names, jacobian(program, tree.rates, [program.input(u.name) for u in form.speeds]), strict=True
         )
     ]
-    return replace(found, position_correction=tuple(placed))
+    return replace(dynamics, position_correction=tuple(placed))
 
 
 def _solved(

@@ -213,12 +213,12 @@ def _along_places(scene: Scene, base: Base, places: Sequence[Jet], size: int, or
 
 def _factors(ring: Ring, signs: Signs, assumed: Iterable[Polynomial]) -> tuple[Polynomial, ...]:
     """What of these may vanish: their factors, each once."""
-    found: list[Polynomial] = []
+    factors: list[Polynomial] = []
     for x in assumed:
         numerator, _ = ring.fraction(x)  # what the denominator holds has been divided by before
         parts = signs.nonzero_condition(numerator).nonzero if len(numerator) <= MOST_FACTORED else (x,)
-        found += [part for part in parts if part not in found]
-    return tuple(found)
+        factors += [part for part in parts if part not in factors]
+    return tuple(factors)
 
 
 def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
@@ -272,11 +272,11 @@ def _followed(
     """Rates ("g") or accelerations ("h") with the ``open_ones`` changed so that the rows hold, as far as they can."""
     rows = constraint_rows(over_jets(scene, base))
     reduced = echelon(scene.ring, signs, _velocities(scene, rows, base), _preferred(scene))
-    found = list(values)
+    polynomials = list(values)
     for i in open_ones:
         if i in reduced.pivots and key in reduced.pivots[i]:
-            found[i] = scene.ring.reduce(found[i] - reduced.pivots[i][key])
-    return tuple(found)
+            polynomials[i] = scene.ring.reduce(polynomials[i] - reduced.pivots[i][key])
+    return tuple(polynomials)
 
 
 def _preferred(scene: Scene) -> list[int]:
@@ -291,19 +291,19 @@ def _preferred(scene: Scene) -> list[int]:
 def _positions(scene: Scene, rows: Sequence[ConstraintRow], base: Base) -> list[Row]:
     """f and f_x of the holonomic rows; the columns are "f" and the places of the coordinates."""
     n = len(scene.system.coordinates)
-    found: list[Row] = []
+    positions: list[Row] = []
     for row in rows:
         if row.position is not None:
             line: Row = {"f": row.position.value}
             line.update(_first(row.position, range(n)))
-            found.append({key: on_base(scene, base, x) for key, x in line.items()})
-    return found
+            positions.append({key: on_base(scene, base, x) for key, x in line.items()})
+    return positions
 
 
 def _velocities(scene: Scene, rows: Sequence[ConstraintRow], base: Base) -> list[Row]:
     """J under the places of the coordinates; "g", "h" on the motion, ("g", i), ("h", i) by deviations, ("J", i, m)."""
     n = len(scene.system.coordinates)
-    found: list[Row] = []
+    velocities: list[Row] = []
     for row in rows:
         line: Row = {"g": row.velocity.value, "h": row.acceleration.value}
         line |= {("g", i): x for i, x in _first(row.velocity, range(n)).items()}
@@ -311,8 +311,8 @@ def _velocities(scene: Scene, rows: Sequence[ConstraintRow], base: Base) -> list
         for i, partial in enumerate(row.partials):
             line[i] = partial.value
             line |= {("J", i, m): x for m, x in _first(partial, range(n)).items()}
-        found.append({key: on_base(scene, base, x) for key, x in line.items()})
-    return found
+        velocities.append({key: on_base(scene, base, x) for key, x in line.items()})
+    return velocities
 
 
 def _first(x: Jet, places: range) -> Row:
@@ -492,11 +492,11 @@ def projected(scene: Scene, found: Expansion) -> Projected:
     ]
     inputs = [3 * n + k for k in range(len(found.scene.system.input_names))]
     deviations = (*found.positions, *found.velocities, *found.accelerations, *({i: ring.one} for i in inputs))
-    own = [combined(scene, ((x, deviations[i]) for i, x in one.first.items())) for one in needed]
+    own = [combined(scene, ((x, deviations[i]) for i, x in jet.first.items())) for jet in needed]
     constant, forms = [], []
     for k in range(len(found.speeds)):
         column = [found.null_space[i][k] for i in range(n)]
-        constant.append(ring.dot(column, [one.value for one in needed]))
+        constant.append(ring.dot(column, [jet.value for jet in needed]))
         parts: list[tuple[Polynomial, Form]] = list(zip(column, own, strict=True))
         parts += [(needed[i].value, found.slopes[i][k]) for i in range(n)]
         forms.append(combined(scene, parts))

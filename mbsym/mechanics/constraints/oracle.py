@@ -33,7 +33,7 @@ class OracleRow:
 def oracle_rows(system: System, state: State) -> list[list[OracleRow]]:
     """The rows of every constraint at one state, trivial ones included."""
     rows = _Rows(Oracle(system, state))
-    return [rows.of(one) for one in system.constraints]
+    return [rows.of(constraint) for constraint in system.constraints]
 
 
 class _Rows:
@@ -42,13 +42,13 @@ class _Rows:
         self.system = oracle.system
         self.numbers = oracle.numbers
 
-    def of(self, one: Constraint) -> list[OracleRow]:
-        if isinstance(one, Rolling):
-            return self._rolling(one)
-        if isinstance(one, Velocity):
-            return [self._velocity(subtract(one.left, one.right))]
-        two, slopes = self.numbers.number(2), [[x.b for x in self._series(one, place)] for place in self._along]
-        rows = self._series(one, self.oracle.moving)
+    def of(self, constraint: Constraint) -> list[OracleRow]:
+        if isinstance(constraint, Rolling):
+            return self._rolling(constraint)
+        if isinstance(constraint, Velocity):
+            return [self._velocity(subtract(constraint.left, constraint.right))]
+        two, slopes = self.numbers.number(2), [[x.b for x in self._series(constraint, place)] for place in self._along]
+        rows = self._series(constraint, self.oracle.moving)
         return [OracleRow(x.a, x.b, two * x.c, tuple(slope[k] for slope in slopes)) for k, x in enumerate(rows)]
 
     @cached_property
@@ -113,24 +113,24 @@ class _Rows:
         """Sines are looked up at the state: nothing but velocities differs there."""
         return place
 
-    def _rolling(self, one: Rolling) -> list[OracleRow]:
+    def _rolling(self, rolling: Rolling) -> list[OracleRow]:
         """V + omega x (c - r) of both bodies, each from rates of places: in time, and along each coordinate."""
-        moving = self._slip(one, self.oracle.moving, 0), self._slip(one, self.oracle.moving, 1)
-        slopes = [self._slip(one, place, 0) for place in self._along]
+        moving = self._slip(rolling, self.oracle.moving, 0), self._slip(rolling, self.oracle.moving, 1)
+        slopes = [self._slip(rolling, place, 0) for place in self._along]
         return [OracleRow(None, moving[0][k], moving[1][k], tuple(slope[k] for slope in slopes)) for k in range(3)]
 
-    def _slip(self, one: Rolling, place: Placement, order: int) -> list[Scalar]:
+    def _slip(self, rolling: Rolling, place: Placement, order: int) -> list[Scalar]:
         """The slip at the contact (order 0), or its rate, in the axes of the frame that carries all."""
-        arm = place.direction(one.axes, place.lower.vector(one.contact))
-        contact = [a + b for a, b in zip(place.origin[one.body], arm, strict=True)]
+        arm = place.direction(rolling.axes, place.lower.vector(rolling.contact))
+        contact = [a + b for a, b in zip(place.origin[rolling.body], arm, strict=True)]
         slip = [
             [x - y for x, y in zip(u, v, strict=True)]
             for u, v in zip(
-                self._material(place, one.body, contact), self._material(place, one.on, contact), strict=True
+                self._material(place, rolling.body, contact), self._material(place, rolling.on, contact), strict=True
             )
         ]
-        axes = place.axes[self._frame(one.body, one.on, one.axes)]
-        found = []
+        axes = place.axes[self._frame(rolling.body, rolling.on, rolling.axes)]
+        scalars = []
         for k in range(3):
             column = [axes[i][k] for i in range(3)]
             total = self.numbers.zero
@@ -138,8 +138,8 @@ class _Rows:
                 total = total + column[i].a * slip[order][i]
                 if order:
                     total = total + column[i].b * slip[0][i]
-            found.append(total)
-        return found
+            scalars.append(total)
+        return scalars
 
     def _material(self, place: Placement, body: str, contact: Any) -> list[list[Scalar]]:
         """The velocity of the material point at a contact that moves, and its rate, in inertial axes."""

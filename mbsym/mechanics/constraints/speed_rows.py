@@ -41,8 +41,8 @@ def state_rows(form: SpeedForm, found: SpeedProgram, kept: Sequence[tuple[int, i
     moving = [program.input(name) for name in (*(x.name for x in form.positions), *(x.name for x in prescribed), "t")]
     ways: list[Node] = [*found.rates, *(scene.lower(x.rate) for x in prescribed), program.one]
     speeds = [program.input(u.name) for u in form.speeds]
-    names = [one for k, x in enumerate(form.system.constraints) for one in row_names(k, x)]
-    names = [one for one in names if kept is None or (one.constraint, one.component) in kept]
+    names = [row_name for k, x in enumerate(form.system.constraints) for row_name in row_names(k, x)]
+    names = [name for name in names if kept is None or (name.constraint, name.component) in kept]
     return _rows(
         scene,
         names,
@@ -58,16 +58,16 @@ def _rows(
     slopes: Callable[[Scalar], tuple[Scalar, ...]],
 ) -> tuple[Row, ...]:
     """``rate`` is d/dt at u' = 0, ``slopes`` are the derivatives by the speeds."""
-    reduce, found = scene.algebra.reduce, []
+    reduce, rows = scene.algebra.reduce, []
     for number in dict.fromkeys(name.constraint for name in names):
         constraint = as_written(scene.system.constraints[number])
         holonomic = _positions(scene, constraint)
         velocities = _velocities(scene, constraint) if holonomic is None else [rate(f) for f in holonomic]
-        for name in (one for one in names if one.constraint == number):
+        for name in (row_name for row_name in names if row_name.constraint == number):
             k = max(name.component - 1, 0)
             g = reduce(velocities[k])
-            found.append(Row(name, None if holonomic is None else reduce(holonomic[k]), g, rate(g), slopes(g)))
-    return tuple(found)
+            rows.append(Row(name, None if holonomic is None else reduce(holonomic[k]), g, rate(g), slopes(g)))
+    return tuple(rows)
 
 
 def _positions(scene: Scene, constraint: Constraint) -> list[Scalar] | None:

@@ -121,10 +121,10 @@ class Manifold:
         """Whether parameters had to stay at their values, beside which the rank is another (``rank_beside``)."""
         return self._begin is not None and self.rank_beside is not None
 
-    def _elsewhere(self, one: OnManifold) -> bool:
+    def _elsewhere(self, on_manifold: OnManifold) -> bool:
         """Whether the rank at a state is not that of the branch on which the description begins."""
         own = self._own_rank
-        return own is not None and own != self._pivots(one.state.values, one.state.numbers).rank
+        return own is not None and own != self._pivots(on_manifold.state.values, on_manifold.state.numbers).rank
 
     @cached_property
     def _own_rank(self) -> int | None:
@@ -172,13 +172,13 @@ class Manifold:
         A little further on its way, if it moves: it may begin where branches meet.
         """
         system = self.system
-        initial = {one.coordinate: one for one in system.initial if one.position is not None}
-        motion = {one.coordinate: one for one in system.motion}
-        places: dict[str, Expression | None] = {name: one.position for name, one in initial.items()}
-        rates: dict[str, Expression | None] = {name: one.velocity for name, one in initial.items()}
+        initial = {value.coordinate: value for value in system.initial if value.position is not None}
+        motion = {entry.coordinate: entry for entry in system.motion}
+        places: dict[str, Expression | None] = {name: value.position for name, value in initial.items()}
+        rates: dict[str, Expression | None] = {name: value.velocity for name, value in initial.items()}
         if places.keys() < {*system.coordinates}:
-            places = {**{name: one.value for name, one in motion.items()}, **places}
-            rates = {**{name: one.rate for name, one in motion.items()}, **rates}
+            places = {**{name: entry.value for name, entry in motion.items()}, **places}
+            rates = {**{name: entry.rate for name, entry in motion.items()}, **rates}
         if not self._positions or places.keys() < {*system.coordinates}:
             return None
         _, rational = self._random(random.Random(SEED))
@@ -186,9 +186,9 @@ class Manifold:
         values = {name: arb(x) for name, x in (rational | known | {"t": 0}).items()} | {"pi": arb.pi()}
         lower = Lowering(Balls(dict(values)), dict(values))
         try:
-            values |= {name: arb(lower(one).mid()) for name, one in places.items() if one is not None}
+            values |= {name: arb(lower(place).mid()) for name, place in places.items() if place is not None}
             begun = self._near(values)
-            way = {name: lower(one) for name, one in rates.items() if one is not None}
+            way = {name: lower(rate) for name, rate in rates.items() if rate is not None}
         except NOT_THERE:
             return None
         largest = max((float(abs(x).upper()) for x in way.values()), default=0.0)
@@ -269,14 +269,14 @@ class Manifold:
         names, parameters = self.system.coordinates, self.system.parameter_names
         slopes = self._slopes([*names, *parameters])
         normals: list[list[arb]] = []
-        for one in (one.enclosed for one in states):
+        for one in (state.enclosed for state in states):
             flat = self.program.evaluate([x for row in slopes for x in row], one.state.values, one.state.numbers)
             width = len(names) + len(parameters)
             done = eliminated([flat[i : i + width] for i in range(0, len(flat), width)], range(len(names)))
             pivots = {i for i, _ in done.pivots}
             left = [[arb(x) for x in row[len(names) :]] for i, row in enumerate(done.rows) if i not in pivots]
             normals.append(max(left, key=lambda row: max(float(abs(x).upper()) for x in row)))
-        values = [[arb(one.enclosed.state.values[name]) for name in parameters] for one in states]
+        values = [[arb(state.enclosed.state.values[name]) for name in parameters] for state in states]
         return self._linear_relation(normals, values) or self._relation_of_powers(normals, values)
 
     def _linear_relation(self, normals: Sequence[Sequence[arb]], values: Sequence[Sequence[arb]]) -> Polynomial | None:

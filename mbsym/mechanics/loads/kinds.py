@@ -335,7 +335,7 @@ def _rayleigh_action(load: Rayleigh, scene: Scene[S]) -> Action[S]:
     present = names(load.expression)
     potential = without_tables(load.expression, sticks)
     rates = {name: velocity_name(name) for name in scene.system.coordinates}
-    rates |= {one.name: one.name for one in scene.system.speeds if scene.in_speeds}
+    rates |= {speed.name: speed.name for speed in scene.system.speeds if scene.in_speeds}
     forces = {name: -scene.lower(differentiate(potential, rate)) for name, rate in rates.items() if rate in present}
     return Action(generalized=forces)
 
@@ -362,20 +362,20 @@ def _force_function_action(load: ForceFunction, scene: Scene[S]) -> Action[S]:
 
 
 def _torques(formula: Expression, sign: S, scene: Scene[S]) -> list[Wrench[S]]:
-    held, found = names(formula), []
+    held, torques = names(formula), []
     for body in scene.system.bodies:
         vectors = [one for one in body.orientation if isinstance(one, UnitVector) and held & {*one.components}]
         if not vectors:
             continue
         torque = scene.zero(body.name)
-        for one in vectors:
-            slope = scene.vector([differentiate(formula, name) for name in one.components], body.name)
-            torque = torque + slope.cross(scene.vector([Name(name) for name in one.components], body.name))
+        for vector in vectors:
+            slope = scene.vector([differentiate(formula, name) for name in vector.components], body.name)
+            torque = torque + slope.cross(scene.vector([Name(name) for name in vector.components], body.name))
         torque = torque * sign
-        found.append(Wrench(body.name, scene.zero(body.name), torque))
+        torques.append(Wrench(body.name, scene.zero(body.name), torque))
         if body.attached_to != INERTIAL:
-            found.append(Wrench(body.attached_to, scene.zero(body.attached_to), scene.back(body.name, -torque)))
-    return found
+            torques.append(Wrench(body.attached_to, scene.zero(body.attached_to), scene.back(body.name, -torque)))
+    return torques
 
 
 FORCE_FUNCTION = Kind(_force_function_action, _force_function)
@@ -407,9 +407,9 @@ POINT_FORCE = Kind(_force_action)
 
 
 def _torque_action(load: Torque, scene: Scene[S]) -> Action[S]:
-    given = scene.vector(load.components, load.axes)
+    vector = scene.vector(load.components, load.axes)
     wrenches = []
-    for body, torque in ((load.body, given), (load.reaction_on, -given)):
+    for body, torque in ((load.body, vector), (load.reaction_on, -vector)):
         if body is not None and body != INERTIAL:
             wrenches.append(Wrench(body, scene.zero(body), scene.to_axes(torque, body)))
     return Action(tuple(wrenches))

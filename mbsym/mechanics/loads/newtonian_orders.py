@@ -157,8 +157,8 @@ class _Expansion(Generic[S]):
 
     def _along(self, series: list[S], k: int, pair: tuple[Vector[S], Vector[S]]) -> Vector[S]:
         """The coefficient of s^k in series (first + s second)."""
-        found = pair[0] * series[k]
-        return found + pair[1] * series[k - 1] if k else found
+        vector = pair[0] * series[k]
+        return vector + pair[1] * series[k - 1] if k else vector
 
     def force(self, degree: int) -> Vector[S]:
         """The coefficient of nu/R^(degree + 2) in the force."""

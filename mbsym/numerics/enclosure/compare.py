@@ -107,22 +107,22 @@ def certified(
     end = float(times[-1]) * (1.0 if happened is None else AFTER)
     state = dynamics.scenario.state
     equations = dynamics.right_hand_side, dynamics.jacobian
-    found = enclosed(*equations, state, end, width, scale.tolist(), seconds, watch, limit)
-    rows = int(np.searchsorted(times, found.reached, side="right")) if found.segments else 0
+    enclosure = enclosed(*equations, state, end, width, scale.tolist(), seconds, watch, limit)
+    rows = int(np.searchsorted(times, enclosure.reached, side="right")) if enclosure.segments else 0
     centre, radius, error, own = (np.zeros((len(states), rows)) for _ in range(4))
-    with ctx.workprec(found.bits + GUARD):
+    with ctx.workprec(enclosure.bits + GUARD):
         for k in range(rows):
-            for i, value in enumerate(found.at(float(times[k]))):
+            for i, value in enumerate(enclosure.at(float(times[k]))):
                 middle = float(value.mid())
                 centre[i, k] = middle
                 # What is printed of a float is within half a unit in its last place of it.
                 own[i, k] = _above(value - value.mid())
                 radius[i, k] = _above(value - arb(middle)) + 2.0**-52 * abs(middle)
                 error[i, k] = _above(value - _exact(states[i, k]))
-    passages = passage_radii(found, dynamics, happened) if happened is not None and found.segments else ()
-    ended = found.ended if rows < len(times) else ""
+    passages = passage_radii(enclosure, dynamics, happened) if happened is not None and enclosure.segments else ()
+    ended = enclosure.ended if rows < len(times) else ""
     known = _largest(own, scale)
-    return Certificate(found, centre, radius, error, scale, ended, known, width, passages)
+    return Certificate(enclosure, centre, radius, error, scale, ended, known, width, passages)
 
 
 def _largest(values: Any, scale: Any) -> float:

@@ -241,13 +241,13 @@ class Disc:
     def tail(self, step: float, terms: int) -> list[arb]:
         """A bound of what the first ``terms`` > d coefficients leave out at ``step`` < R, for each component."""
         part = arb(step) / arb(self.radius)
-        return [(arb(found.rest) * part**terms).abs_upper() for found in self.solutions]
+        return [(arb(solution.rest) * part**terms).abs_upper() for solution in self.solutions]
 
     def within(self, radius: float) -> tuple[Model, ...]:
         """The solutions as models on a smaller disc: of the rests, all of degree d + 1 or more, less is left."""
         ring = Ring(self.solutions[0].ring.degree, radius)
         part = (radius / self.radius) ** (ring.degree + 1) * LARGER
-        return tuple(Model(ring, found.poly, found.rest * part + TINY) for found in self.solutions)
+        return tuple(Model(ring, solution.poly, solution.rest * part + TINY) for solution in self.solutions)
 
 
 def disc(field: Field, t: arb, coefficients: Sequence[Sequence[arb]], guess: float) -> Disc | None:
@@ -386,15 +386,15 @@ def enclosed(
     best: Enclosure | None = None
     while True:
         left = seconds - (perf_counter() - began)
-        found = _once(rates, jacobian, state, end, bits, left, width, scales, watch, limit - spent)
-        spent += _price(rates, jacobian, bits) * len(found.segments)
-        if best is None or (found.reached, not found.ended) >= (best.reached, not best.ended):
-            best = found
-        missing = _missing(found, width, scales) if exact else 0
-        finished = not missing or found.ended in CUT or bits >= MOST
+        enclosure = _once(rates, jacobian, state, end, bits, left, width, scales, watch, limit - spent)
+        spent += _price(rates, jacobian, bits) * len(enclosure.segments)
+        if best is None or (enclosure.reached, not enclosure.ended) >= (best.reached, not best.ended):
+            best = enclosure
+        missing = _missing(enclosure, width, scales) if exact else 0
+        finished = not missing or enclosure.ended in CUT or bits >= MOST
         if finished:
             # A try with more bits that was cut short is why there is no more, however far an earlier one came.
-            cut = found.ended if found.ended in CUT else ""
+            cut = enclosure.ended if enclosure.ended in CUT else ""
             ended = cut if best.ended and cut else best.ended
             return Enclosure(best.segments, best.bits, best.reached, ended, perf_counter() - began, end, cut)
         bits = min(MOST, bits + missing)

@@ -275,11 +275,11 @@ class WithParameters(Dynamics):
     @cached_property
     def correction(self) -> Code | None:
         """Of the state; parameters stay."""
-        found = self.base.correction
-        if found is None:
+        code = self.base.correction
+        if code is None:
             return None
-        *moved, nearness = found.outputs
-        return Code(found.program, self.inputs, (*moved, *self._still, nearness))
+        *moved, nearness = code.outputs
+        return Code(code.program, self.inputs, (*moved, *self._still, nearness))
 
     @cached_property
     def pivots(self) -> Code:

@@ -98,8 +98,8 @@ class Lanes(Function):
         """A function of the C library, lane after lane."""
         found = "poison"
         for lane in range(self.lanes):
-            one = self.value(DOUBLE, f"extractelement {self.kind} {x.text}, i32 {lane}")
-            result = self.call(function, DOUBLE, one)
+            value = self.value(DOUBLE, f"extractelement {self.kind} {x.text}, i32 {lane}")
+            result = self.call(function, DOUBLE, value)
             found = self.value(self.kind, f"insertelement {self.kind} {found}, double {result.text}, i32 {lane}").text
         return Value(self, self.kind, found)
 
@@ -369,8 +369,8 @@ class _Adaptive:
             scale = self.absolute * largest + self.relative * f.select(f.below(before, "<", after), after, before)
             inverse = 1 / scale
             for total, row in zip(totals, tableau.errors, strict=True):
-                one = s.combination(f["k"], row, i) * inverse
-                f.store(f.load(self.kind, total) + one * one, self.kind, total)
+                value = s.combination(f["k"], row, i) * inverse
+                f.store(f.load(self.kind, total) + value * value, self.kind, total)
         squares = [f.load(self.kind, total) for total in totals]
         h = f.magnitude(step)
         if len(squares) == 1:
@@ -430,6 +430,6 @@ class _Adaptive:
         grown = f.select(f.below(grown, "<", self.longest), grown, self.longest)
         self.set(Clock.STEP, f.select(good, grown, self.row(Clock.STEP)))
         lower = Fraction(log(1e-4))
-        kept = f.select(f.below(size, ">", lower), size, lower)
-        self.set(Clock.PREVIOUS, f.select(good, kept, self.row(Clock.PREVIOUS)))
+        value = f.select(f.below(size, ">", lower), size, lower)
+        self.set(Clock.PREVIOUS, f.select(good, value, self.row(Clock.PREVIOUS)))
         self.set(Clock.CAREFUL, f.select(good, 0, self.row(Clock.CAREFUL)))

@@ -80,9 +80,9 @@ class Parametrised(Dynamics):
         moving = {*self.free, *dependent(self.system, self.free)}
         outputs: dict[str, Node] = {}
         for name, entry in initial_values(self.system, self.overrides).items():
-            for place, given in ((name, entry.position), (velocity_name(name), entry.velocity)):
-                follows = given is not None and bool(names(given) & moving)
-                outputs[place] = lowering(given) if given is not None and follows else fresh.input(place)
+            for place, expression in ((name, entry.position), (velocity_name(name), entry.velocity)):
+                follows = expression is not None and bool(names(expression) & moving)
+                outputs[place] = lowering(expression) if expression is not None and follows else fresh.input(place)
         order = (*self.system.coordinates, *self.system.velocities)
         return Code(fresh, (*self.free, *order), tuple(outputs[name] for name in order))
 
@@ -105,17 +105,17 @@ class Parametrised(Dynamics):
         where c has no room on the other.  Raises Failure.
         """
         plain = self._given({})
-        given = fitted(plain, self.in_states)
-        center = closed(given, self.fixed).scenario
-        told = dict(given.parameters)
-        for one in (plain, given, shown(given, self.in_states)):
+        scenario = fitted(plain, self.in_states)
+        center = closed(scenario, self.fixed).scenario
+        told = dict(scenario.parameters)
+        for one in (plain, scenario, shown(scenario, self.in_states)):
             told |= dict(zip((*one.system.coordinates, *one.system.velocities), one.state, strict=True))
         step = STEP * max(Fraction(1), abs(told[name]))
-        p = len(given.positions)
+        p = len(scenario.positions)
 
         def state(offset: int) -> tuple[Fraction, ...]:
             moved = fitted(self._given({name: number(told[name] + offset * step)}), self.in_states)
-            here = tuple(x + a - b for x, a, b in zip(center.state, moved.state, given.state, strict=True))
+            here = tuple(x + a - b for x, a, b in zip(center.state, moved.state, scenario.state, strict=True))
             begun = replace(moved, positions=here[:p], velocities=here[p:])
             return shown(closed(begun, self.fixed).scenario, self.in_states).state
 
@@ -182,8 +182,8 @@ def released(scenario: Scenario, free: Sequence[str]) -> Specialised:
         fresh.bound[name] = lowering(values[name])
         moving.add(name)
     for item in system.prescribed:
-        given = [item.rate] if item.initial is None else [item.rate, item.initial]
-        if any(names(expression) & moving for expression in given):
+        expressions = [item.rate] if item.initial is None else [item.rate, item.initial]
+        if any(names(expression) & moving for expression in expressions):
             initial = fresh.zero if item.initial is None else lowering(item.initial)
             fresh.bound[item.name] = initial + fresh.product(lowering(item.rate), fresh.input("t"))
     return fresh

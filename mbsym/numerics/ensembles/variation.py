@@ -111,15 +111,15 @@ def complaints(
     seen: set[str] = set()
     for one in variations:
         if one.name not in known:
-            told = Message("there is nothing called '[[name]]' to vary", name=one.name)
+            message = Message("there is nothing called '[[name]]' to vary", name=one.name)
             near = get_close_matches(one.name, known, 1)
             hint = Message("did you mean '[[other]]'?", other=near[0]) if near else ""
             if not near and known:
                 hint = Message("there are [[names]]", names=", ".join(known))
-            yield one.name, told, hint
+            yield one.name, message, hint
         elif one.name in following:
-            told = Message("[[name]] follows from other parameters", name=one.name)
-            yield one.name, told, "vary those of which its relation is made"
+            message = Message("[[name]] follows from other parameters", name=one.name)
+            yield one.name, message, "vary those of which its relation is made"
         if one.name in seen:
             yield one.name, Message("[[name]] is varied twice", name=one.name), "join the two"
         seen.add(one.name)
@@ -128,15 +128,15 @@ def complaints(
     yield from clash
     grids = [one for one in variations if isinstance(one, Grid)]
     if not clash and grids and members is not None:
-        told = Message("a grid says itself how many [[what]] it has", what=worded(what))
-        yield grids[0].name, told, Message("leave --[[option]] out", option=what)
+        message = Message("a grid says itself how many [[what]] it has", what=worded(what))
+        yield grids[0].name, message, Message("leave --[[option]] out", option=what)
     elif not grids and members is None and variations:
-        told = Message("how many [[what]] to draw is not said", what=worded(what))
-        yield variations[0].name, told, Message("for example [[example]]", example=f"--{what} {example}")
-    count = prod(one.count for one in grids) if grids else members or 0
+        message = Message("how many [[what]] to draw is not said", what=worded(what))
+        yield variations[0].name, message, Message("for example [[example]]", example=f"--{what} {example}")
+    count = prod(grid.count for grid in grids) if grids else members or 0
     if count > most:
-        told = Message("[[count]] [[what]] are too many", count=count, what=worded(what))
-        yield variations[0].name, told, Message("at most [[most]]", most=most)
+        message = Message("[[count]] [[what]] are too many", count=count, what=worded(what))
+        yield variations[0].name, message, Message("at most [[most]]", most=most)
 
 
 def complaints_of(
@@ -182,11 +182,11 @@ def drawn(
         raise Unvaried(wrong)
     grids = [one for one in variations if isinstance(one, Grid)]
     if grids:
-        mesh = np.meshgrid(*(one.values for one in grids), indexing="ij")
+        mesh = np.meshgrid(*(grid.values for grid in grids), indexing="ij")
         return np.array([axis.reshape(-1) for axis in mesh])
     draws = [one for one in variations if isinstance(one, Draw)]
     return np.array(
-        [one.at(row) for one, row in zip(draws, _chances(len(draws), members or 1, seed, sampling), strict=True)]
+        [draw.at(row) for draw, row in zip(draws, _chances(len(draws), members or 1, seed, sampling), strict=True)]
     )
 
 

@@ -177,21 +177,21 @@ class Watcher:
     def finish(self, end: float) -> Occurrences:
         """Everything that was found up to ``end``; what has begun there and is not over counts as having happened."""
         if not self.settle():
-            self._keep([found for event in range(len(self.events)) for found in self._unfinished(event)])
+            self._keep([occurrence for event in range(len(self.events)) for occurrence in self._unfinished(event)])
         latest = end + 8 * np.finfo(float).eps * abs(end)
         if self.ended is not None and self.ended.time > latest:
             self.ended = None  # a step may lead beyond the end
-        found = sorted(
+        occurrences = sorted(
             (replace(one, time=min(one.time, end)) for one in self._found if one.time <= latest),
             key=lambda one: (one.time, one.event),
         )
         undecided = () if self.ended is not None else tuple(self._undecided())
         return Occurrences(
             events=self.events,
-            times=np.array([one.time for one in found]),
-            which=np.array([one.event for one in found], dtype=int),
-            turns=np.array([one.turn for one in found], dtype=int),
-            states=np.array([one.state for one in found]).T if found else np.empty((0, 0)),
+            times=np.array([occurrence.time for occurrence in occurrences]),
+            which=np.array([occurrence.event for occurrence in occurrences], dtype=int),
+            turns=np.array([occurrence.turn for occurrence in occurrences], dtype=int),
+            states=np.array([occurrence.state for occurrence in occurrences]).T if occurrences else np.empty((0, 0)),
             ended=self.ended,
             undecided=undecided,
             beyond=self._beyond,
@@ -277,16 +277,16 @@ class Watcher:
 
     def _keep(self, met: list[Occurrence]) -> None:
         """Those that count, up to the first that stops the run."""
-        for one in sorted(met, key=lambda found: (found.time, found.event)):
-            event = self.events[one.event]
+        for occurrence in sorted(met, key=lambda found: (found.time, found.event)):
+            event = self.events[occurrence.event]
             wanted = {Direction.BOTH: (-1, 0, 1), Direction.RISING: (1,), Direction.FALLING: (-1,)}[event.direction]
-            if one.turn not in wanted or (self.ended is not None and one.time > self.ended.time):
+            if occurrence.turn not in wanted or (self.ended is not None and occurrence.time > self.ended.time):
                 continue
-            begun = one.time > self._start or event.side
-            if event.action is Action.STOP and one.turn and begun and self.ended is None:
-                self.ended = one
-            if len(self._found) < MOST or one is self.ended:
-                self._found.append(one)
+            begun = occurrence.time > self._start or event.side
+            if event.action is Action.STOP and occurrence.turn and begun and self.ended is None:
+                self.ended = occurrence
+            if len(self._found) < MOST or occurrence is self.ended:
+                self._found.append(occurrence)
             else:
                 self._beyond += 1
 
@@ -299,8 +299,8 @@ class Watcher:
         state = np.asarray(piece(np.array([time])), dtype=float)[:, 0]
         slope = float(self._slopes[event](np.concatenate(([time], state)))[1])
         turn = -course.sign.last if course.stays or slope * course.sign.last < 0 else 0
-        found = self._occurrence(event, piece, time, turn)
-        return [found]
+        occurrence = self._occurrence(event, piece, time, turn)
+        return [occurrence]
 
     def _undecided(self) -> list[Event]:
         return [event for event, course in zip(self.events, self._courses, strict=True) if not course.left]

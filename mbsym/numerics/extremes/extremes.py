@@ -54,10 +54,10 @@ DIRECTIONS, ABOUT = 12, 4.0
 MOST_APPROACHED, LEAST = 3, 1e-8
 
 
-def equations(given: Scenario, ring: Ring) -> ConstrainedDynamics | None:
+def equations(scenario: Scenario, ring: Ring) -> ConstrainedDynamics | None:
     """The equations with the rows of the scenario's branch; None without constraints."""
-    known = Dynamics(given, ring).constraints
-    return None if known is None else constrained_dynamics(given.system, ring, known.chosen)
+    known = Dynamics(scenario, ring).constraints
+    return None if known is None else constrained_dynamics(scenario.system, ring, known.chosen)
 
 
 def on_constraints(ladder: Ladder, left_out: list[str]) -> Ladder | None:
@@ -93,26 +93,26 @@ def _led(scenario: Scenario, state: tuple[Fraction, ...], fixed: tuple[str, ...]
 NO_MASS = 1e-9
 
 
-def positive_there(given: Scenario, where: Singularities, units: SceneUnits) -> tuple[bool | None, ...]:
+def positive_there(scenario: Scenario, where: Singularities, units: SceneUnits) -> tuple[bool | None, ...]:
     """Of every set at which M of the tree is singular, whether M is positive on what the constraints allow.
 
     At the first of its places, led to the constraints with the coordinates of the set held; None where no state of the
     constraints is found there.  By singular values in float64, lengths and angles in the units of the scene.
     """
-    return tuple(_positive(given, one, units) for one in where.sets)
+    return tuple(_positive(scenario, singular_set, units) for singular_set in where.sets)
 
 
-def _positive(given: Scenario, one: SingularSet, units: SceneUnits) -> bool | None:
-    names, n = given.system.coordinates, len(given.system.coordinates)
-    held = tuple(name for name in one.names if name in names)
-    if not held or any(name not in names for name in one.names):
+def _positive(scenario: Scenario, singular_set: SingularSet, units: SceneUnits) -> bool | None:
+    names, n = scenario.system.coordinates, len(scenario.system.coordinates)
+    held = tuple(name for name in singular_set.names if name in names)
+    if not held or any(name not in names for name in singular_set.names):
         return None
-    values = dict(zip(names, given.positions, strict=True)) | dict(one.places[0])
-    state = _led(given, (*(values[name] for name in names), *given.velocities), held)
+    values = dict(zip(names, scenario.positions, strict=True)) | dict(singular_set.places[0])
+    state = _led(scenario, (*(values[name] for name in names), *scenario.velocities), held)
     if state is None:
         return None
     at = np.array([float(x) for x in state])
-    dynamics = Dynamics(given)
+    dynamics = Dynamics(scenario)
     known = dynamics.constraints
     assert known is not None
     sizes = np.array([float(x) for x in units.sizes])
@@ -131,30 +131,30 @@ def _positive(given: Scenario, one: SingularSet, units: SceneUnits) -> bool | No
     return bool(energies[0] > NO_MASS * energies[-1])
 
 
-def approaches(given: Scenario, found: SingularPositions, units: SceneUnits) -> Iterator[Ladder]:
+def approaches(scenario: Scenario, found: SingularPositions, units: SceneUnits) -> Iterator[Ladder]:
     """One ladder for each of the first positions, along the constraints; none where no way out of it is found."""
-    for one in found.found[:MOST_APPROACHED]:
-        probes = _approach(given, one, units)
+    for position in found.found[:MOST_APPROACHED]:
+        probes = _approach(scenario, position, units)
         if probes:
-            yield Ladder(SINGULAR, f"distance from {one.text}", tuple(probes))
+            yield Ladder(SINGULAR, f"distance from {position.text}", tuple(probes))
 
 
-def _approach(given: Scenario, one: SingularPosition, units: SceneUnits) -> list[Probe]:
-    names, n = given.system.coordinates, len(given.system.coordinates)
-    place, sizes = np.array([one.place[name] for name in names]), np.array([float(x) for x in units.sizes])
+def _approach(scenario: Scenario, position: SingularPosition, units: SceneUnits) -> list[Probe]:
+    names, n = scenario.system.coordinates, len(scenario.system.coordinates)
+    place, sizes = np.array([position.place[name] for name in names]), np.array([float(x) for x in units.sizes])
     source = np.random.default_rng(7)
-    velocities = given.velocities if any(given.velocities) else units.velocities
+    velocities = scenario.velocities if any(scenario.velocities) else units.velocities
     for _ in range(DIRECTIONS):
         way = source.normal(size=n)
         probes: list[Probe] = []
         for size in (x for x in DISTANCES if x >= LEAST):
             aimed = place + size * sizes * way / np.linalg.norm(way)
-            state = _led(given, (*map(Fraction, aimed.tolist()), *velocities))
+            state = _led(scenario, (*map(Fraction, aimed.tolist()), *velocities))
             if state is None:
                 continue
             away = float(np.linalg.norm((np.array([float(x) for x in state[:n]]) - place) / sizes))
             if size / ABOUT < away < size * ABOUT:
-                probes.append(Probe(size, given, state))
+                probes.append(Probe(size, scenario, state))
                 way = _direction(state[:n], place, sizes)
         if len(probes) > 2:
             return probes
@@ -261,7 +261,7 @@ class Extremes:
 
 
 def extremes(
-    given: Scenario,
+    scenario: Scenario,
     ring: Ring,
     overrides: dict[str, Expression],
     budget: float = 60.0,
@@ -276,27 +276,27 @@ def extremes(
     started = time.perf_counter()
     left_out: list[str] = []
     watch("programs")
-    given = closed(given).scenario
-    found = _quantities(given, ring, left_out)
-    truth = Truth(given.system, found)
-    units = scene_units(given, truth)
+    scenario = closed(scenario).scenario
+    found = _quantities(scenario, ring, left_out)
+    truth = Truth(scenario.system, found)
+    units = scene_units(scenario, truth)
     watch("singular configurations")
-    where = _singularities(given, units, left_out)
+    where = _singularities(scenario, units, left_out)
     positions: SingularPositions | None = None
     positive: tuple[bool | None, ...] = ()
     left = budget
-    if given.system.constraints:
+    if scenario.system.constraints:
         watch("positions in which constraints lose their rank")
-        positions = singular_positions(given, [float(x) for x in units.sizes], SEARCH * budget)
-        positive = positive_there(given, where, units)
+        positions = singular_positions(scenario, [float(x) for x in units.sizes], SEARCH * budget)
+        positive = positive_there(scenario, where, units)
         left -= SEARCH * budget
     watch("linear equations")
-    linear = _linear(given, budget, left_out)
+    linear = _linear(scenario, budget, left_out)
     watch("kernels")
     compiled = _operations(found) <= COMPILED_PER_UNIT * budget
-    rungs = _Rungs(given, Arithmetic(given, found, compiled), truth, linear, left)
+    rungs = _Rungs(scenario, Arithmetic(scenario, found, compiled), truth, linear, left)
     late = []
-    for ladder in _all(given, overrides, found, linear, where, units, positions):
+    for ladder in _all(scenario, overrides, found, linear, where, units, positions):
         watch(ladder.title)
         if positions is not None and not rungs.late and not ladder.subject.startswith("distance from "):
             led = on_constraints(ladder, left_out)
@@ -308,13 +308,13 @@ def extremes(
     if late:
         shown = late if len(late) <= LISTED + 1 else [*late[:LISTED], f"and {len(late) - LISTED} more"]
         left_out.append(Message("beyond the budget, raise --budget: [[what]]", what=", ".join(shown)))
-    joined = falling(given, ring, found, truth)
+    joined = falling(scenario, ring, found, truth)
     seconds = time.perf_counter() - started
-    enclosed = _enclosed(given, linear)
-    rows, verdicts, values = tuple(rungs.rows), tuple(rungs.verdicts), dict(given.parameters)
+    enclosed = _enclosed(scenario, linear)
+    rows, verdicts, values = tuple(rungs.rows), tuple(rungs.verdicts), dict(scenario.parameters)
     pairs, omitted = tuple(rungs.compensated), tuple(left_out)
     return Extremes(
-        given.system, rows, verdicts, omitted, seconds, joined, where, pairs, enclosed, values, positions, positive
+        scenario.system, rows, verdicts, omitted, seconds, joined, where, pairs, enclosed, values, positions, positive
     )
 
 
@@ -330,7 +330,7 @@ class _Rungs:
         self.lean = tuple(q for q in self.found if q.name != "Jacobian")
         self.rows: list[Row] = []
         self.verdicts: list[VerdictRow] = []
-        self.compensated = [Compensated("", "", 1.0, one) for one in _rates(usual)]
+        self.compensated = [Compensated("", "", 1.0, rate) for rate in _rates(usual)]
 
     @property
     def late(self) -> bool:
@@ -355,7 +355,7 @@ class _Rungs:
             return
         if not usual:
             place = (ladder.kind, ladder.subject, probe.size)
-            self.compensated += [Compensated(*place, one) for one in _rates(arithmetic)]
+            self.compensated += [Compensated(*place, rate) for rate in _rates(arithmetic)]
             self.spent += STEPWISE * _operations(self.lean)
         for q in self.found if usual else self.lean:
             self.spent += QUANTITY + IN_BALLS * q.code.operations * self.truth.evaluations
@@ -375,20 +375,20 @@ def _operations(found: Sequence[Quantity]) -> int:
     return sum(q.code.operations for q in found)
 
 
-def _enclosed(given: Scenario, linear: LinearModel | None) -> tuple[Any, ...]:
+def _enclosed(scenario: Scenario, linear: LinearModel | None) -> tuple[Any, ...]:
     """The eigenvalues at the given values; nothing where they are too many to be worth it."""
     if linear is None or linear.size > MOST_ENCLOSED:
         return ()
-    return tuple(linear.exact_eigenvalues(given) or ())
+    return tuple(linear.exact_eigenvalues(scenario) or ())
 
 
 def _rates(arithmetic: Arithmetic) -> list[Compensation]:
     """What was done to the accelerations; pivots follow them."""
-    return [one for name, one in arithmetic.compensations.items() if name == "accelerations"]
+    return [compensation for name, compensation in arithmetic.compensations.items() if name == "accelerations"]
 
 
 def _all(
-    given: Scenario,
+    scenario: Scenario,
     overrides: dict[str, Expression],
     found: Sequence[Quantity],
     linear: LinearModel | None,
@@ -398,38 +398,40 @@ def _all(
 ) -> Iterator[Ladder]:
     """Ladders that need no new kernels come first."""
     if positions is not None:
-        yield from approaches(given, positions, units)
+        yield from approaches(scenario, positions, units)
     bordering = linear is not None
-    for ladder in ladders(given, overrides, found, where, units):
+    for ladder in ladders(scenario, overrides, found, where, units):
         if bordering and linear is not None and ladder.kind == RATIO:
-            yield from linear.borders(given, overrides)
+            yield from linear.borders(scenario, overrides)
             bordering = False
         yield ladder
 
 
-def _quantities(given: Scenario, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
-    found = quantities(given.system, ring, solved=equations(given, ring))
-    kept = tuple(q for q in found if q.code.operations <= MOST_OPERATIONS)
-    left_out += [f"{q.name}: {q.code.operations} operations are too many here" for q in found if q not in kept]
-    return kept
+def _quantities(scenario: Scenario, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
+    found = quantities(scenario.system, ring, solved=equations(scenario, ring))
+    kept_quantities = tuple(q for q in found if q.code.operations <= MOST_OPERATIONS)
+    left_out += [
+        f"{q.name}: {q.code.operations} operations are too many here" for q in found if q not in kept_quantities
+    ]
+    return kept_quantities
 
 
-def _singularities(given: Scenario, units: SceneUnits, left_out: list[str]) -> Singularities:
+def _singularities(scenario: Scenario, units: SceneUnits, left_out: list[str]) -> Singularities:
     """At the scenario's numbers; nothing where the system has no ring."""
-    ranges = {name: RANGE * size for name, size in zip(given.system.coordinates, units.sizes, strict=True)}
+    ranges = {name: RANGE * size for name, size in zip(scenario.system.coordinates, units.sizes, strict=True)}
     try:
-        return singularities(given, ranges)
+        return singularities(scenario, ranges)
     except Failure as reason:
         left_out.append(Message("singular configurations: [[why]]", why=message_of(reason)))
         return Singularities((), False, "", {})
 
 
-def _linear(given: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
+def _linear(scenario: Scenario, budget: float, left_out: list[str]) -> LinearModel | None:
     what = "linear equations, eigenvalues and verdicts"
-    if given.system.constraints:
+    if scenario.system.constraints:
         left_out.append(Message("[[what]]: those of systems with constraints are not measured", what=what))
         return None
-    analysis = Analysis(given.system)
+    analysis = Analysis(scenario.system)
     analysis.ring.limit_work(int(budget * STEPS_PER_UNIT))
     try:
         terms = sum(len(x) for matrix in analysis.linearisation.matrices for row in matrix.polynomials for x in row)
@@ -457,21 +459,22 @@ class Falling:
     joined: float
 
 
-def falling(given: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth) -> Falling | None:
+def falling(scenario: Scenario, ring: Ring, found: Sequence[Quantity], truth: Truth) -> Falling | None:
     """None where no frame falls, or the forcing has no tight enclosure."""
-    frames = tuple(falling_frames(given.system))
+    frames = tuple(falling_frames(scenario.system))
     usual = next((q for q in found if q.name == "forcing"), None)
     if not frames or usual is None:
         return None
     program = Program()
-    scene = scene_without_accelerations(given.system, ring, program, program_environment(given.system, program))
+    scene = scene_without_accelerations(scenario.system, ring, program, program_environment(scenario.system, program))
     nodes = tuple(-x for x in residuals(scene).values())
     apart = Quantity("forcing", Code(program, usual.code.inputs, nodes))
-    rates = [rate for _, rate in given.prescribed.values() if rate]
+    rates = [rate for _, rate in scenario.prescribed.values() if rate]
     time_ = 1 / rates[0] if rates else Fraction(1)
-    state = (*given.positions, *(Fraction(0) for _ in given.velocities))
+    state = (*scenario.positions, *(Fraction(0) for _ in scenario.velocities))
     digits = [
-        measured(truth, Arithmetic(given, [q], compiled=False), "forcing", given, state, time_) for q in (apart, usual)
+        measured(truth, Arithmetic(scenario, [q], compiled=False), "forcing", scenario, state, time_)
+        for q in (apart, usual)
     ]
     if not digits[0].bits:
         return None

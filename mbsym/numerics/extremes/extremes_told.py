@@ -68,12 +68,12 @@ def _short(size: float) -> str:
 def _pairs(found: Extremes) -> Iterator[str]:
     """Where kernels carry operations in pairs: what that keeps, and what it costs."""
     said: dict[str, list[Compensated]] = {}
-    for one in found.compensated:
-        said.setdefault(one.subject, []).append(one)
+    for compensated in found.compensated:
+        said.setdefault(compensated.subject, []).append(compensated)
     for subject, places in said.items():
         where = Message("At the given values")
         if subject:
-            sizes = ", ".join(f"{one.size:.0e}" for one in places)
+            sizes = ", ".join(f"{place.size:.0e}" for place in places)
             where = Message("[[name]] times [[sizes]]", name=subject, sizes=sizes)
         worst = min(places, key=lambda one: one.found.after)
         yield Message(
@@ -85,7 +85,7 @@ def _pairs(found: Extremes) -> Iterator[str]:
             operations=worst.found.sensitive,
             after=f"{worst.found.after:.1f}",
             before=f"{worst.found.before:.1f}",
-            cost=f"{max(one.found.cost for one in places):.1f}",
+            cost=f"{max(place.found.cost for place in places):.1f}",
         )
     if said:
         least = min(one.found.before for one in found.compensated)
@@ -116,8 +116,12 @@ def lost_rank(found: SingularPositions) -> Iterator[str]:
                 "are independent there "
                 "([[how]])"
             )
-        told = Message(text, where=one.text, rank=one.rank, usual=one.usual, how=how)
-        yield Message("[[told]]; others are next to it.", told=told) if one.family else Message("[[told]].", told=told)
+        message = Message(text, where=one.text, rank=one.rank, usual=one.usual, how=how)
+        yield (
+            Message("[[told]]; others are next to it.", told=message)
+            if one.family
+            else Message("[[told]].", told=message)
+        )
     if found.found:
         text = "These were found from [[starts]] starts, which is no proof that there are no others."
         if found.more:
@@ -151,12 +155,12 @@ def _where(found: Singularities, file: str, positive: Sequence[bool | None] | No
     """Where M is singular, which of the two fails there, and whether that is all; with constraints, what they allow."""
     if not found.how:
         return
-    for number, one in enumerate(found.sets):
-        why = _why(one, file) if positive is None else _ALLOWED[positive[number]]
+    for number, singular_set in enumerate(found.sets):
+        why = _why(singular_set, file) if positive is None else _ALLOWED[positive[number]]
         text = "The mass matrix is singular where [[where]]: [[why]]."
-        if one.proved:
+        if singular_set.proved:
             text = "The mass matrix is singular where [[where]], whatever else is: [[why]]."
-        yield Message(text, where=_set(one), why=why)
+        yield Message(text, where=_set(singular_set), why=why)
     for factor in found.undecided:
         yield Message(
             "It is undecided whether the mass matrix is singular where [[factor]] vanishes, and whether that does.",
@@ -178,26 +182,26 @@ def _where(found: Singularities, file: str, positive: Sequence[bool | None] | No
 
 def _alternatives(parts: Sequence[str]) -> str:
     """``a``, ``a or b``, ``a or b or c``."""
-    told = parts[0]
-    for one in parts[1:]:
-        told = Message("[[first]] or [[second]]", first=told, second=one)
-    return told
+    alternatives = parts[0]
+    for part in parts[1:]:
+        alternatives = Message("[[first]] or [[second]]", first=alternatives, second=part)
+    return alternatives
 
 
-def _set(one: SingularSet) -> str:
+def _set(singular_set: SingularSet) -> str:
     """``theta = pi/2 or -pi/2``, ``cos(a) + cos(b) = 0``, ``a = 1.57 and b = 3.14``."""
-    if one.values:
-        values = [value.label for value in one.values]
-        return Message("[[name]] = [[values]]", name=one.names[0], values=_alternatives(values))
+    if singular_set.values:
+        values = [value.label for value in singular_set.values]
+        return Message("[[name]] = [[values]]", name=singular_set.names[0], values=_alternatives(values))
     points: list[str] = []
-    for place in one.places[:LISTED]:
+    for place in singular_set.places[:LISTED]:
         values = [f"{name} = {float(x):.6g}" for name, x in sorted(place.items())]
         points.append(enumerated(values))
-    if one.finite:
-        more = len(one.places) - LISTED
+    if singular_set.finite:
+        more = len(singular_set.places) - LISTED
         told = _alternatives(points)
         return Message("[[places]] or at [[more]] more places", places=told, more=more) if more > 0 else told
-    return Message("[[equation]] = 0 (for instance [[point]])", equation=one.equation, point=points[0])
+    return Message("[[equation]] = 0 (for instance [[point]])", equation=singular_set.equation, point=points[0])
 
 
 _WHY = {
@@ -208,19 +212,19 @@ _WHY = {
 }
 
 
-def _why(one: SingularSet, file: str) -> Message:
-    why = _WHY[one.kind]
-    if one.joint:
+def _why(singular_set: SingularSet, file: str) -> Message:
+    why = _WHY[singular_set.kind]
+    if singular_set.joint:
         return Message(
             "[[why]], because the first and the third turn of [[joint]] are about one axis; other turns "
             "are regular there: "
             "mbsym extremes [[file]] --sequences",
             why=why,
-            joint=one.joint,
+            joint=singular_set.joint,
             file=file,
         )
     text = "[[why]] (found with the other coordinates near the given ones, not proved for all)"
-    return why if one.proved else Message(text, why=why)
+    return why if singular_set.proved else Message(text, why=why)
 
 
 def _near(found: Extremes) -> Iterator[str]:
@@ -341,18 +345,18 @@ def _blame(found: Extremes, row: Row, file: str) -> Message:
     if row.found.verdict != "formula":
         text = "the question itself loses them (condition [[condition]]), so that no formula keeps them"
         return Message(text, condition=condition)
-    told = Message("lost by the formula (condition [[condition]])", condition=condition)
+    message = Message("lost by the formula (condition [[condition]])", condition=condition)
     value = found.values.get(row.subject)
     if value is None:
-        return told
+        return message
     changed = f"--set {row.subject}={value * Fraction(f'{row.size:e}')}"
     if row.quantity == "eigenvalues":
         command = f"mbsym extremes {file} {changed}"
-        return Message("[[why]]; exact enclosures: [[command]]", why=told, command=command)
+        return Message("[[why]]; exact enclosures: [[command]]", why=message, command=command)
     if row.quantity == "accelerations":
         command = f"mbsym simulate {file} {changed} --time 1 --arithmetic extended"
-        return Message("[[why]]; three more: [[command]]", why=told, command=command)
-    return told
+        return Message("[[why]]; three more: [[command]]", why=message, command=command)
+    return message
 
 
 def _roots(found: Extremes) -> Message:
@@ -384,17 +388,17 @@ def _verdicts(found: Extremes) -> Iterator[str]:
         sides = [[row for row in own if row.subject.endswith(f" from {side}")] for side in ("below", "above")]
         below, above = (_side(rows) for rows in sides)
         text = "[[where]]: a border of the first approximation, [[below]] below and [[above]] above"
-        told = [Message(text, where=subject, below=below, above=above)]
+        messages = [Message(text, where=subject, below=below, above=above)]
         if all(len({row.judged.exact.word for row in rows}) == 1 for rows in sides):
             least = max(min(row.size for row in rows) for rows in sides)
             text = "[[told]], decided exactly down to a distance of [[least]]"
-            told = [Message(text, told=told[0], least=f"{least:.0e}")]
+            messages = [Message(text, told=messages[0], least=f"{least:.0e}")]
         for scalar in FULL:
             wrong = [row.size for row in own if row.judged.wrong(scalar)]
             if wrong:
                 text = "[[scalar]] eigenvalues say otherwise [[where]]"
-                told.append(Message(text, scalar=scalar, where=_onward((row.size for row in own), wrong)))
-        yield Message("[[told]].", told=joined(told, "; "))
+                messages.append(Message(text, scalar=scalar, where=_onward((row.size for row in own), wrong)))
+        yield Message("[[told]].", told=joined(messages, "; "))
     others = [row for row in found.verdicts if row.kind == RATIO]
     misjudged = [row for row in others if row.judged.wrong(FLOAT64)]
     if misjudged:

@@ -211,32 +211,32 @@ class Singularities:
     undecided: tuple[str, ...] = ()
 
 
-def singularities(given: Scenario, ranges: Mapping[str, Fraction]) -> Singularities:
+def singularities(scenario: Scenario, ranges: Mapping[str, Fraction]) -> Singularities:
     """All that is found at the scenario's numbers; ``ranges`` bounds the coordinates that are no angles.
 
     Raises Failure where the system has no ring.
     """
-    system = at_numbers(given.system, given.parameters)
+    system = at_numbers(scenario.system, scenario.parameters)
     ring = ring_of(system)
-    kinds = Kinds(given, system, ring, {name: bound / RANGE for name, bound in ranges.items()})
+    kinds = Kinds(scenario, system, ring, {name: bound / RANGE for name, bound in ranges.items()})
     joints = _joint_sets(system, ring, ranges)
     try:
         with ring.budget(MOST_WORK):
             own = zero_sets(ring, own_determinants(system, ring), ranges)
-        if own.complete and all(any(_same(one, other) for _, other in joints) for one in own.sets):
+        if own.complete and all(any(_same(zero_set, other) for _, other in joints) for zero_set in own.sets):
             return _told(ring, own, kinds, joints, OWN, ranges)
     except Failure:
         own = None
     try:
         with ring.budget(MOST_WORK):
-            found = _of_determinant(ring, system, ranges)
+            zeros = _of_determinant(ring, system, ranges)
     except Failure as reason:
-        if own is not None and own.complete and all(len(one.names) == 1 for one in own.sets):
+        if own is not None and own.complete and all(len(zero_set.names) == 1 for zero_set in own.sets):
             seen = [one for one in own.sets if all(kinds.singular({one.names[0]: zero.ball}) for zero in one.zeros)]
             if len(seen) == len(own.sets):
                 return _told(ring, own, kinds, joints, OWN, ranges, proved=False)
-        return _searched(given, kinds, joints, str(reason))
-    return _told(ring, found, kinds, joints, WHOLE, ranges)
+        return _searched(scenario, kinds, joints, str(reason))
+    return _told(ring, zeros, kinds, joints, WHOLE, ranges)
 
 
 #: What a list of singular sets stands on.
@@ -253,9 +253,9 @@ def _told(
     ranges: Mapping[str, Fraction],
     proved: bool = True,
 ) -> Singularities:
-    decided = [one for one in found.sets if one.known != UNDECIDED]
-    sets = [_described(ring, one, kinds, joints, proved) for one in decided]
-    undecided = tuple(_text(ring, one.factor) for one in found.sets if one.known == UNDECIDED)
+    decided = [zero_set for zero_set in found.sets if zero_set.known != UNDECIDED]
+    sets = [_described(ring, zero_set, kinds, joints, proved) for zero_set in decided]
+    undecided = tuple(_text(ring, zero_set.factor) for zero_set in found.sets if zero_set.known == UNDECIDED)
     bounds = {name: ranges[name] for name in found.bounded if name in ranges}
     return Singularities(_joined(sets), found.complete, how, bounds, undecided)
 
@@ -279,7 +279,7 @@ def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) 
 
 def _joint_sets(system: System, ring: Ring, ranges: Mapping[str, Fraction]) -> list[tuple[str, ZeroSet]]:
     """(body, set) for every body that three turns about independent coordinates orient."""
-    found = []
+    joint_sets = []
     scene = Scene(system, ring, ring_environment(system, ring), ring, frozen=True)
     for body in system.bodies:
         turns = scene.motions[body.name].turns
@@ -289,10 +289,10 @@ def _joint_sets(system: System, ring: Ring, ranges: Mapping[str, Fraction]) -> l
             continue
         volume = turns[1].sine if turns[0].axis == turns[2].axis else turns[1].cosine
         try:
-            found += [(body.name, one) for one in zero_sets(ring, [ring.reduce(volume)], ranges).sets]
+            joint_sets += [(body.name, zero_set) for zero_set in zero_sets(ring, [ring.reduce(volume)], ranges).sets]
         except NoClosedForm:
             continue
-    return found
+    return joint_sets
 
 
 def _independent(angles: Sequence[Any], coordinates: Sequence[str]) -> int:
@@ -306,11 +306,11 @@ def _independent(angles: Sequence[Any], coordinates: Sequence[str]) -> int:
     return int(matrix.rank())
 
 
-def _same(one: ZeroSet, other: ZeroSet) -> bool:
+def _same(zero_set: ZeroSet, other: ZeroSet) -> bool:
     """Whether two sets of one name are the same, or the first holds some of the second's values."""
-    if one.names != other.names or len(one.names) != 1:
+    if zero_set.names != other.names or len(zero_set.names) != 1:
         return False
-    return all(any(_equal(a, b) for b in other.zeros) for a in one.zeros)
+    return all(any(_equal(a, b) for b in other.zeros) for a in zero_set.zeros)
 
 
 def _equal(a: Zero, b: Zero) -> bool:
@@ -372,22 +372,22 @@ def _text(ring: Ring, factor: Polynomial) -> str:
 
 def _joined(sets: Sequence[SingularSet]) -> tuple[SingularSet, ...]:
     """Sets of one coordinate and one kind are one set with several values."""
-    kept: dict[tuple[Any, ...], SingularSet] = {}
+    kept_sets: dict[tuple[Any, ...], SingularSet] = {}
     for number, one in enumerate(sets):
         key = (one.names, one.kind, one.joint) if len(one.names) == 1 else (one.names, number)
-        before = kept.get(key)
+        before = kept_sets.get(key)
         if before is None:
-            kept[key] = one
+            kept_sets[key] = one
             continue
         new = [i for i, value in enumerate(one.values) if value not in before.values]
         values = (*before.values, *(one.values[i] for i in new))
         places = (*before.places, *(one.places[i] for i in new))
         order = sorted(range(len(values)), key=lambda i: (abs(values[i].exact), -values[i].exact))
-        kept[key] = SingularSet(
+        kept_sets[key] = SingularSet(
             one.names, tuple(values[i] for i in order), before.equation, tuple(places[i] for i in order),
             before.finite, one.kind, one.joint, before.proved and one.proved,
         )  # fmt: skip
-    return tuple(kept.values())
+    return tuple(kept_sets.values())
 
 
 # --- searching -------------------------------------------------------------------------------------------------------
@@ -395,7 +395,7 @@ def _joined(sets: Sequence[SingularSet]) -> tuple[SingularSet, ...]:
 _TWELFTHS = tuple(Fraction(k, 12) for k in range(-11, 13))
 
 
-def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], reason: str) -> Singularities:
+def _searched(scenario: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], reason: str) -> Singularities:
     """The joints' own sets, and one coordinate at a time at multiples of pi/12."""
     known = [
         SingularSet(
@@ -403,11 +403,11 @@ def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet
             False, CHART, body, True,
         )
         for body, one in joints
-        if len(one.names) == 1 and one.names[0] in given.system.coordinates
+        if len(one.names) == 1 and one.names[0] in scenario.system.coordinates
     ]  # fmt: skip
-    covered = {one.names[0] for one in known}
-    found = []
-    for name in given.system.coordinates:
+    covered = {singular_set.names[0] for singular_set in known}
+    sets = []
+    for name in scenario.system.coordinates:
         if name in covered:
             continue
         for turns in _TWELFTHS:
@@ -416,7 +416,7 @@ def _searched(given: Scenario, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet
             if kinds.singular({name: angle}):
                 value = Value(_multiple_of_pi(turns), _exact(angle))
                 kind = kinds.kind({name: angle})
-                found.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
+                sets.append(SingularSet((name,), (value,), "", ({name: value.exact},), False, kind, "", False))
     text = "multiples of pi/12 of one coordinate at a time; det M itself was not to be had: [[reason]]"
     how = Message(text, reason=reason)
-    return Singularities(_joined([*known, *found]), False, how, {})
+    return Singularities(_joined([*known, *sets]), False, how, {})

@@ -83,15 +83,15 @@ class SingularPositions:
     moving: bool  # rows depend on the time: at t = 0
 
 
-def singular_positions(given: Scenario, sizes: Sequence[float], limit: float) -> SingularPositions | None:
+def singular_positions(scenario: Scenario, sizes: Sequence[float], limit: float) -> SingularPositions | None:
     """Those that a search finds for a cost of about ``limit`` (``planning.prices``); None without constraints.
 
     ``sizes`` of the coordinates: those that are no angles are begun within twice that.
     """
-    constraints = Dynamics(given).constraints
+    constraints = Dynamics(scenario).constraints
     if constraints is None or not constraints.kept:
         return None
-    search = Search(given, constraints, np.asarray(sizes, dtype=float))
+    search = Search(scenario, constraints, np.asarray(sizes, dtype=float))
     return search.found(limit)
 
 
@@ -145,7 +145,7 @@ class Search:
                 continue
             if self._rank(place) < len(self.kept):  # else others take over from the rows that are kept
                 places.append(place)
-        shown = [one for one in map(self._described, places[:MOST]) if one is not None]
+        shown = [position for position in map(self._described, places[:MOST]) if position is not None]
         shown.sort(key=lambda one: (not one.proved, [abs(x) for x in one.place.values()]))
         return SingularPositions(tuple(shown), starts, len(places) > MOST, self._moving())
 
@@ -161,8 +161,8 @@ class Search:
     def _values(self, q: Any) -> tuple[Any, Any]:
         """(f (h, m), J (r, n, m)) at positions in columns."""
         states = np.vstack([q, np.zeros_like(q)])
-        found = self.constraints.along(np.full(q.shape[1], self.time), states)
-        return found.positions, found.partials[self.kept]
+        values = self.constraints.along(np.full(q.shape[1], self.time), states)
+        return values.positions, values.partials[self.kept]
 
     def _residual(self, x: Any, rows: Any, lengths: Any) -> Any:
         """At unknowns (q, lambda) in columns; ``lengths`` (n,) weigh coordinates, ``rows`` (r,) rows."""
@@ -175,11 +175,11 @@ class Search:
 
     def _of_positions(self, rows: Any) -> Any:
         """What f is measured by: the rows that are kept have theirs, others the largest."""
-        found = np.full(self.h, np.max(rows))
+        of_positions = np.full(self.h, np.max(rows))
         for size, number in zip(rows, self.kept, strict=True):
             if number < self.h:
-                found[number] = size
-        return found
+                of_positions[number] = size
+        return of_positions
 
     def _slopes(self, x: Any, rows: Any, lengths: Any) -> Any:
         steps = 1e-6 * np.concatenate([lengths, np.ones(len(self.kept))])
@@ -319,8 +319,8 @@ class Search:
 
     def _moving(self) -> bool:
         state = np.array([float(x) for x in self.given.state])
-        one, other = (self.constraints.at(t, state) for t in (0.0, 0.37))
-        pairs = ((one.positions, other.positions), (one.partials, other.partials))
+        values, other = (self.constraints.at(t, state) for t in (0.0, 0.37))
+        pairs = ((values.positions, other.positions), (values.partials, other.partials))
         return any(not np.array_equal(a, b) for a, b in pairs)
 
 

@@ -26,18 +26,18 @@ class Cells:
 
 def place_of(name: str) -> int | None:
     """Which of its cells a name is; None for the name of anything else."""
-    found = _ALL.get(name)
-    return None if found is None else found.names.index(name)
+    cells = _ALL.get(name)
+    return None if cells is None else cells.names.index(name)
 
 
 def value_of(name: str) -> float:
     """What stands in a cell now.  Raises KeyError for other names."""
-    found = _ALL[name]
-    return float(found.values[found.names.index(name)])
+    cells = _ALL[name]
+    return float(cells.values[cells.names.index(name)])
 
 
 def address_of(name: str) -> int:
     """Where a cell is.  Raises KeyError for other names."""
-    found = _ALL[name]
-    address: int = found.values.ctypes.data
-    return address + found.names.index(name) * found.values.itemsize
+    cells = _ALL[name]
+    address: int = cells.values.ctypes.data
+    return address + cells.names.index(name) * cells.values.itemsize

@@ -73,9 +73,9 @@ def text() -> str:
     pointers = ("table", "out", "powers", "shifts", "decades", "pairs", "reached")
     numbers = ("first", "last", "columns", "stride")
     f = Function("decimals", [*((name, POINTER) for name in pointers), *((name, INTEGER) for name in numbers)])
-    put, kept, digits = f.slot(INTEGER), f.slot(INTEGER), f.slot("i8", 64)
+    put, value, digits = f.slot(INTEGER), f.slot(INTEGER), f.slot("i8", 64)
     f.store(0, INTEGER, put)
-    f.store(0, INTEGER, kept)
+    f.store(0, INTEGER, value)
     stalled = f.label()
     f.store(f["first"], INTEGER, f["reached"])
     with f.repeat(f["last"], f["first"]) as row:
@@ -85,11 +85,11 @@ def text() -> str:
             over = (column + 1).compare("==", f["columns"])
             _byte(f, over.choose(f.number(10, INTEGER), f.number(44, INTEGER)), f["out"], end)
             f.store(end + 1, INTEGER, put)
-        f.store(f.load(INTEGER, put), INTEGER, kept)
+        f.store(f.load(INTEGER, put), INTEGER, value)
         f.store(row + 1, INTEGER, f["reached"])
     f.leave(f.load(INTEGER, put))
     f.place(stalled)
-    f.leave(f.load(INTEGER, kept))
+    f.leave(f.load(INTEGER, value))
     return f.text()
 
 

@@ -39,9 +39,9 @@ def _exchange(f: Function, kind: str, matrix: Value, size: int, k: Value, exchan
         _swap(f, kind, matrix, k * size + j, row * size + j)
 
 
-def _swap(f: Function, kind: str, array: Value, one: Value, other: Value) -> None:
-    first, second = f.load(kind, array, one), f.load(kind, array, other)
-    f.store(second, kind, array, one)
+def _swap(f: Function, kind: str, array: Value, value: Value, other: Value) -> None:
+    first, second = f.load(kind, array, value), f.load(kind, array, other)
+    f.store(second, kind, array, value)
     f.store(first, kind, array, other)
 
 

@@ -238,7 +238,7 @@ def _fused(code: Code, live: Sequence[int]) -> dict[int, Fused]:
     uses.update(node.number for node in code.outputs)
     # A product of which the rounding is taken has to be rounded.
     rounded = {instructions[number].operands for number in live if instructions[number].operation == PRODUCT_ROUNDING}
-    found = {}
+    fuseds = {}
     for number in live:
         operation, operands, _ = instructions[number]
         if operation not in ("add", "subtract"):
@@ -250,8 +250,8 @@ def _fused(code: Code, live: Sequence[int]) -> dict[int, Fused]:
             first = operands[0] == product
             a, b = instructions[product].operands
             minus, other = operation == "subtract", operands[1 if first else 0]
-            found[number] = Fused(number, product, (a, b), other, minus and not first, minus and first)
-    return found
+            fuseds[number] = Fused(number, product, (a, b), other, minus and not first, minus and first)
+    return fuseds
 
 
 def _used(code: Code, step: Step) -> Sequence[int]:

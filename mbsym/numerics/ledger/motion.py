@@ -85,9 +85,9 @@ def separate_parts(work: Work) -> Iterator[Saving]:
 
 def _written(scenario: Scenario) -> Dynamics:
     """The dynamics of a scenario with its right-hand side."""
-    found = Dynamics(scenario)
-    assert found.right_hand_side.outputs
-    return found
+    dynamics = Dynamics(scenario)
+    assert dynamics.right_hand_side.outputs
+    return dynamics
 
 
 def _plane(system: System) -> int | None:

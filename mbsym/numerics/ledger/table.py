@@ -146,9 +146,9 @@ def _solving(program: Program, matrix: Sequence[Sequence[Node]], right: Sequence
     return _cost(program, factorisation.solve(program, matrix, right)[0], nodes)
 
 
-def _cost(program: Program, outputs: Sequence[Node], given: Sequence[Node]) -> int:
+def _cost(program: Program, outputs: Sequence[Node], nodes: Sequence[Node]) -> int:
     """Operations of the outputs beyond those of what is given."""
-    needed, there = program.live(outputs), set(program.live(given))
+    needed, there = program.live(outputs), set(program.live(nodes))
     silent = ("constant", "input")
     return sum(k not in there and program.instructions[k].operation not in silent for k in needed)
 
@@ -171,14 +171,14 @@ def _eliminated(program: Program, matrix: Sequence[Sequence[Node]], right: Seque
                     change = program.product(factor, x)
                     rows[i][j] = program.difference(rows[i][j], change) if j in rows[i] else -change
             values[i] = program.difference(values[i], program.product(factor, values[k]))
-    found: dict[int, Node] = {}
+    nodes: dict[int, Node] = {}
     for k in reversed(order):
         value = values[k]
         for j, x in rows[k].items():
-            if j in found:
-                value = program.difference(value, program.product(x, found[j]))
-        found[k] = program.times(value, program.reciprocal(rows[k][k]))
-    return tuple(found[k] for k in range(n))
+            if j in nodes:
+                value = program.difference(value, program.product(x, nodes[j]))
+        nodes[k] = program.times(value, program.reciprocal(rows[k][k]))
+    return tuple(nodes[k] for k in range(n))
 
 
 def values(work: Work) -> Iterator[Saving]:
@@ -229,11 +229,11 @@ def skew_plane(work: Work) -> Iterator[Saving]:
     try:
         states = rows(choose(dynamics, TIGHT, work.wanted.time).method, dynamics, Setting(TIGHT), times).states
         rates = arrays.kernel(dynamics.right_hand_side)(np.vstack([times, states]))[dynamics.size :]
-        found = body_motions(work.scenario, times, states, rates)
+        motions = body_motions(work.scenario, times, states, rates)
     except (Breakdown, Failure):
         return
-    turning, moving = _kinds(work, found)
-    e, off = plane_of(found, turning, moving)
+    turning, moving = _kinds(work, motions)
+    e, off = plane_of(motions, turning, moving)
     if e is None or np.sum(np.abs(e) > ALONG) < 2:
         return
     direction = ", ".join(f"{x:.6g}" for x in e)
@@ -254,7 +254,7 @@ def skew_plane(work: Work) -> Iterator[Saving]:
             sum(turning) + 2 * sum(moving),
         ),
     )
-    names = tuple(name for name, a, b in zip(found.names, turning, moving, strict=True) if a or b)
+    names = tuple(name for name, a, b in zip(motions.names, turning, moving, strict=True) if a or b)
     yield Saving(Kind.SKEW, names, why, Certainty.VERIFIED, measures)
 
 
@@ -300,16 +300,16 @@ def problems_not_asked(work: Work) -> Iterator[Saving]:
         work.require(0.0)
         problem, stage = PROBLEMS[number], work.bounded.stage(number)
         if stage.failure is None:
-            found = Counted(_terms(stage.value), 0, stage.seconds)
+            counted = Counted(_terms(stage.value), 0, stage.seconds)
         elif stage.failure.limit in TOO_LARGE:
-            found = _given_up(work, number)
+            counted = _given_up(work, number)
         else:
             continue  # there is no such result, so nothing was saved
         why = Message("liveness: nobody asked for it, and nothing that was asked for needs it")
         if number == 3 and "linearisation" in analysis.derived:
             why = joined([why, Message("the linearisation is that of the quadratised Lagrangian")], "; ")
         what = Message("problem [[number]], [[title]]", number=number, title=worded(problem.title))
-        measures = found.measures(Counted(0, 0, 0.0), Message("it"))
+        measures = counted.measures(Counted(0, 0, 0.0), Message("it"))
         yield Saving(Kind.NOT_ASKED, (what,), why, Certainty.PROVED, measures)
 
 
@@ -328,12 +328,12 @@ def _terms(found: Any) -> int:
 
 def vanishing_entries(work: Work) -> Iterator[Saving]:
     """Entries of M, D, G, K, N that are identically zero, and matrices that vanish as a whole."""
-    found = _linearisation(work)
-    if found is None:
+    linearisation = _linearisation(work)
+    if linearisation is None:
         return
-    letters = dict(zip("MDGKN", found.matrices, strict=True))
-    n = len(found.coordinates)
-    entries = sum(not m[i, j].is_zero for m in found.matrices for i in range(n) for j in range(n))
+    letters = dict(zip("MDGKN", linearisation.matrices, strict=True))
+    n = len(linearisation.coordinates)
+    entries = sum(not m[i, j].is_zero for m in linearisation.matrices for i in range(n) for j in range(n))
     gone = [name for name, matrix in letters.items() if matrix.is_zero]
     what = [Message("[[count]] of [[all]] entries", count=5 * n * n - entries, all=5 * n * n)]
     if gone:
@@ -345,17 +345,17 @@ def vanishing_entries(work: Work) -> Iterator[Saving]:
 
 def subsystems(work: Work) -> Iterator[Saving]:
     """Characteristic polynomials of subsystems, against that of the whole system."""
-    found = _linearisation(work)
-    parts = components(found.matrices) if found is not None else []
-    if found is None or len(parts) < 2 or 6 not in work.analysis.problems:
+    linearisation = _linearisation(work)
+    parts = components(linearisation.matrices) if linearisation is not None else []
+    if linearisation is None or len(parts) < 2 or 6 not in work.analysis.problems:
         return
     work.begin(CHARACTERISTIC)
-    divided = [_characteristic(work, found, part) for part in parts]
+    divided = [_characteristic(work, linearisation, part) for part in parts]
     if any(item.terms is None for item in divided):
         return
     here = Counted(sum(x.terms or 0 for x in divided), sum(x.steps for x in divided), sum(x.seconds for x in divided))
-    there = _characteristic(work, found, range(len(found.coordinates)))
-    names = ("{" + ", ".join(found.coordinates[i] for i in part) + "}" for part in parts)
+    there = _characteristic(work, linearisation, range(len(linearisation.coordinates)))
+    names = ("{" + ", ".join(linearisation.coordinates[i] for i in part) + "}" for part in parts)
     why = Message("identities of the ring: no matrix couples them, so the determinant is the product of theirs")
     measures = there.measures(here, "det(M s^2 + (D + G) s + K + N)")
     yield Saving(Kind.SUBSYSTEMS, tuple(names), why, Certainty.PROVED, measures)
@@ -364,8 +364,8 @@ def subsystems(work: Work) -> Iterator[Saving]:
 def _linearisation(work: Work) -> Linearisation | None:
     if "linearisation" not in work.analysis.derived:
         return None
-    found: Linearisation | None = work.result("linearisation")
-    return found
+    linearisation: Linearisation | None = work.result("linearisation")
+    return linearisation
 
 
 def _characteristic(work: Work, found: Linearisation, part: Sequence[int]) -> Counted:
@@ -392,13 +392,13 @@ TIMES = 501
 
 def gravity_orders(work: Work) -> Iterator[Saving]:
     """Terms of the Newtonian field above the chosen order: their size, or what they change of the motion."""
-    found = list(described.gravity_orders(work))
-    if work.wanted is None or not found:
-        yield from found
+    savings = list(described.gravity_orders(work))
+    if work.wanted is None or not savings:
+        yield from savings
         return
     scene = _scene(work, work.wanted)
     tried = None if scene is None else model_settled(scene, Model()).taken
-    for saving in found:
+    for saving in savings:
         yield saving if tried is None else _held(saving, tried, work.wanted)
 
 
@@ -426,20 +426,20 @@ def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]
         yield Kind.LEFT_OUT, others
 
 
-def _scene(work: Work, wanted: AccuracyGoal) -> Scene | None:
+def _scene(work: Work, goal: AccuracyGoal) -> Scene | None:
     """The motion in outline; None without numbers, or where it does not come to the end."""
     if work.scenario is None:
         return None
     work.begin(work.price)
     try:
-        return outlined(work.scenario, Accuracy(wanted.accuracy), np.linspace(0, wanted.time, TIMES))[0]
+        return outlined(work.scenario, Accuracy(goal.accuracy), np.linspace(0, goal.time, TIMES))[0]
     except Breakdown:
         return None
 
 
-def _held(saving: Saving, tried: Tried, wanted: AccuracyGoal) -> Saving:
+def _held(saving: Saving, tried: Tried, goal: AccuracyGoal) -> Saving:
     """A saving with what it changes of the motion, beside what a model may change at this accuracy."""
-    tolerable = PART * wanted.accuracy
+    tolerable = PART * goal.accuracy
     if not isfinite(tried.worst):
         why = Message("[[why]]; what that changes of the motion could not be measured", why=saving.why)
         return replace(saving, why=joined(filter(None, (why, tried.why)), ": "), how=Certainty.UNDECIDED)
@@ -448,7 +448,7 @@ def _held(saving: Saving, tried: Tried, wanted: AccuracyGoal) -> Saving:
         "until [[time]] it changes the motion by [[worst]] of its size, [[word]] the [[most]] that a model may at an "
         "accuracy of [[accuracy]]"
     )
-    time, worst, most, accuracy = f"{wanted.time:g}", f"{tried.worst:.1e}", f"{tolerable:g}", f"{wanted.accuracy:g}"
+    time, worst, most, accuracy = f"{goal.time:g}", f"{tried.worst:.1e}", f"{tolerable:g}", f"{goal.accuracy:g}"
     changed = Message(text, time=time, worst=worst, word=word, most=most, accuracy=accuracy)
     why = joined([saving.why, changed], "; ")
     return replace(saving, why=why, how=tried.how, error=tried.worst, tolerable=tolerable)

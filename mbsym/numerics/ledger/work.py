@@ -137,8 +137,8 @@ class Work:
         """
         here, seconds = self.operations(self.forward.accelerations), self.cost[1]
         self.begin(self.price)
-        found, spent = self.timed(lambda: forward_dynamics(other, ring_of(other)))
-        there = found.program.operations(found.accelerations, constants(other) - set(changing))
+        dynamics, spent = self.timed(lambda: forward_dynamics(other, ring_of(other)))
+        there = dynamics.program.operations(dynamics.accelerations, constants(other) - set(changing))
         return (
             Measure("operations of q'' for one state", OPERATIONS, there, here),
             Measure("seconds of writing the program of q''", SECONDS, spent, seconds),
@@ -152,10 +152,10 @@ class Work:
         return self.fresh(self.system)
 
     def fresh(self, system: System) -> Analysis:
-        found = Analysis(system, (), self.analysis.terms, suggests=False)
-        found.ring.limit_work(WORK)
-        self._rings.append(found.ring)
-        return found
+        analysis = Analysis(system, (), self.analysis.terms, suggests=False)
+        analysis.ring.limit_work(WORK)
+        self._rings.append(analysis.ring)
+        return analysis
 
     def result(self, stage: str) -> Any:
         """A result of the run, or of a bounded analysis where the run did not need it; None where there is none."""

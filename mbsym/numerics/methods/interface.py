@@ -255,8 +255,8 @@ class Passed:
 
 def met_by(run: Run | None) -> Passed | None:
     """What a run has met; None of a run over what is smooth, and has nothing narrow."""
-    found: Passed | None = getattr(run, "passed", None)
-    return found
+    passed: Passed | None = getattr(run, "passed", None)
+    return passed
 
 
 def up_to(passed: Passed | None, end: float) -> Passed | None:
@@ -274,13 +274,13 @@ def up_to(passed: Passed | None, end: float) -> Passed | None:
 def together(runs: Iterable[Run], whole: Iterable[Callable[[Any], Any]]) -> Passed | None:
     """What runs of parts of a system have met; ``whole`` makes of the state of each that of the system."""
     runs = list(runs)
-    found = [one for run in runs if (one := met_by(run)) is not None]
-    if not found:
+    passeds = [one for run in runs if (one := met_by(run)) is not None]
+    if not passeds:
         return None
     return Passed(
-        sorted({time for one in found for time in one.switches}),
-        sorted((replace(x, place=None) for one in found for x in one.narrow), key=lambda x: x.time),
-        sorted(time for one in found for time in one.unresolved),
+        sorted({time for passed in passeds for time in passed.switches}),
+        sorted((replace(x, place=None) for passed in passeds for x in passed.narrow), key=lambda x: x.time),
+        sorted(time for passed in passeds for time in passed.unresolved),
         [
             (time, complete(state))
             for run, complete in zip(runs, whole, strict=True)
@@ -316,8 +316,8 @@ def machine_code(dynamics: Any, name: str, scalar: str = FLOAT64) -> Code:
     judged = range(len(code.outputs) // 2 if name == "right_hand_side" else 0, len(code.outputs))
     instructions = [code.program.instructions[number] for number in code.program.live(code.outputs)]
     read = {str(one.payload) for one in instructions if one.operation == "input"} - set(code.inputs)
-    found = compensated_code(given, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
-    return code if found is None else replace(found.code, inputs=code.inputs)
+    compensation = compensated_code(given, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
+    return code if compensation is None else replace(compensation.code, inputs=code.inputs)
 
 
 def once(dynamics: Dynamics, key: Hashable, make: Callable[[], Made]) -> Made:
@@ -325,8 +325,8 @@ def once(dynamics: Dynamics, key: Hashable, make: Callable[[], Made]) -> Made:
     kept = _KEPT.setdefault(dynamics, {})
     if key not in kept:
         kept[key] = make()
-    found: Made = kept[key]
-    return found
+    made: Made = kept[key]
+    return made
 
 
 def code_of(dynamics: Dynamics, name: str, scalar: str = FLOAT64) -> Code:

@@ -415,8 +415,8 @@ class LandingRun:
         frozen = self._dynamics.on_sides(sides)
         if frozen.sliding not in self._runs:
             started = perf_counter()
-            found = self._method.start(frozen, self._setting, self._scalar, self.state, self.time)
-            self._runs[frozen.sliding] = found
+            run = self._method.start(frozen, self._setting, self._scalar, self.state, self.time)
+            self._runs[frozen.sliding] = run
             self.work.compiling += perf_counter() - started
         return self._runs[frozen.sliding]
 

@@ -323,8 +323,8 @@ def _error(
         scale = absolute * f.load(s.kind, f["sizes"], i) + relative * before.compare("<", after).choose(after, before)
         inverse = 1 / scale
         for total, row in zip(totals, tableau.errors, strict=True):
-            one = (s.combination(k, row, i) * inverse).converted("double")
-            f.store(f.load("double", total) + one * one, "double", total)
+            value = (s.combination(k, row, i) * inverse).converted("double")
+            f.store(f.load("double", total) + value * value, "double", total)
     squares = [f.load("double", total) for total in totals]
     h = step.converted("double").absolute()
     if len(squares) == 1:
@@ -354,6 +354,6 @@ def _grow(f: Function, s: Stages, tableau: Tableau | Rosenbrock, error: Value, s
     longest = f.load(s.clock, clock, Clock.LONGEST)
     f.store(grown.compare("<", longest).choose(grown, longest), s.clock, clock, Clock.STEP)
     lower = f.number(Fraction(log(1e-4)), "double")
-    kept = size.compare(">", lower).choose(size, lower)
-    f.store(kept.converted(s.clock), s.clock, clock, Clock.PREVIOUS)
+    value = size.compare(">", lower).choose(size, lower)
+    f.store(value.converted(s.clock), s.clock, clock, Clock.PREVIOUS)
     f.store(0, INTEGER, count, Count.CAREFUL)

@@ -111,10 +111,10 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
             found.append((time, (2.0 * u / curvature) ** 0.5))
     if kind == PEAK and not found and values[0] < -SMALL:  # a wall
         passed, _, _ = passages(series(values + SMALL), Sign(), 1e-14)
-        for one in passed[:1]:
-            if one.turn > 0:
-                width = WALL / max(abs(float(slope(one.place))) * per, 1e-300)
-                found.append((start + 0.5 * (one.place + 1) * (end - start) + BESIDE * width, width))
+        for passage in passed[:1]:
+            if passage.turn > 0:
+                width = WALL / max(abs(float(slope(passage.place))) * per, 1e-300)
+                found.append((start + 0.5 * (passage.place + 1) * (end - start) + BESIDE * width, width))
     return [(float(time), float(width)) for time, width in found]
 
 
@@ -175,11 +175,11 @@ class Sides:
     """
 
     def __init__(self, dynamics: Dynamics) -> None:
-        self._dynamics, found = dynamics, dynamics.features
-        self.curves: tuple[Curve | None, ...] = found.curves
+        self._dynamics, features = dynamics, dynamics.features
+        self.curves: tuple[Curve | None, ...] = features.curves
         self.count = len(self.curves)
         self._knots = [None if curve is None else numbers_of(curve, np.float64)[0] for curve in self.curves]
-        program, outputs = found.switches.program, found.switches.outputs
+        program, outputs = features.switches.program, features.switches.outputs
         clock = [program.instructions[node.number].payload == "t" for node in outputs]
         self.by_clock = tuple(k for k, knots in enumerate(self._knots) if clock[k] and knots is not None)
         self.looked_for = tuple(k for k in range(self.count) if k not in self.by_clock)
@@ -425,7 +425,7 @@ class Leaving:
         whole = self._switches.size(k)
         near = 0.1 * self._tolerance * whole if begins and abs(values[0]) < 1e-6 * (whole + size) else 0.0
         passed, _, _ = passages(known, Sign(1, begins), max(BLUR * size, near))
-        down = [one.place for one in passed if one.turn < 0]
+        down = [passage.place for passage in passed if passage.turn < 0]
         if not down:
             return None
         return self._polished(k, piece, start + 0.5 * (down[0] + 1) * (end - start), start, end)

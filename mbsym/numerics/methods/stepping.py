@@ -75,10 +75,10 @@ class Stepping(ABC):
                     Cause.STUCK, "this arithmetic has too few digits for the next step", float(start), self.state
                 )
         end = self.reached if until is None else min(until, self.reached)
-        found = Piece(start, end, self.curve())
-        self.state = np.array(self.end) if end == self.reached else found(end)
+        piece = Piece(start, end, self.curve())
+        self.state = np.array(self.end) if end == self.reached else piece(end)
         self.time = end
-        return found
+        return piece
 
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at m increasing times; raises Breakdown with those that there are."""

@@ -90,8 +90,8 @@ def codes(dynamics: Dynamics) -> Codes:
     fresh.bound = bound
     program = dynamics.momenta.program
     outputs = [*dynamics.momenta.outputs, *dynamics.momentum_rates.outputs]
-    found = substituted(program, outputs, fresh)
-    impulses, forces = found[: len(names)], found[len(names) :]
+    nodes = substituted(program, outputs, fresh)
+    impulses, forces = nodes[: len(names)], nodes[len(names) :]
     residual = [a - middle * b - p for a, b, p in zip(impulses, forces, momenta, strict=True)]
     rows = jacobian(fresh, residual, rates)
     inputs = ("time", "step", *(f"{letter} {i}" for letter in "qvp" for i in range(len(names))))
@@ -424,14 +424,14 @@ class MidpointRun(Stepping):
 
     def _rows(self, at: Any, exact: Any, number: Any, marks: Any, moments: Any, kept: Any) -> Any:
         """States at times of which ``number`` is the step that they lie in, or end."""
-        found = np.empty((2 * self.n, len(at)), self.dtype)
+        rows = np.empty((2 * self.n, len(at)), self.dtype)
         ends = np.searchsorted(marks, number)
-        found[:, exact] = self._shown(moments[ends[exact]], kept[: 2 * self.n, ends[exact]])
+        rows[:, exact] = self._shown(moments[ends[exact]], kept[: 2 * self.n, ends[exact]])
         if not np.all(exact):
             used = slice(0, int(ends[-1]) + 1)
             begins, between = np.searchsorted(marks, number[~exact] - 1), ends[~exact]
-            found[:, ~exact] = self._between(moments[used], kept[:, used], begins, between)(at[~exact])
-        return found
+            rows[:, ~exact] = self._between(moments[used], kept[:, used], begins, between)(at[~exact])
+        return rows
 
     def _fail(self, before: Any) -> None:
         now = float(self.reached)

@@ -348,9 +348,9 @@ class Stages:
 def add_compensated(f: Function, kind: str, x: Value, carry: Value, i: Value | int, change: Value) -> Value:
     """x_i + change with the rounding error of the last time put back in (Kahan); returns the new x_i."""
     old = f.load(kind, x, i)
-    wanted = change - f.load(kind, carry, i)
-    new = old + wanted
-    f.store((new - old) - wanted, kind, carry, i)
+    value = change - f.load(kind, carry, i)
+    new = old + value
+    f.store((new - old) - value, kind, carry, i)
     f.store(new, kind, x, i)
     return new
 

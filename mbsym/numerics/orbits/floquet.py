@@ -183,11 +183,11 @@ def _allowed(
 
 
 def _word(multipliers: Sequence[Multiplier], simple: bool, linear: bool) -> Word:
-    if any(one.least > 1 for one in multipliers):
+    if any(multiplier.least > 1 for multiplier in multipliers):
         return Word.UNSTABLE
-    if all(one.greatest < 1 for one in multipliers):
+    if all(multiplier.greatest < 1 for multiplier in multipliers):
         return Word.ASYMPTOTICALLY_STABLE
-    if simple and all(one.on_circle for one in multipliers):
+    if simple and all(multiplier.on_circle for multiplier in multipliers):
         return Word.STABLE if linear else Word.STABLE_FIRST_APPROXIMATION
     return Word.UNDECIDED
 
@@ -370,7 +370,7 @@ def _steps(code: Code, period: arb, size: int) -> int:
         largest = arb.max(largest, _norm(found).upper())
     if not largest.is_finite():
         largest = arb(64)
-    fastest = max((abs(one) for one in _frequencies(code)), default=Fraction(0))
+    fastest = max((abs(frequency) for frequency in _frequencies(code)), default=Fraction(0))
     wanted = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
     if wanted > MOST_STEPS:
         raise NotPeriodic(
@@ -382,16 +382,16 @@ def _steps(code: Code, period: arb, size: int) -> int:
 def _frequencies(code: Code) -> list[Fraction]:
     """Slopes of arguments of sines and cosines that are linear in t alone."""
     program = code.program
-    found = []
+    frequencies = []
     for number in program.live(code.outputs):
         operation, operands, _ = program.instructions[number]
         if operation in ("sin", "cos"):
             inner = program.instructions[operands[0]]
-            factors = [program.instructions[one].payload for one in inner.operands]
-            found += (
+            factors = [program.instructions[operand].payload for operand in inner.operands]
+            frequencies += (
                 [factor for factor in factors if isinstance(factor, Fraction)] if inner.operation == "multiply" else []
             )
-    return found
+    return frequencies
 
 
 def _norm(matrix: arb_mat) -> arb:
@@ -439,13 +439,13 @@ def _reached(slopes: arb_mat) -> np.ndarray:
 
 def _coefficients(jets: Sequence[arb_mat], first: arb_mat, count: int) -> list[arb_mat]:
     """Phi_0 ... Phi_count of Phi' = J Phi:  (k + 1) Phi_k+1 = sum_i J_i Phi_k-i."""
-    found = [first]
+    coefficients = [first]
     for k in range(count):
-        total = jets[0] * found[k]
+        total = jets[0] * coefficients[k]
         for i in range(1, k + 1):
-            total = total + jets[i] * found[k - i]
-        found.append(total * (arb(1) / (k + 1)))
-    return found
+            total = total + jets[i] * coefficients[k - i]
+        coefficients.append(total * (arb(1) / (k + 1)))
+    return coefficients
 
 
 # --- multipliers ---
@@ -459,14 +459,14 @@ def _multipliers(
     balls = [[ball for block in _diagonal_blocks(monodromy, part) for ball in _eigenvalues(block)] for part in parts]
     simple = not any(one.overlaps(other) for own in balls for one, other in combinations(own, 2))
     every = [ball for own in balls for ball in own]
-    found: list[Multiplier] = []
+    multipliers: list[Multiplier] = []
     for part, own in zip(parts, balls, strict=True):
         mirrored = len(part) == 2 and keeps_area(part)
         for place, root in enumerate(own):
             size, alone = abs(root), mirrored and _alone(own, place)
-            on_circle = size == 1 or alone or (lagrangian and _alone(every, len(found)))
-            found.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
-    return tuple(sorted(found, key=lambda one: -one.greatest)), simple
+            on_circle = size == 1 or alone or (lagrangian and _alone(every, len(multipliers)))
+            multipliers.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
+    return tuple(sorted(multipliers, key=lambda one: -one.greatest)), simple
 
 
 def _parts(matrix: arb_mat, connection: str) -> list[list[int]]:
@@ -484,7 +484,7 @@ def _diagonal_blocks(matrix: arb_mat, part: Sequence[int]) -> list[acb_mat]:
     """
     rows = matrix.tolist()
     members = [one for one in _parts(matrix, "strong") if one[0] in part]
-    return [acb_mat([[acb(rows[i][j]) for j in one] for i in one]) for one in members]
+    return [acb_mat([[acb(rows[i][j]) for j in member] for i in member]) for member in members]
 
 
 def _eigenvalues(block: acb_mat) -> list[acb]:

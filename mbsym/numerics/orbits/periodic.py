@@ -166,8 +166,8 @@ def periodic_orbit(
         watch(count, here.size)
         if here.size < CLOSED or (best.size < NEARLY and since >= PATIENCE):
             turns = np.where(shifted, best.end - best.state, turns)
-            found = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
-            return replace(found, shifted=guess.shifted)
+            orbit = _orbit(dynamics, flow, best, turns, count, not known_time, rates, energy)
+            return replace(orbit, shifted=guess.shifted)
         forward = rates(np.concatenate(([0.0], here.state))) if free_period else None
         ahead = rates(np.concatenate(([here.period], here.end))) if free_period else None
         place = search.towards(here, search.step(here, forward, ahead))
@@ -229,9 +229,9 @@ def _unrepeated(dynamics: Dynamics, period: str) -> Message:
 def _vanishing(period: float, turns: Any) -> Message:
     """In no time every motion closes: a search that gets there tells of itself, not of what is near the guess."""
     text = "the search runs to ever shorter periods ([[period]]), over which any motion closes: begin nearer"
-    told = Message(text, period=f"{period:.3g}")
+    message = Message(text, period=f"{period:.3g}")
     more = "[[told]], and say which angle comes back turned, if one does (--turns NAME=1)"
-    return told if np.any(turns) else Message(more, told=told)
+    return message if np.any(turns) else Message(more, told=message)
 
 
 @dataclass(frozen=True)
@@ -301,9 +301,9 @@ class _Search:
         for damping in DAMPINGS:
             whole, share = step(damping), 1.0
             for _ in range(HALVINGS):
-                found = self._moved(here, share * whole)
-                if found is not None and (best is None or found.size < best.size):
-                    best = found
+                place = self._moved(here, share * whole)
+                if place is not None and (best is None or place.size < best.size):
+                    best = place
                 if best is not None and best.size < max(0.5 * here.size, NEARLY):
                     return best
                 share /= 2

@@ -263,14 +263,14 @@ def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
     for order in (wanted.gravity, *reversed(orders(scenario))):
         model = Model(order)
         try:
-            found = modelled(scenario, model)
-            assert found.right_hand_side.outputs
-            return model, found, reason
+            dynamics = modelled(scenario, model)
+            assert dynamics.right_hand_side.outputs
+            return model, dynamics, reason
         except Failure as trouble:
             reason = Message("there is no program for [[label]]: [[trouble]]", label=model.label, trouble=trouble)
-    found = modelled(scenario, Model())
-    assert found.right_hand_side.outputs
-    return Model(), found, reason
+    dynamics = modelled(scenario, Model())
+    assert dynamics.right_hand_side.outputs
+    return Model(), dynamics, reason
 
 
 def model_settled(scene: Scene, model: Model) -> ModelChoice:
@@ -310,12 +310,12 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
 
 def _candidates(scene: Scene) -> list[Model]:
     """Simpler models, those with fewer operations first as a rule."""
-    found = []
+    candidates = []
     system = scene.scenario.system
     if system.motion and not system.constraints and not scene.rich.in_states:
-        found.append(replace(scene.model, linear=True))
-    found += [Model(order) for order in orders(scene.scenario) if order != scene.model.gravity and order != EXACT]
-    return found
+        candidates.append(replace(scene.model, linear=True))
+    candidates += [Model(order) for order in orders(scene.scenario) if order != scene.model.gravity and order != EXACT]
+    return candidates
 
 
 class _Truth:
@@ -365,23 +365,23 @@ def _estimated(scene: Scene, model: Model, dynamics: Dynamics, truth: _Truth) ->
     """A model with its error by the equation of the difference, and by a rerun where that is cheap."""
     operations = dynamics.right_hand_side.operations
     unit = float(np.min(scene.targets))
-    found = model_error(dynamics, scene.rich, scene.method, scene.setting, scene.times, scene.scale[:-1], unit)
+    estimate = model_error(dynamics, scene.rich, scene.method, scene.setting, scene.times, scene.scale[:-1], unit)
     rerun, how, why = truth.states(), Certainty.ESTIMATED, ""
-    reached = found.states.shape[1] == len(scene.times)
+    reached = estimate.states.shape[1] == len(scene.times)
     if rerun is not None and reached:
-        trusted = found.trusted
-        found = confirmed(found, rerun, scene.scale[:-1], 0.1 * unit)
+        trusted = estimate.trusted
+        estimate = confirmed(estimate, rerun, scene.scale[:-1], 0.1 * unit)
         how, why = (
             Certainty.MEASURED,
-            "" if found.confirmed or not trusted else Message("a rerun with the richer model says otherwise"),
+            "" if estimate.confirmed or not trusted else Message("a rerun with the richer model says otherwise"),
         )
-    elif not found.trusted:
+    elif not estimate.trusted:
         errors = np.full(len(scene.targets), inf)
-        return Tried(model, operations, inf, errors, Certainty.ESTIMATED, found.trouble, found)
-    errors = np.append(found.by_quantity, _energy_error(scene, dynamics, found))
+        return Tried(model, operations, inf, errors, Certainty.ESTIMATED, estimate.trouble, estimate)
+    errors = np.append(estimate.by_quantity, _energy_error(scene, dynamics, estimate))
     asked = np.isfinite(scene.targets)
     ratio = float(np.max(errors[asked] / scene.targets[asked]))
-    return Tried(model, operations, ratio if not why else inf, errors, how, why, found)
+    return Tried(model, operations, ratio if not why else inf, errors, how, why, estimate)
 
 
 def _naive(scene: Scene, simple: Dynamics) -> float:
@@ -466,20 +466,20 @@ def _felt(scene: Scene, base: Model) -> Sequence[tuple[str, float]]:
 
     Nothing of speeds that are no velocities of positions.
     """
-    given = scene.scenario
+    scenario = scene.scenario
     if scene.rich.in_states:
         return ()
-    names = [name for name in droppable(given.system) if given.parameters[name] != 0]
+    names = [name for name in droppable(scenario.system) if scenario.parameters[name] != 0]
     if not names or len(names) > MOST or scene.rich.right_hand_side.operations > LONG:
         return ()
-    program = parametrised(scenario_of(given, base), names)
+    program = parametrised(scenario_of(scenario, base), names)
     try:
         accelerations = arrays.kernel(program.right_hand_side)
     except Failure:
         return ()
     few = np.linspace(0, len(scene.times) - 1, min(len(scene.times), 2_000)).astype(int)
     fewer = replace(scene, times=scene.times[few], states=scene.states[:, few])
-    values = np.array([[float(given.parameters[name])] for name in names])
+    values = np.array([[float(scenario.parameters[name])] for name in names])
     points = np.vstack([fewer.times, fewer.states, np.tile(values, (1, len(few)))])
     with np.errstate(all="ignore"):
         usual = accelerations(points)

@@ -143,12 +143,12 @@ def orders(scenario: Scenario) -> tuple[int | str | None, ...]:
     An expansion in size/R is offered where the bodies are nearer to O1 than O1 to the centre, or where the description
     itself expands.
     """
-    found = scenario.system.newtonian_fields
-    if not found:
+    gravities = scenario.system.newtonian_fields
+    if not gravities:
         return (None,)
     from mbsym.numerics.ledger.described import relative_size  # what the ledger needs, few scenes do
 
-    sizes = [relative_size(scenario, load) for load in found if load.order == EXACT]
+    sizes = [relative_size(scenario, load) for load in gravities if load.order == EXACT]
     expandable = all(size is not None and size < 1 for size in sizes)
     return GRAVITY_ORDERS if expandable else (EXACT,)
 

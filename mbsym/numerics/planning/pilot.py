@@ -227,11 +227,11 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
     return found
 
 
-def _preferred(one: Trial, other: Trial) -> bool:
+def _preferred(trial: Trial, other: Trial) -> bool:
     """The clearly cheaper; of two that cost about the same the coarser."""
-    if one.cost > ALIKE * other.cost or other.cost > ALIKE * one.cost:
-        return one.cost < other.cost
-    return one.fineness > other.fineness
+    if trial.cost > ALIKE * other.cost or other.cost > ALIKE * trial.cost:
+        return trial.cost < other.cost
+    return trial.fineness > other.fineness
 
 
 def _tried(bench: Bench, method: Method, scalar: str, setting: Setting) -> Trial | None:

@@ -193,4 +193,4 @@ class Plan:
     @property
     def reached(self) -> bool:
         """Whether every quantity is within its error, and no estimate of the run's own is missing or says otherwise."""
-        return not self.contradicted and not self.unshown and all(one.reached for one in self.bounds)
+        return not self.contradicted and not self.unshown and all(bound.reached for bound in self.bounds)

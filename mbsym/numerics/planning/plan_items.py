@@ -73,9 +73,9 @@ def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
     return worth, GOAL, text
 
 
-def fits(one: Trial, known: float, room: float) -> bool:
+def fits(trial: Trial, known: float, room: float) -> bool:
     """Whether the error of a trial, doubled, is within ``room``; with ``known``, that of what it was measured by."""
-    return DOUBLED * (one.ratio - known) + known <= room
+    return DOUBLED * (trial.ratio - known) + known <= room
 
 
 def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
@@ -160,13 +160,13 @@ class Settled:
     def measured_to(self) -> float | None:
         """How well the run is known that measured, where that is all by which the best trial differs from it."""
         known = self.stick.known
-        least = min((one.ratio - known for one in self.bench.trials), default=inf)
+        least = min((trial.ratio - known for trial in self.bench.trials), default=inf)
         return None if self.enough or least > APART * known else known * self.bench.finest_target
 
     @property
     def fitting(self) -> list[Trial]:
         """Whatever was tried and whose measured error, doubled, is small enough."""
-        return [one for one in self.bench.trials if fits(one, self.stick.known, self.room)]
+        return [trial for trial in self.bench.trials if fits(trial, self.stick.known, self.room)]
 
 
 def items_of(settled: Settled) -> tuple[Item, ...]:
@@ -192,7 +192,7 @@ def _models(settled: Settled) -> Iterator[Item]:
     lines = [one for one in model.tried if one.model.linear]
     if lines or taken.model.linear:
         chosen = Message("linear" if taken.model.linear else "nonlinear")
-        refused = tuple(_refused(settled, one) for one in lines if one.model != taken.model)
+        refused = tuple(_refused(settled, line) for line in lines if line.model != taken.model)
         error = _worst(settled, taken) if taken.model.linear else None
         why = Message("as asked for") if Kind.LINEARITY in settled.pinned else _why_model(model)
         yield Item(Kind.LINEARITY, (), chosen, why, error, taken.how, taken.operations, refused=refused)
@@ -218,8 +218,8 @@ def _why_model(model: ModelChoice) -> str:
     )
 
 
-def _other_order(one: Model, taken: Model) -> bool:
-    return one.gravity != taken.gravity and not one.linear and not one.without
+def _other_order(model: Model, taken: Model) -> bool:
+    return model.gravity != taken.gravity and not model.linear and not model.without
 
 
 def _refused(settled: Settled, one: Tried) -> Refused:
@@ -228,11 +228,11 @@ def _refused(settled: Settled, one: Tried) -> Refused:
 
 
 def _resting(settled: Settled) -> Iterator[Item]:
-    found = settled.resting
-    if found is not None:
-        before, after = found.operations
+    reduced = settled.resting
+    if reduced is not None:
+        before, after = reduced.operations
         why = Message("[[after]] operations a right-hand side instead of [[before]]", after=after, before=before)
-        yield Item(Kind.RESTING, found.names, Message("not integrated"), why, 0.0, Certainty.PROVED, after)
+        yield Item(Kind.RESTING, reduced.names, Message("not integrated"), why, 0.0, Certainty.PROVED, after)
 
 
 def _parts(settled: Settled) -> Iterator[Item]:
@@ -251,28 +251,28 @@ def _welded(settled: Settled) -> Iterator[Item]:
 
 
 def _settings(settled: Settled) -> Iterator[Item]:
-    found, pinned = settled.found, settled.pinned
-    name = found.method.traits.name
+    trial, pinned = settled.found, settled.pinned
+    name = trial.method.traits.name
     others = _cheapest_others(settled)
     chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
     why = Message("as asked for") if Kind.METHOD in pinned else chosen
     if Kind.FINENESS in pinned:
-        why = _fitting(found)
+        why = _fitting(trial)
     if settled.choice.stiff and Kind.METHOD not in pinned:
         why = joined(
             [why, Message("motions die out at rates up to [[rate]]", rate=f"{settled.choice.decay:.3g}")], "; "
         )
     yield Item(
-        Kind.METHOD, (found.method.traits.title,), name, why, None, Certainty.MEASURED, found.seconds, SECONDS, others
+        Kind.METHOD, (trial.method.traits.title,), name, why, None, Certainty.MEASURED, trial.seconds, SECONDS, others
     )
     why = Message("as asked for") if Kind.FINENESS in pinned else _why_fineness(settled)
-    word = Message("tolerance [[tolerance]]", tolerance=f"{found.fineness:g}")
-    if found.setting.step is not None:
-        word = Message("step [[step]]", step=f"{found.fineness:g}")
-    yield Item(Kind.FINENESS, (), word, why, None, Certainty.MEASURED, found.seconds, SECONDS)
+    word = Message("tolerance [[tolerance]]", tolerance=f"{trial.fineness:g}")
+    if trial.setting.step is not None:
+        word = Message("step [[step]]", step=f"{trial.fineness:g}")
+    yield Item(Kind.FINENESS, (), word, why, None, Certainty.MEASURED, trial.seconds, SECONDS)
     refused = tuple(_other_scalars(settled))
     why = Message("as asked for") if Kind.SCALAR in pinned else _why_scalar(settled)
-    yield Item(Kind.SCALAR, (), found.scalar, why, None, Certainty.MEASURED, found.seconds, SECONDS, refused)
+    yield Item(Kind.SCALAR, (), trial.scalar, why, None, Certainty.MEASURED, trial.seconds, SECONDS, refused)
     yield Item(Kind.KERNEL, (), "scalar", Message("one motion: nothing to lay side by side"), 0.0, Certainty.PROVED)
 
 
@@ -281,7 +281,7 @@ def _why_method(settled: Settled, others: bool) -> str:
     enough = Message("its measured error, doubled, is small enough")
     if not others:
         return Message("[[enough]]; no other method came to the end here", enough=enough)
-    least = min((one.cost for one in settled.fitting), default=0.0)
+    least = min((trial.cost for trial in settled.fitting), default=0.0)
     if settled.found.cost > ALIKE * least:
         return enough
     text = "by counted work [[cheapest]] whose measured error, doubled, is small enough"
@@ -294,13 +294,13 @@ def _cheapest(found: Trial, least: float) -> str:
 
 def _closest(settled: Settled) -> str:
     """Of a plan that is not accurate enough."""
-    found, none = settled.found, _none(settled)
+    trial, none = settled.found, _none(settled)
     least = min((one.ratio for one in settled.bench.trials), default=inf)
     near = min((one.cost for one in settled.bench.trials if one.ratio <= 2 * least), default=0.0)
-    if found.ratio > 2 * least or found.cost > ALIKE * near:
+    if trial.ratio > 2 * least or trial.cost > ALIKE * near:
         return none
     text = "[[none]]: by counted work [[cheapest]] within twice the least error"
-    return Message(text, none=none, cheapest=_cheapest(found, near))
+    return Message(text, none=none, cheapest=_cheapest(trial, near))
 
 
 def _none(settled: Settled) -> str:
@@ -313,13 +313,13 @@ def _none(settled: Settled) -> str:
 def _why_fineness(settled: Settled) -> str:
     if not settled.enough:
         return _none(settled)
-    found = settled.found
-    same = [one for one in settled.fitting if (one.method, one.scalar) == (found.method, found.scalar)]
-    coarser = [one.cost for one in same if one.fineness > found.fineness]
+    trial = settled.found
+    same = [one for one in settled.fitting if (one.method, one.scalar) == (trial.method, trial.scalar)]
+    coarser = [one.cost for one in same if one.fineness > trial.fineness]
     if not coarser:
         return Message("the coarsest tried that is good enough")
     return Message(
-        "good enough, and cheaper by counted work than what is coarser" if found.cost < min(coarser) else "good enough"
+        "good enough, and cheaper by counted work than what is coarser" if trial.cost < min(coarser) else "good enough"
     )
 
 
@@ -331,15 +331,15 @@ def _fitting(found: Trial) -> str:
 
 def _why_scalar(settled: Settled) -> str:
     """By what was measured: the share of rounding, what fewer digits reached, and what more digits cost."""
-    found, fitting = settled.found, settled.fitting
+    trial, fitting = settled.found, settled.fitting
     usual = min((one.cost for one in fitting if one.scalar == FLOAT64), default=None)
-    if found.scalar == EXTENDED and usual is None:
+    if trial.scalar == EXTENDED and usual is None:
         return Message("in float64 every error that was measured, doubled, is too large")
     if not settled.enough:
         return _none(settled)
-    cheaper = usual is not None and found.cost < usual
-    less = Message("it costs less by counted work") if cheaper and found.scalar != FLOAT64 else ""
-    rounding = _rounding(settled.bound) if found.scalar != EXTENDED else ""
+    cheaper = usual is not None and trial.cost < usual
+    less = Message("it costs less by counted work") if cheaper and trial.scalar != FLOAT64 else ""
+    rounding = _rounding(settled.bound) if trial.scalar != EXTENDED else ""
     if rounding and less:
         return Message("[[one]], and [[other]]", one=rounding, other=less)
     return rounding or less or Message("good enough")
@@ -347,7 +347,7 @@ def _why_scalar(settled: Settled) -> str:
 
 def _rounding(bound: Bound) -> str:
     """Nothing where it was not told apart."""
-    arithmetic = next(one for one in bound.shares if one.name == ARITHMETIC)
+    arithmetic = next(share for share in bound.shares if share.name == ARITHMETIC)
     if arithmetic.how is None:
         return ""
     if arithmetic.error <= bound.integrated - arithmetic.error:

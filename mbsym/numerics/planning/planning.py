@@ -170,8 +170,8 @@ def _model_of(tried: Sequence[Tried], factor: float) -> Tried:
 
 def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -> bool:
     """Whether a setting at least as fine was not good enough: what is short is stepped over, whatever slopes say."""
-    same = [one for one in bench.trials if one.method is found.method and one.scalar == found.scalar]
-    return any(one.fineness <= fineness and one.ratio > wanted for one in same)
+    same = [trial for trial in bench.trials if trial.method is found.method and trial.scalar == found.scalar]
+    return any(trial.fineness <= fineness and trial.ratio > wanted for trial in same)
 
 
 def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
@@ -268,34 +268,34 @@ def planned(
     stick = _measured_by(bench, choice, first, goal)
     bench.reference, bench.known = stick.quantities, stick.known
     for _ in range(REPEATS):
-        found = _settled(
+        trial = _settled(
             bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.cost
         )
-        bounds = bounds_of(scene, accuracy, shares_of(bench, found, stick, model))
+        bounds = bounds_of(scene, accuracy, shares_of(bench, trial, stick, model))
         over = _over(bounds)
-        if over <= 1 or too_simple or pins.setting is not None or found.ratio > goal:
+        if over <= 1 or too_simple or pins.setting is not None or trial.ratio > goal:
             break
         goal *= 0.7 / over
     if pins.setting is None:
-        for one in _cheaper(bench, found, stick.known, room, pins):
+        for one in _cheaper(bench, trial, stick.known, room, pins):
             others = bounds_of(scene, accuracy, shares_of(bench, one, stick, model))
             if _over(others) <= 1 or too_simple:
-                found, bounds = one, others
+                trial, bounds = one, others
                 break
     worst = max(bounds, key=lambda one: one.total / one.target)
-    enough = fits(found, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
-    settled = Settled(scene, model, choice, resting, parts, bench, stick, found, pins.kinds, enough, room, worst)
-    more, less = alternatives(bench, found, model.tried, model.taken, accuracy, goal)
+    enough = fits(trial, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
+    settled = Settled(scene, model, choice, resting, parts, bench, stick, trial, pins.kinds, enough, room, worst)
+    more, less = alternatives(bench, trial, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,
         end,
         items_of(settled),
         bounds,
         model.taken.model,
-        found.method.traits.name,
-        found.setting,
-        found.scalar,
-        found.seconds,
+        trial.method.traits.name,
+        trial.setting,
+        trial.scalar,
+        trial.seconds,
         time.perf_counter() - started,
         more,
         less,
@@ -306,7 +306,7 @@ def planned(
 
 def _over(bounds: Sequence[Bound]) -> float:
     """The largest bound as a part of what is tolerable."""
-    return max(one.total / one.target for one in bounds)
+    return max(bound.total / bound.target for bound in bounds)
 
 
 def _cheaper(bench: Bench, found: Trial, known: float, room: float, pins: Pins) -> list[Trial]:
@@ -315,8 +315,8 @@ def _cheaper(bench: Bench, found: Trial, known: float, room: float, pins: Pins) 
     A few, the cheapest first; where ``found`` is not good enough, whatever is.
     """
     least = found.cost / ALIKE if fits(found, known, room) else inf
-    able = [one for one in bench.trials if one.cost < least and fits(one, known, room)]
-    allowed = [one for one in able if pins.scalar in (None, one.scalar)]
+    able = [trial for trial in bench.trials if trial.cost < least and fits(trial, known, room)]
+    allowed = [trial for trial in able if pins.scalar in (None, trial.scalar)]
     return sorted(allowed, key=lambda one: one.cost)[:REPEATS]
 
 
@@ -432,23 +432,23 @@ def _settled(
     found: Trial | None = None
     begun = len(bench.trials)
     stiff = choice.stiff
-    for one in _allowed(bench, model, pins, stiff, many):
+    for contender in _allowed(bench, model, pins, stiff, many):
         spent = sum(trial.cost for trial in bench.trials[begun:])
         if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):
             break
-        watch(f"{one.method.traits.name}, {one.scalar}")
-        if found is None and one.scalar == FLOAT32:
+        watch(f"{contender.method.traits.name}, {contender.scalar}")
+        if found is None and contender.scalar == FLOAT32:
             break  # what float64 does not reach, fewer digits will not
         limit = dearest if found is None else found.cost
-        setting = first_setting(one, first, found, float(bench.times[-1]), bench.spacing)
-        trial = _searched(bench, one, setting, goal, limit)
+        setting = first_setting(contender, first, found, float(bench.times[-1]), bench.spacing)
+        trial = _searched(bench, contender, setting, goal, limit)
         if trial is not None and (found is None or trial.cost < found.cost):
             found = trial
     if found is None and pins.scalar is None:
-        for one in in_more_digits():
-            if pins.method in (None, one.method.traits.name):
-                watch(f"{one.method.traits.name}, {one.scalar}")
-                found = found or _searched(bench, one, Setting(first), goal, inf)
+        for in_more_digit in in_more_digits():
+            if pins.method in (None, in_more_digit.method.traits.name):
+                watch(f"{in_more_digit.method.traits.name}, {in_more_digit.scalar}")
+                found = found or _searched(bench, in_more_digit, Setting(first), goal, inf)
     if found is None:
         if not bench.trials:
             raise Unusable("no method comes to the end of this motion")
@@ -465,11 +465,11 @@ def _allowed(bench: Bench, model: Model, pins: Pins, stiff: bool, many: bool) ->
     found = list(contenders(bench.dynamics, model, bench.finest_target, stiff, many))
     if pins.scalar == EXTENDED:
         return list(in_more_digits())
-    return [one for one in found if pins.scalar in (None, one.scalar)]
+    return [contender for contender in found if pins.scalar in (None, contender.scalar)]
 
 
-def _searched(bench: Bench, one: Contender, setting: Setting, goal: float, limit: float) -> Trial | None:
+def _searched(bench: Bench, contender: Contender, setting: Setting, goal: float, limit: float) -> Trial | None:
     try:
-        return searched(bench, one.method, one.scalar, setting, goal, limit)
+        return searched(bench, contender.method, contender.scalar, setting, goal, limit)
     except (Unusable, Failure):
         return None

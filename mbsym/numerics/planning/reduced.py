@@ -91,15 +91,15 @@ def resting(scenario: Scenario, among: Collection[str] | None = None) -> Reducti
 
 def _candidates(scenario: Scenario) -> dict[str, Expression]:
     """Coordinates that start without velocity, with their positions as the description gives them."""
-    found = {}
+    candidates = {}
     for name, position, velocity in zip(
         scenario.system.coordinates, scenario.positions, scenario.velocities, strict=True
     ):
         if velocity == 0:
             form = linear_form(scenario.typed[name]) if name in scenario.typed else None
             exact = form is not None and not form.coefficients
-            found[name] = scenario.typed[name] if exact else number(position)
-    return found
+            candidates[name] = scenario.typed[name] if exact else number(position)
+    return candidates
 
 
 class _Held(Specialised):
@@ -258,10 +258,10 @@ def reduced(dynamics: Dynamics) -> Reduced | None:
         return None
     try:
         unpushed = _unpushed(dynamics)
-        found = resting(dynamics.scenario, among=unpushed) if unpushed else None
-        if found is None:
+        reduction = resting(dynamics.scenario, among=unpushed) if unpushed else None
+        if reduction is None:
             return None
-        smaller = Reduced(dynamics, found, Dynamics(found.scenario))
+        smaller = Reduced(dynamics, reduction, Dynamics(reduction.scenario))
         # Where what is left moves no mass, the whole system says when and where.
         assert smaller.dynamics.right_hand_side is not None
         return smaller
@@ -310,10 +310,10 @@ class _Completing:
         if dynamics is not self._taken.whole:
             raise ValueError("this method was made for the dynamics of another scenario")
         inner = self._inner.start(self._taken.dynamics, setting, scalar)
-        found = _Whole(inner, self._taken)
+        whole = _Whole(inner, self._taken)
         if initial is not None or at:
-            found.restart(at, found.state if initial is None else initial)
-        return found
+            whole.restart(at, whole.state if initial is None else initial)
+        return whole
 
 
 @dataclass(frozen=True)

@@ -231,26 +231,26 @@ class _Rows:
 def _places(first: Solution, second: Solution, end: float, rows: _Rows, most: int) -> Iterator[_Place]:
     """In order from 0 to the end."""
     now = 0.0
-    one, other = _step(first, second=False), _step(second, second=True)
+    piecewise, other = _step(first, second=False), _step(second, second=True)
     for _ in range(most):
-        until = min(float(one.end), float(other.end), end)
+        until = min(float(piecewise.end), float(other.end), end)
         times = [*(now + share * (until - now) for share in SHARES), until]
         some = rows.among(now, until)
-        yield sorted({*times, *some}) if some else times, one, other, True
+        yield sorted({*times, *some}) if some else times, piecewise, other, True
         if until >= end:
             return
         now = until
-        one = one if float(one.end) > now else _step(first, second=False)
+        piecewise = piecewise if float(piecewise.end) > now else _step(first, second=False)
         other = other if float(other.end) > now else _step(second, second=True)
     # One of them, or both, may be ahead of what was looked at.
-    ahead = sorted({now, min(float(one.end), end), min(float(other.end), end), end})
+    ahead = sorted({now, min(float(piecewise.end), end), min(float(other.end), end), end})
     ahead = sorted({*ahead, *np.linspace(ahead[-2], end, BLOCKS + 1).tolist()})
     for after, until in pairwise(ahead):
         count = max(16, int(most * len(SHARES) * (until - after) / (end - now)))
         inside = uneven(after, until, count)
         every = np.union1d(np.append(inside[(inside > after) & (inside < until)], until), rows.among(after, until))
         for part in np.array_split(every, min(OFTEN, len(every))):  # whoever watches may have seen enough
-            yield part, _at(first, one, part, second=False), _at(second, other, part, second=True), False
+            yield part, _at(first, piecewise, part, second=False), _at(second, other, part, second=True), False
 
 
 #: (times, the first, the second, whether steps are followed): then the two are the steps there, else their states.

@@ -226,7 +226,7 @@ class Arithmetic:
         self.compensations: dict[str, Compensation] = {}
         for q in found:
             codes[q.name.replace(" ", "_")] = self._code(q, fresh, names)
-        better = {**codes, **{name: one.code for name, one in self.compensations.items()}}
+        better = {**codes, **{name: compensation.code for name, compensation in self.compensations.items()}}
         chosen = {FLOAT32: codes, FLOAT64: better}
         if compiled:
             self._kernels = {scalar: kernels(chosen[scalar], scalar) for scalar in FULL}

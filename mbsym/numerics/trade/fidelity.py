@@ -96,9 +96,9 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     if system.motion:
         label = Message("linearised")
         yield Variant(label, Message("all that is not linear in the deviation"), LinearisedDynamics(scenario), -1)
-    found = resting(scenario)
-    if found is not None:
-        yield _reduced(scenario, found)
+    reduction = resting(scenario)
+    if reduction is not None:
+        yield _reduced(scenario, reduction)
 
 
 def _expandable(scenario: Scenario, fields: Sequence[NewtonianGravity]) -> bool:

@@ -366,8 +366,8 @@ def _extrapolated(search: _Search) -> Reference:
         differences = _second(search, times, exact)
         knots = np.array([in_doubles(state) for state in exact]).T
     places, states, missed = _between(search, np.array(times), knots)
-    told = Message("extrapolation, [[bits]] bits", bits=BITS)
-    return search.finished(places, states, np.maximum(differences, missed), told, EXTRAPOLATION)
+    message = Message("extrapolation, [[bits]] bits", bits=BITS)
+    return search.finished(places, states, np.maximum(differences, missed), message, EXTRAPOLATION)
 
 
 def _knots(search: _Search) -> tuple[list[float], list[list[arb]]]:
@@ -445,23 +445,23 @@ def _implicit(search: _Search) -> Reference:
 
 def _agreeing(search: _Search, first: _Way, second: _Way, scalar: str, way: str) -> Reference:
     """The first of two methods as a reference, by how far the second one differs over the whole interval."""
-    (one, fine), (other, rough) = first, second
+    (method, fine), (other, rough) = first, second
     try:
         with np.errstate(all="ignore"):
             run, beside = (m.start(search.dynamics, setting, scalar) for m, setting in (first, second))
-            names = (one.traits.name, other.traits.name)
+            names = (method.traits.name, other.traits.name)
             search.next_of([(run, names[0], scalar), (beside, names[1], scalar)], looked_at=True)
-            found = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
-            places = np.union1d(found.times, uneven(0.0, search.end, PLACES))
+            comparison = compared(beside, run, search.end, search.names, search.usual, watch=search.reached)
+            places = np.union1d(comparison.times, uneven(0.0, search.end, PLACES))
             states, beside = (_filled(search, m, s, scalar, places) for m, s in (first, second))
             missed = np.max(np.abs(states - beside), axis=1).astype(float)
     except Ended as ended:
         raise ended.breakdown from None
-    differences = np.maximum(missed, [q.largest for q in found.quantities])
+    differences = np.maximum(missed, [q.largest for q in comparison.quantities])
     text = "[[methods]] in [[scalar]], tolerances [[tolerances]]"
-    methods, scalars = enumerated((one.traits.name, other.traits.name)), Message(scalar)
-    told = Message(text, methods=methods, scalar=scalars, tolerances=f"{fine.tolerance:g}, {rough.tolerance:g}")
-    return search.finished(places, states, differences, told, way)
+    methods, scalars = enumerated((method.traits.name, other.traits.name)), Message(scalar)
+    message = Message(text, methods=methods, scalar=scalars, tolerances=f"{fine.tolerance:g}, {rough.tolerance:g}")
+    return search.finished(places, states, differences, message, way)
 
 
 _Way = tuple[Method, Setting]

@@ -262,8 +262,8 @@ class _Judge:
             h, kinetic = self.energy(np.vstack([times, states]))
             change = np.max(np.abs(h - h[0]))
             scale = float(max(np.max(np.abs(kinetic)), change) or abs(h[0]) or 1.0)
-        kept, _ = energy_standing(self.dynamics, visited(times, states, h))
-        return (h[0] if kept is Standing.PROVED else h), scale
+        standing, _ = energy_standing(self.dynamics, visited(times, states, h))
+        return (h[0] if standing is Standing.PROVED else h), scale
 
     def _drift(self, times: Any, states: Any) -> float:
         with np.errstate(all="ignore"):

@@ -111,18 +111,18 @@ def hamilton(system: System, terms: int) -> Hamilton:
     spare = denominator_names(system, DENOMINATORS)
     ring = ring_of(system, terms, moving=tuple(momenta.values()), fixed=spare)
     scene = Scene(system, ring, ring_environment(system, ring), ring)
-    found = energies.energy(scene)
+    energy = energies.energy(scene)
     values = [ring.generator("prescribed", momenta[name]) for name in names]
-    linear = [x.polynomial for x in found.A1]
+    linear = [x.polynomial for x in energy.A1]
     free = [p - a for p, a in zip(values, linear, strict=True)]
-    velocities = _solved(ring, found.A2.polynomials, free)
+    velocities = _solved(ring, energy.A2.polynomials, free)
     half = ring.number(Fraction(1, 2))
     quadratic = sum((ring.times(a, b) for a, b in zip(free, velocities, strict=True)), ring.zero)
-    whole = ring.reduce(ring.times(half, quadratic) - found.A0.polynomial - found.force_function.polynomial)
+    whole = ring.reduce(ring.times(half, quadratic) - energy.A0.polynomial - energy.force_function.polynomial)
     applied = generalized_forces(scene)
     back = {ring.index("velocity", name): x for name, x in zip(names, velocities, strict=True)}
     rates = [ring.reduce(ring.substitute(applied[name], back) - ring.derivative(whole, name)) for name in names]
-    in_velocities = [ring.velocity_derivative(found.kinetic_energy.polynomial, name) for name in names]
+    in_velocities = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
     return Hamilton(
         momenta=tuple(momenta[name] for name in names),
         momenta_in_velocities=column(ring, in_velocities),
@@ -141,14 +141,14 @@ def routh(system: System, terms: int) -> Routh:
     all_momenta = momentum_names(system)
     ring = ring_of(system, terms, fixed=(*all_momenta.values(), *denominator_names(system, DENOMINATORS)))
     scene = Scene(system, ring, ring_environment(system, ring), ring)
-    found = energies.energy(scene)
+    energy = energies.energy(scene)
     applied = generalized_forces(scene)
-    ignored = tuple(name for name in system.coordinates if name in found.cyclic and ring.vanishes(applied[name]))
+    ignored = tuple(name for name in system.coordinates if name in energy.cyclic and ring.vanishes(applied[name]))
     if any(ring.dependencies(applied[name], ignored) for name in system.coordinates):
         ignored = tuple(x for x in ignored if not any(ring.dependencies(q, (x,)) for q in applied.values()))
     left = tuple(name for name in system.coordinates if name not in ignored)
     if not ignored:
-        cyclic = ", ".join(name for name in found.cyclic if name in system.coordinates)
+        cyclic = ", ".join(name for name in energy.cyclic if name in system.coordinates)
         raise NothingIgnored(
             Message("cyclic are [[names]], but other forces act on them, or depend on them", names=cyclic)
             if cyclic
@@ -157,14 +157,14 @@ def routh(system: System, terms: int) -> Routh:
     if not left:
         raise NothingIgnored("all coordinates are cyclic, so that no other is left")
     beta = [ring.generator("parameter", all_momenta[name]) for name in ignored]
-    kinetic = found.kinetic_energy.polynomial
+    kinetic = energy.kinetic_energy.polynomial
     at_rest = {ring.index("velocity", name): ring.zero for name in ignored}
     momenta = [ring.velocity_derivative(kinetic, name) for name in ignored]
     own = [[ring.velocity_derivative(p, name) for name in ignored] for p in momenta]
     rest = [b - ring.substitute(p, at_rest) for b, p in zip(beta, momenta, strict=True)]
     rates = _solved(ring, own, rest)
     back = {ring.index("velocity", name): x for name, x in zip(ignored, rates, strict=True)}
-    lagrangian = ring.substitute(kinetic, back) + ring.substitute(found.force_function.polynomial, back)
+    lagrangian = ring.substitute(kinetic, back) + ring.substitute(energy.force_function.polynomial, back)
     function = ring.reduce(lagrangian - sum((ring.times(b, c) for b, c in zip(beta, rates, strict=True)), ring.zero))
     slopes = [ring.velocity_derivative(function, name) for name in left]
     forcing = []
@@ -247,9 +247,9 @@ def brackets(system: System, canonical: Hamilton, integrals: Sequence[Integral])
     for q, p in zip(system.coordinates, canonical.momenta, strict=True):
         own["cyclic momentum", q] = ring.generator("prescribed", p)
     formulas = []
-    for one in integrals:
-        known = own.get((one.kind, one.of))
-        formulas.append(ring.reduce(carry(one.formula.polynomial)) if known is None else known)
+    for integral in integrals:
+        known = own.get((integral.kind, integral.of))
+        formulas.append(ring.reduce(carry(integral.formula.polynomial)) if known is None else known)
     rows = [[poisson_bracket(system, canonical, a, b) for b in formulas] for a in formulas]
     return Brackets(tuple(one.name for one in integrals), column(ring, formulas), Matrix.of(ring, rows))
 

@@ -134,11 +134,11 @@ def check_brackets(found: Brackets, canonical: Hamilton, scene: Scene) -> Check:
 def momenta_at(oracle: Oracle, names: Sequence[str]) -> list[Scalar]:
     """dT/dq' of some coordinates, by differences of T, which is quadratic in q'."""
     half = oracle.state.numbers.number(Fraction(1, 2))
-    found = []
+    scalars = []
     for name in names:
         there, back = (_moved(oracle, velocity_name(name), step).kinetic_energy for step in (1, -1))
-        found.append((there - back) * half)
-    return found
+        scalars.append((there - back) * half)
+    return scalars
 
 
 def _moved(oracle: Oracle, name: str, step: int) -> Oracle:

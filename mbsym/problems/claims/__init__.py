@@ -100,7 +100,7 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":
         return examined_integral(derived, claim, about, in_parameters(derived, claimed))
-    found = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
+    result = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
     if claim.kind == "equation of motion":
-        return examined_equation(derived, found, symbols, claimed)
-    return found
+        return examined_equation(derived, result, symbols, claimed)
+    return result

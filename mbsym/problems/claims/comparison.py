@@ -94,14 +94,14 @@ def _up_to_multiple(
     multiple = closest_multiple(derived, result.claim, claimed, truth)
     if multiple is None:
         return differing(derived, result, symbols, own)
-    found = replace(result, factor=multiple.factor, remark=multiple.remark)
+    claim_result = replace(result, factor=multiple.factor, remark=multiple.remark)
     outcome, where = multiple.verdict
     if outcome == Outcome.EXACT:
-        return replace(found, outcome=Outcome.FACTOR, where=where)
+        return replace(claim_result, outcome=Outcome.FACTOR, where=where)
     if outcome in (Outcome.NUMERICAL, Outcome.UNDECIDED):
         difference = Formula(derived.ring, multiple.difference)
-        return replace(found, outcome=outcome, where=where, difference=difference)
-    return differing(derived, replace(found, remark=""), symbols, multiple.difference)
+        return replace(claim_result, outcome=outcome, where=where, difference=difference)
+    return differing(derived, replace(claim_result, remark=""), symbols, multiple.difference)
 
 
 def _same_equations(derived: Derived, difference: Polynomial) -> bool:
@@ -133,9 +133,9 @@ def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynom
     """The difference by products of velocities (a characteristic polynomial by powers), equal ones together."""
     ring = derived.ring
     if claim.variable:
-        one, time = Formula(ring, ring.one), ring.index("time", "t")
+        formula, time = Formula(ring, ring.one), ring.index("time", "t")
         powers = {place[time]: coefficient for place, coefficient in by_place(ring, claim, difference)}
-        return tuple(Part(one, Formula(ring, powers[power]), power) for power in sorted(powers, reverse=True))
+        return tuple(Part(formula, Formula(ring, powers[power]), power) for power in sorted(powers, reverse=True))
     split = list(by_motion(ring, difference))
     if len(split) > MOST_PARTS:
         return ()
@@ -151,12 +151,12 @@ def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynom
         else:
             groups.append((product, coefficient))
     slopes = _slopes(derived, claim, symbols)
-    found = []
+    parts = []
     for combined, coefficient in groups:
         same = _same_as(coefficient, values)
         repairs = () if same else _repairs(ring, combined, coefficient, slopes, values)
-        found.append(Part(Formula(ring, combined), Formula(ring, coefficient), None, same, repairs))
-    return tuple(found)
+        parts.append(Part(Formula(ring, combined), Formula(ring, coefficient), None, same, repairs))
+    return tuple(parts)
 
 
 def _values(derived: Derived, symbols: Symbols, expressions: list[Expression]) -> dict[str, Polynomial]:
@@ -180,15 +180,15 @@ def _same_as(coefficient: Polynomial, values: Mapping[str, Polynomial]) -> str:
 def _slopes(derived: Derived, claim: Claim, symbols: Symbols) -> dict[str, Polynomial]:
     """What stands before each abbreviation in the claim, for those that enter it linearly."""
     scene = scene_of_claims(derived)
-    found = {}
+    slopes = {}
     for name in symbols.values:
         if name not in names(claim.equals):
             continue
         slope = differentiate(claim.equals, name)
         if name in names(slope):
             continue
-        found[name] = in_parameters(derived, symbols.in_scene(scene)(symbols.opened(slope)))
-    return found
+        slopes[name] = in_parameters(derived, symbols.in_scene(scene)(symbols.opened(slope)))
+    return slopes
 
 
 def _repairs(

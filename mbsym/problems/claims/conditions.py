@@ -84,9 +84,9 @@ class Need:
 def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResult:
     regions = list(forms(derived, claim))
     for region in regions:
-        found = trivial(region, wanted_of(region, claim), result) or one_of_problem_6(region, claim, result)
-        if found is not None:
-            return found
+        claim_result = trivial(region, wanted_of(region, claim), result) or one_of_problem_6(region, claim, result)
+        if claim_result is not None:
+            return claim_result
     verdict = derived.stability.verdict
     never = verdict.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
     needs = [] if never else [_need(region, claim) for region in regions]
@@ -108,9 +108,9 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         equal = (said(Said.STABLE_WITH_EQUALITY),) if claim.relation in _STRICT and example.at_equality else ()
         return _told(result, Outcome.FAILS, said(code), *equal, *for_exponential, example=example)
     if never:
-        told = with_theorem(verdict.word, verdict.theorems)
+        message = with_theorem(verdict.word, verdict.theorems)
         return _told(
-            result, Outcome.UNDECIDED, said(Said.NEVER_STABLE, told, verdict.word is Word.UNSTABLE_BUT_BORDERS)
+            result, Outcome.UNDECIDED, said(Said.NEVER_STABLE, message, verdict.word is Word.UNSTABLE_BUT_BORDERS)
         )
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
@@ -127,11 +127,11 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
 
 
 def _need(region: Region, claim: Claim) -> Need:
-    wanted, pieces = wanted_of(region, claim), pieces_of(region, claim)
-    closed = _closed(wanted)
+    inequality, pieces = wanted_of(region, claim), pieces_of(region, claim)
+    closed = _closed(inequality)
     rows = region.without_roots(_as_printed(region, claim))
     edges = [tuple(map(_closed, row)) for row in rows]
-    what, _ = _found_among(region, wanted, ("sufficient",))
+    what, _ = _found_among(region, inequality, ("sufficient",))
     everywhere = beyond = but_borders = drifts = False
     exponential: tuple[str, ...] | None = None
     bodies_used = False
@@ -142,14 +142,14 @@ def _need(region: Region, claim: Claim) -> Need:
         everywhere = without is Word.UNSTABLE
         but_borders = but_borders or without is Word.UNSTABLE_BUT_BORDERS
         beyond = everywhere or (
-            closed is not wanted
+            closed is not inequality
             and _unstable_without(region, edges, bodies) is Word.UNSTABLE
             and not is_certain(region.signs_of_bodies, closed)  # else there is nothing beyond
         )
-        if not everywhere and (beyond or wanted.relation == "!="):
+        if not everywhere and (beyond or inequality.relation == "!="):
             border = region.on_border(pieces[-1], list(map(_closed, pieces[:-1])))
             everywhere, drifts = border.counted is Word.UNSTABLE, Flaw.HERE in border.flawed
-        exponential = region.exponential(wanted, bodies) if exponential is None else exponential
+        exponential = region.exponential(inequality, bodies) if exponential is None else exponential
         bodies_used = bodies
         if everywhere or beyond or exponential is not None:
             break
@@ -159,8 +159,8 @@ def _need(region: Region, claim: Claim) -> Need:
     return Need(everywhere, beyond, but_borders, because, exponential, "" if everywhere or beyond else note, drifts)
 
 
-def _closed(wanted: Inequality) -> Inequality:
-    return replace(wanted, relation=">=") if wanted.relation == ">" else wanted
+def _closed(inequality: Inequality) -> Inequality:
+    return replace(inequality, relation=">=") if inequality.relation == ">" else inequality
 
 
 def _unstable_without(region: Region, rows: Sequence[Sequence[Inequality]], bodies: bool) -> Word:
@@ -169,7 +169,7 @@ def _unstable_without(region: Region, rows: Sequence[Sequence[Inequality]], bodi
     words = [
         region.without(row[0], bodies).word
         if len(row) == 1
-        else region.verdict([one.negated() for one in row], bodies).word
+        else region.verdict([inequality.negated() for inequality in row], bodies).word
         for row in open_ones
     ]
     worst = (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
@@ -195,8 +195,8 @@ def _but_for_equality(
     """A strict condition without which, but for the case of equality, the motion is unstable."""
     if example is not None:
         also = Said.STABLE_IN_FIRST_WITH_EQUALITY if example.word in IN_FIRST else Said.STABLE_WITH_EQUALITY
-        found = (said(Said.UNSTABLE_BEYOND), *further, said(also))
-        return _told(result, Outcome.BORDERS, need.because, *found, example=example)
+        remarks = (said(Said.UNSTABLE_BEYOND), *further, said(also))
+        return _told(result, Outcome.BORDERS, need.because, *remarks, example=example)
     region = Region(derived, claim, own=False)
     singular = region.makes_stiffness_singular(wanted_of(region, claim).polynomial)
     if singular and derived.balance.exactly_linear:
@@ -215,10 +215,10 @@ def _apart(
 ) -> ClaimResult:
     """p != 0, which fails on a border only, at which no parameters are known that make the motion stable."""
     for region in regions:
-        wanted = wanted_of(region, claim)
-        if not region.makes_stiffness_singular(wanted.polynomial):
+        inequality = wanted_of(region, claim)
+        if not region.makes_stiffness_singular(inequality.polynomial):
             continue
-        what, _ = _found_among(region, wanted, ("sufficient",))
+        what, _ = _found_among(region, inequality, ("sufficient",))
         because = () if what is None else (what,)
         if derived.balance.exactly_linear:
             return _told(result, Outcome.EXACT, *because, said(Said.GROWS_WITH_EQUALITY))
@@ -255,7 +255,7 @@ def pieces_of(region: Region, claim: Claim) -> tuple[Inequality, ...]:
     """
     printed = _as_printed(region, claim)
     rows = region.without_roots(printed)
-    return tuple(one for row in rows for one in row) if all(len(row) == 1 for row in rows) else (printed,)
+    return tuple(inequality for row in rows for inequality in row) if all(len(row) == 1 for row in rows) else (printed,)
 
 
 def _as_printed(region: Region, claim: Claim) -> Inequality:
@@ -269,7 +269,7 @@ def _as_printed(region: Region, claim: Claim) -> Inequality:
     return Inequality(region.cleared(left - right), {"<": ">", "<=": ">="}.get(claim.relation, claim.relation))
 
 
-def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimResult | None:
+def trivial(region: Region, inequality: Inequality, result: ClaimResult) -> ClaimResult | None:
     """What the declared signs, assumptions and the inertias of bodies decide by themselves."""
     for signs, what in (
         (region.signs, Message("the declared signs and assumptions")),
@@ -278,9 +278,9 @@ def trivial(region: Region, wanted: Inequality, result: ClaimResult) -> ClaimRes
             Message("the declared signs and assumptions and the triangle inequalities of the inertias"),
         ),
     ):
-        if is_certain(signs, wanted):
+        if is_certain(signs, inequality):
             return _told(result, Outcome.EXACT, said(Said.FOLLOWS_FROM_SIGNS, what))
-        if is_certain(signs, wanted.negated()):
+        if is_certain(signs, inequality.negated()):
             return _told(result, Outcome.FAILS, said(Said.NEVER_HOLDS, what))
     return None
 
@@ -289,13 +289,13 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
     """The claim without a role that is a condition of problem 6, perhaps but for the case of equality."""
     if claim.role == NECESSARY:
         return None
-    wanted = wanted_of(region, claim)
-    what, equality = _found_among(region, wanted, ())
+    inequality = wanted_of(region, claim)
+    what, equality = _found_among(region, inequality, ())
     if what is None:
         return None
     if not equality:
         return _told(result, Outcome.EXACT, what)
-    needed = region.without(wanted).word is Word.UNSTABLE or region.on_border(wanted).counted is Word.UNSTABLE
+    needed = region.without(inequality).word is Word.UNSTABLE or region.on_border(inequality).counted is Word.UNSTABLE
     outcome = Outcome.EXACT if needed else Outcome.BORDERS
     label, whose, note = what.data
     assert isinstance(note, str)
@@ -307,9 +307,9 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
 def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[Remark | None, bool]:
     """Which condition it is, and whether it differs in the case of equality; None where it is none of them."""
     for same in (_proportional, partial(_same_condition, region.signs)):
-        for what, found in region.conditions(left_out):
-            if (wanted.relation == "!=") == (found.relation == "!=") and same(wanted, found):
-                return what, wanted.relation != found.relation
+        for what, inequality in region.conditions(left_out):
+            if (wanted.relation == "!=") == (inequality.relation == "!=") and same(wanted, inequality):
+                return what, wanted.relation != inequality.relation
     return None, False
 
 
@@ -354,18 +354,18 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
             if bodies and region.signs_of_bodies is region.signs:
                 continue
             note = _BODIES if bodies else ""
-            found = region.verdict(conditions, bodies)
-            if found.stable:
+            verdict = region.verdict(conditions, bodies)
+            if verdict.stable:
                 return _told(
                     result,
                     Outcome.EXACT,
-                    said(Said.WITH_IT, number, note, with_theorem(found.word, found.theorems)),
+                    said(Said.WITH_IT, number, note, with_theorem(verdict.word, verdict.theorems)),
                 )
-            if found.word in (Word.GYROSCOPIC, Word.CRITICAL):
+            if verdict.word in (Word.GYROSCOPIC, Word.CRITICAL):
                 open_words = (said(Said.FIRST_WITH_IT, number),)
-            inner = region.verdict(strict, bodies) if strict != conditions else found
+            inner = region.verdict(strict, bodies) if strict != conditions else verdict
             if inner.stable and strict != conditions:
-                told = with_theorem(inner.word, inner.theorems)
+                message = with_theorem(inner.word, inner.theorems)
                 borders = _on_borders(region, conditions)
                 if borders is not None:
                     whole = weakest([inner, *borders])
@@ -374,38 +374,38 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
                         Outcome.EXACT,
                         said(Said.WITH_IT, number, note, with_theorem(whole.word, whole.theorems)),
                     )
-                inside = said(Said.WITH_IT, number, joined((*filter(None, (note, _BUT_EQUALITY)), ","), ""), told)
+                inside = said(Said.WITH_IT, number, joined((*filter(None, (note, _BUT_EQUALITY)), ","), ""), message)
                 return _told(result, Outcome.UNDECIDED, inside, _with_equality(derived, claim))
     by_integrals = _by_integrals(derived, claim, together)
     if by_integrals is not None:
-        told = with_theorem(by_integrals.word, by_integrals.theorems)
-        return _told(result, Outcome.EXACT, said(Said.WITH_IT, number, "", told))
+        message = with_theorem(by_integrals.word, by_integrals.theorems)
+        return _told(result, Outcome.EXACT, said(Said.WITH_IT, number, "", message))
     remarks = open_words or (said(Said.NOT_PROVED_SUFFICIENT, number), _tried(tried, Said.NONE_UNSTABLE))
     return _told(result, Outcome.UNDECIDED, *remarks)
 
 
 def _on_borders(region: Region, conditions: Sequence[Inequality]) -> list[Verdict] | None:
     """The verdicts where one of p >= 0 is an equality and the others hold; None where one is not stable or unknown."""
-    found = []
-    for one in conditions:
-        if one.relation == ">=":
-            found.append(region.on_border(one, [other for other in conditions if other is not one]))
-            if not found[-1].counted.stable:
+    on_borders = []
+    for condition in conditions:
+        if condition.relation == ">=":
+            on_borders.append(region.on_border(condition, [other for other in conditions if other is not condition]))
+            if not on_borders[-1].counted.stable:
                 return None
-    return found
+    return on_borders
 
 
 def _with_equality(derived: Derived, claim: Claim) -> Remark:
     """What is known where both sides are equal: nothing in general, perhaps something at the given values."""
-    given = derived.trials.given
-    if given is not None and claim.right is not None:
+    trial = derived.trials.given
+    if trial is not None and claim.right is not None:
         symbols, sides = Symbols.of(derived), [claim.equals, claim.right]
         try:
-            lower = symbols.lowering(derived.trials.numbers, given.values, symbols.occurring(sides))
+            lower = symbols.lowering(derived.trials.numbers, trial.values, symbols.occurring(sides))
             equal = lower(symbols.opened(sides[0])) == lower(symbols.opened(sides[1]))
         except (*NOT_THERE, KeyError):
             equal = False
-        verdict = derived.trials.looked_into(given) if equal else None
+        verdict = derived.trials.looked_into(trial) if equal else None
         if verdict is not None and not verdict.word.open:
             return said(Said.EQUAL_AT_VALUES, with_theorem(verdict.word, verdict.theorems))
     return said(Said.EQUALITY_OPEN)
@@ -449,7 +449,7 @@ def _stable_words(derived: Derived) -> tuple[Word, ...]:
     """
     parts = derived.stability.subsystems
     verdicts = chain((part.theory.verdict for part in parts), (case.verdict for x in parts for case in x.theory.cases))
-    drift = any(Flaw.CYCLIC in one.flawed for one in verdicts)
+    drift = any(Flaw.CYCLIC in verdict.flawed for verdict in verdicts)
     but_drift = (Word.ASYMPTOTIC_BUT_CYCLIC, Word.STABLE_BUT_CYCLIC)
     stable = (word for word in Word if word.stable and (drift or word not in but_drift))
     # Under constraints on velocities there is no other word for a stable first approximation.

@@ -76,12 +76,12 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if derived.system.speeds:
         from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
 
-        found = in_speeds.examined(derived, claim, about)
+        result = in_speeds.examined(derived, claim, about)
     else:
-        found = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
-    if not found.refuted or claim.kind in ("mass matrix", "coefficient") or found.derived is None:
-        return found
-    return _on_constraints(derived, found, in_parameters(derived, claimed - found.derived.polynomial))
+        result = examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
+    if not result.refuted or claim.kind in ("mass matrix", "coefficient") or result.derived is None:
+        return result
+    return _on_constraints(derived, result, in_parameters(derived, claimed - result.derived.polynomial))
 
 
 # --- along the motion ---
@@ -134,11 +134,11 @@ def _equation(derived: Derived, result: ClaimResult) -> ClaimResult:
         return replace(result, outcome=Outcome.UNDECIDED, remark=NOTHING)
     equation = result.claim.kind == "equation of motion"
     what = "the claimed expression" if equation else "derived - claimed"
-    found = _vanishing(derived, along, result, x, what)
+    claim_result = _vanishing(derived, along, result, x, what)
     slopes = along.along_speeds([x.derivative(u.rate_index) for u in form.speeds])
-    if found.holds and equation and all(form.vanishes(slope) is True for slope in slopes):
-        return replace(found, remark=FROM_CONSTRAINTS) if x == claimed else found
-    return found
+    if claim_result.holds and equation and all(form.vanishes(slope) is True for slope in slopes):
+        return replace(claim_result, remark=FROM_CONSTRAINTS) if x == claimed else claim_result
+    return claim_result
 
 
 def _polynomial(derived: Derived, result: ClaimResult) -> Polynomial:
@@ -150,7 +150,7 @@ def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Pol
     """Whether x = 0 along every motion: proved, verified at states, or refuted by one."""
     ring = derived.ring
     found = along.values(x)
-    wrong = next(((one, value) for one, value in found if is_certain(value)), None)
+    wrong = next(((on_manifold, value) for on_manifold, value in found if is_certain(value)), None)
     if wrong is not None and not derived.system.relations:
         with ctx.workprec(PRECISION):
             return replace(result, outcome=Outcome.FAILS, counterexample=_example(derived, *wrong, what))
@@ -165,9 +165,9 @@ def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Pol
     return replace(result, outcome=Outcome.NUMERICAL, remark="at exact states on the constraints")
 
 
-def _example(derived: Derived, one: OnManifold, value: Any, what: str) -> Counterexample:
+def _example(derived: Derived, on_manifold: OnManifold, value: Any, what: str) -> Counterexample:
     """The state, in decimals, and what does not vanish there."""
-    state, system = one.enclosed.state, derived.system
+    state, system = on_manifold.enclosed.state, derived.system
     names = [*system.parameter_names, *system.coordinates, *system.velocities]
     at = [(name, shown(state.values[name], DIGITS_SHOWN)) for name in names if name in state.values]
     return Counterexample(tuple(at), ((what, shown(arb(value), DIGITS_SHOWN)),))
@@ -198,11 +198,11 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
     Raises SingularPoint where these are not determined, NoClosedForm where the state does not keep the constraints.
     """
     names = [tied.names[i] for i in tied.independent]
-    found = constrained_programs(system, ring, [(name.constraint, name.component) for name in names])
-    n, m, program = len(system.coordinates), len(names), found.tree.program
-    nodes = [x for row in found.tree.mass_matrix for x in row] + [*found.tree.forcing]
-    nodes += [x for row in found.jacobian for x in row] + [*found.acceleration, *found.velocity]
-    nodes += [program.zero if x is None else x for x in found.position]
+    programs = constrained_programs(system, ring, [(name.constraint, name.component) for name in names])
+    n, m, program = len(system.coordinates), len(names), programs.tree.program
+    nodes = [x for row in programs.tree.mass_matrix for x in row] + [*programs.tree.forcing]
+    nodes += [x for row in programs.jacobian for x in row] + [*programs.acceleration, *programs.velocity]
+    nodes += [program.zero if x is None else x for x in programs.position]
     values = [arb(x) for x in program.evaluate(nodes, state.values, state.numbers)]
     parts = iter(values)
     mass = [list(islice(parts, n)) for _ in range(n)]

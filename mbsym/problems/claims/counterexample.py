@@ -124,8 +124,8 @@ def completed(
     for symbol in system.notation:
         values[symbol.name] = Lowering(numbers, values)(symbol.value)
     lower = Lowering(numbers, values)
-    for one in system.assumptions:
-        if not holds(lower(one.left) - lower(one.right), one.relation):
+    for assumption in system.assumptions:
+        if not holds(lower(assumption.left) - lower(assumption.right), assumption.relation):
             raise SingularPoint("an assumption does not hold")
     exact = {name: rationals.fraction(x) for name, x in values.items() if isinstance(x, fmpq)} | dict(free)
     if not all(_is_body(body, exact) for body in system.bodies):
@@ -327,12 +327,12 @@ class Trials:
             return
         for root in roots:
             try:
-                found = self._made_of(dict(free) | {name: rationals.fraction(root)})
+                trial = self._made_of(dict(free) | {name: rationals.fraction(root)})
             except (*NOT_THERE, KeyError):
                 continue
-            if found is not None:
-                found.special = True
-                yield found
+            if trial is not None:
+                trial.special = True
+                yield trial
 
     def once(self, place: str, find: Callable[[], Tried]) -> Tried:
         """What ``find`` gives for the conditions of one place, which are taken together and searched for once."""

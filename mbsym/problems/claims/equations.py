@@ -56,11 +56,11 @@ class Dynamics:
         """Of a tree M u' - f = 0, and s' - g = 0 of those s' that are no speeds themselves; in declared parameters."""
         form, ring = derived.form, derived.ring
         own = {u.index for u in form.speeds}
-        kept = [s for s in form.positions if s.rate_index not in own]
+        variables = [s for s in form.positions if s.rate_index not in own]
         rows = [x.polynomial for x in derived.equations.equalities(derived.system.coordinates)]
-        rows += [ring.context.gen(s.rate_index) - form.rates[s.name] for s in kept]
-        names = (*(without_velocity(u.name) for u in form.speeds), *(s.name for s in kept))
-        places = tuple(x.rate_index for x in (*form.speeds, *kept))
+        rows += [ring.context.gen(s.rate_index) - form.rates[s.name] for s in variables]
+        names = (*(without_velocity(u.name) for u in form.speeds), *(s.name for s in variables))
+        places = tuple(x.rate_index for x in (*form.speeds, *variables))
         return Dynamics(ring, names, places, tuple(in_parameters(derived, x) for x in rows))
 
     def combination(self, x: Polynomial) -> Combination:
@@ -116,7 +116,7 @@ class Dynamics:
         return total
 
     def _solutions(self, wanted: set[int]) -> list[tuple[int, Polynomial, Polynomial]]:
-        ring, found = self.ring, []
+        ring, solutions = self.ring, []
         still = dict.fromkeys(self.places, ring.zero)
         for block, mass, whole in self._blocks(wanted):
             right = [-ring.substitute(self.rows[i], still) for i in block]
@@ -125,14 +125,14 @@ class Dynamics:
                     replaced = [
                         [y if c == column else x for c, x in enumerate(row)] for row, y in zip(mass, right, strict=True)
                     ]
-                    found.append((i, *_lowest(ring, determinant(ring, replaced), whole)))
-        return found
+                    solutions.append((i, *_lowest(ring, determinant(ring, replaced), whole)))
+        return solutions
 
     def _blocks(self, wanted: set[int]) -> list[tuple[list[int], list[list[Polynomial]], Polynomial]]:
         """(indices, block of M, its determinant) of those blocks that hold a wanted index."""
         ring = self.ring
         mass = [[row.derivative(k) for k in self.places] for row in self.rows]
-        found = []
+        blocks = []
         for block in components(len(mass), lambda i, j: not ring.vanishes(mass[i][j]) or not ring.vanishes(mass[j][i])):
             if wanted.isdisjoint(block):
                 continue
@@ -142,8 +142,8 @@ class Dynamics:
             whole = determinant(ring, cut)
             if ring.vanishes(whole):
                 raise NoClosedForm("the mass matrix is singular")
-            found.append((block, cut, whole))
-        return found
+            blocks.append((block, cut, whole))
+        return blocks
 
 
 @dataclass(frozen=True)
@@ -201,8 +201,8 @@ def along_motion(
     """
     power = power_of(dynamics.ring, x, dynamics.places)
     if power <= 1:
-        found = dynamics.combination(x)
-        return verdict(found.left), found
+        combination = dynamics.combination(x)
+        return verdict(combination.left), combination
     if power > MOST_POWER:
         raise NoClosedForm("high powers of accelerations, or accelerations under functions")
     return verdict(dynamics.put_in(x)), None
@@ -303,8 +303,8 @@ def _closest(
         difference = ring.reduce(x - solved) if multiple is None else multiple.difference
         if not ring.vanishes(difference) and places(difference) < cost:
             factor = None if multiple is None else multiple.factor
-            told = replace(plain, derived=Formula(ring, solved), factor=factor, remark=Message(SOLVED, name=claim.of))
-            best, cost = differing(derived, told, symbols, difference), places(difference)
+            result = replace(plain, derived=Formula(ring, solved), factor=factor, remark=Message(SOLVED, name=claim.of))
+            best, cost = differing(derived, result, symbols, difference), places(difference)
     except NOT_THERE:
         pass
     if made is not None and len(made.coefficients) > 0:
@@ -312,8 +312,8 @@ def _closest(
             whole = made.equation(dynamics)
             difference = ring.reduce(x - whole)
             if places(difference) < cost and not ring.vanishes(difference):
-                told = replace(plain, derived=Formula(ring, whole), remark=SAME_ACCELERATIONS)
-                best = differing(derived, told, symbols, difference)
+                result = replace(plain, derived=Formula(ring, whole), remark=SAME_ACCELERATIONS)
+                best = differing(derived, result, symbols, difference)
         except NOT_THERE:
             pass
     return best

@@ -97,8 +97,8 @@ def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polyn
         whole = made.equation(dynamics)
         rest = form.shortened(ring.reduce(claimed - whole))
         if not ring.vanishes(rest) and len(rest) < len(found.difference.polynomial):
-            told = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
-            return replace(told, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
+            result = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
+            return replace(result, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
     return replace(found, outcome=Outcome.DIFFERS)
 
 

@@ -60,10 +60,10 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
         if conserved:
             constant = _constant_where(derived, claimed)
             if constant is not None:
-                told = Message("it is a constant, whatever the motion")
+                message = Message("it is a constant, whatever the motion")
                 if constant:
-                    told = Message("it is a constant [[where]], whatever the motion", where=constant)
-                return replace(result, outcome=Outcome.FAILS, remark=told)
+                    message = Message("it is a constant [[where]], whatever the motion", where=constant)
+                return replace(result, outcome=Outcome.FAILS, remark=message)
             if is_proved(scene, equations, claimed):
                 return replace(result, outcome=outcome)
             found, where = _conserved_where(derived, equations, claimed)

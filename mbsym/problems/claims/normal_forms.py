@@ -65,7 +65,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if ring.is_zero(claimed) or ring.is_zero(known):
         return replace(result, outcome=Outcome.DIFFERS)
     quotient = _Quotient.of(ring, claimed, known)
-    left = quotient.without([ring.fraction(one.polynomial)[0] for one in nonzero])
+    left = quotient.without([ring.fraction(formula.polynomial)[0] for formula in nonzero])
     sign = derived.signs.sign(quotient.product)
     agrees = left.is_monomial and derived.signs.never_zero(left.product)
     if agrees and (claim.kind == DETERMINANT or sign == "positive"):
@@ -79,22 +79,22 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 def _contrary(derived: Derived, claim: Claim, quotient: _Quotient, positive: Sequence[Formula]) -> str:
     """Where claimed/derived has the sign that it must not have; "" where no such place was found."""
     before: tuple[str, fmpq] | None = None
-    for found in _values(derived, quotient, [derived.ring.fraction(one.polynomial) for one in positive]):
-        if claim.kind == COEFFICIENT and found is not None and found[1] < 0:
-            return Message("at [[here]] its sign is the opposite one", here=found[0])
-        if claim.kind == DETERMINANT and found is not None and before is not None and found[1] * before[1] < 0:
+    for value in _values(derived, quotient, [derived.ring.fraction(formula.polynomial) for formula in positive]):
+        if claim.kind == COEFFICIENT and value is not None and value[1] < 0:
+            return Message("at [[here]] its sign is the opposite one", here=value[0])
+        if claim.kind == DETERMINANT and value is not None and before is not None and value[1] * before[1] < 0:
             # Nothing but a zero of the quotient, or of its denominator, is between them.
             signs = [Message("positive"), Message("negative")]
-            if found[1] >= 0:
+            if value[1] >= 0:
                 signs.reverse()
             return Message(
                 "claimed/derived is [[first]] at [[there]], [[second]] at [[here]]",
                 first=signs[0],
                 there=before[0],
                 second=signs[1],
-                here=found[0],
+                here=value[0],
             )
-        before = found
+        before = value
     return ""
 
 
@@ -161,11 +161,11 @@ def _values(
         if any(one is None for one in along):
             continue
         whole, *tests = (one for one in along if one is not None)
-        sign = next((one.sign for one in system.parameters if one.name == name), "real")
+        sign = next((parameter.sign for parameter in system.parameters if parameter.name == name), "real")
         tests.append(fmpq_poly([0, -1 if sign in ("negative", "nonpositive") else 1] if sign != "real" else [1]))
         ends = [*(relation for _, relation in conditions), "!=" if sign == "nonzero" else ">"]
         yield None
-        shared = any(one.gcd(whole).degree() > 0 for one in tests)
+        shared = any(test.gcd(whole).degree() > 0 for test in tests)
         for x in _between([whole, *tests]):
             holds = all(_MEETS[relation](p(x)) for p, relation in zip(tests, ends, strict=True))
             yield (f"{name} = {x}", whole(x)) if holds else None
@@ -176,11 +176,11 @@ def _values(
 def _start(system: System) -> dict[str, fmpq]:
     """A value for every parameter: its own if that is rational, else the sign's."""
     found = {}
-    for one in system.parameters:
-        value = None if one.value is None else rational(one.value)
-        plain = Fraction(-1 if one.sign in ("negative", "nonpositive") else 1)
+    for parameter in system.parameters:
+        value = None if parameter.value is None else rational(parameter.value)
+        plain = Fraction(-1 if parameter.sign in ("negative", "nonpositive") else 1)
         value = plain if value is None else value
-        found[one.name] = rationals.exact(value)
+        found[parameter.name] = rationals.exact(value)
     return found
 
 
@@ -212,9 +212,9 @@ def _along(ring: Ring, p: Polynomial, name: str, others: Mapping[str, fmpq]) -> 
 def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
     """A rational number in each interval between neighbouring real zeros, and beyond the outermost."""
     whole = fmpq_poly([1])
-    for one in polynomials:
-        if one.degree() > 0:
-            whole *= one
+    for polynomial in polynomials:
+        if polynomial.degree() > 0:
+            whole *= polynomial
     roots: list[Any] = [pair for factor, _ in whole.factor()[1] for pair in factor.numer().complex_roots()]
     zeros = sorted(middle(root.real) for root, _ in roots if root.imag == 0)
     if not zeros:

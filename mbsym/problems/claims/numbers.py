@@ -94,8 +94,8 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
         return None
     right = _agreeing(error, value, digits)
     if digits in DIGITS_OF_DOUBLES and error < _rounding_of_doubles(derived, claim, value):
-        found = replace(result, outcome=Outcome.DOUBLES)
-        return found if value.contains(0) else replace(found, printed_digits=digits, digits=right)
+        claim_result = replace(result, outcome=Outcome.DOUBLES)
+        return claim_result if value.contains(0) else replace(claim_result, printed_digits=digits, digits=right)
     return replace(result, outcome=Outcome.DIFFERS, printed_digits=digits, digits=right)
 
 
@@ -190,13 +190,13 @@ def _state(system: System, claim: Claim) -> State:
     for name in system.coordinates:
         values |= {name: arb(0), velocity_name(name): arb(0)}
     numbers = Balls(values)
-    given = dict(claim.state)
+    expressions = dict(claim.state)
 
     def lower(expression: Expression) -> Any:
         return Lowering(numbers, values)(expression)
 
     for parameter in system.parameters:
-        chosen = given.get(parameter.name, parameter.value)
+        chosen = expressions.get(parameter.name, parameter.value)
         if chosen is not None:
             values[parameter.name] = lower(chosen)
     follow(system, numbers, values)
@@ -213,7 +213,7 @@ def _state(system: System, claim: Claim) -> State:
     for symbol in system.notation:
         if names(symbol.value) <= values.keys():
             values[symbol.name] = lower(symbol.value)
-    for name, chosen in given.items():
+    for name, chosen in expressions.items():
         values[name] = lower(chosen)
     return State(numbers, values)
 

@@ -62,19 +62,19 @@ def explained(found: Oscillation, series: Sequence[Harmonics], order: int, claim
         shifts = list(_shifts(found, series, order))
     except Failure:
         return True
-    variants = _VARIANTS if any(any(one.waves) for one in series[: order + 1]) else _VARIANTS[:1]
+    variants = _VARIANTS if any(any(harmonics.waves) for harmonics in series[: order + 1]) else _VARIANTS[:1]
     for variant in variants:
         difference = claimed - _varied(series[order], *variant)
-        if difference.is_zero or _in_span(found.tower, [_varied(one, *variant) for one in shifts], difference):
+        if difference.is_zero or _in_span(found.tower, [_varied(shift, *variant) for shift in shifts], difference):
             return True
     return False
 
 
-def same_size(one: Harmonics, other: Harmonics) -> bool:
+def same_size(harmonics: Harmonics, other: Harmonics) -> bool:
     """Whether all harmonics have the same squares of amplitudes: T may begin anywhere."""
-    if one.waves.keys() != other.waves.keys():
+    if harmonics.waves.keys() != other.waves.keys():
         return False
-    for k, (c, s) in one.waves.items():
+    for k, (c, s) in harmonics.waves.items():
         d, t = other.waves[k]
         if not (c - d if k == 0 else c * c + s * s - d * d - t * t).is_zero():
             return False
@@ -136,8 +136,8 @@ def _in_span(tower: Tower, span: Sequence[Harmonics], x: Harmonics) -> bool:
     for values in _points(tower):
         rows = []
         try:
-            for one in (*span, x):
-                rows.append([_at(one.wave(k)[side], values) for k, side in places])
+            for harmonics in (*span, x):
+                rows.append([_at(harmonics.wave(k)[side], values) for k, side in places])
         except ZeroDivisionError:
             continue
         if _rank(rows) > _rank(rows[:-1]):
@@ -211,7 +211,7 @@ class SolutionInRing(Protocol):
     def symbols(self) -> Mapping[str, str]: ...
 
     def formula(self, x: Element) -> Formula: ...
-    def wave(self, one: Harmonics) -> Formula: ...
+    def wave(self, harmonics: Harmonics) -> Formula: ...
 
 
 class ToldManifold(Protocol):
@@ -229,28 +229,28 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim of these kinds.  Raises NoClosedForm, Unavailable where there is nothing to compare it with."""
     if claim.kind == MANIFOLD:
         return _on_manifold(derived, claim, about)
-    told = derived.claimed_oscillation
-    formulas = _formulas(derived.system, told)
+    ring = derived.claimed_oscillation
+    formulas = _formulas(derived.system, ring)
     try:
         claimed = formulas(claim.equals)
     except SingularPoint:
         raise NoClosedForm("the claimed formula divides by zero") from None
-    series = _frequencies(told.found) if claim.kind == FREQUENCY else _series(told, formulas, claim.of_expression)
+    series = _frequencies(ring.found) if claim.kind == FREQUENCY else _series(ring, formulas, claim.of_expression)
     truth = series[claim.order]
-    result = ClaimResult(claim, about, Outcome.EXACT, told.wave(truth))
+    result = ClaimResult(claim, about, Outcome.EXACT, ring.wave(truth))
     difference = claimed - truth
     if difference.is_zero:
         return result
-    shown = told.wave(difference)
+    shown = ring.wave(difference)
     result = replace(result, difference=shown if shown.terms <= MOST_SHOWN else None)
     if not _surely_nonzero(difference):
         return replace(result, outcome=Outcome.UNDECIDED, remark=_NOT_SURE)
-    if explained(told.found, series, claim.order, claimed):
+    if explained(ring.found, series, claim.order, claimed):
         return replace(result, outcome=Outcome.UNDECIDED, remark=_OTHER_SYMBOLS)
-    factor = _factor(told.found.tower, claimed, truth)
+    factor = _factor(ring.found.tower, claimed, truth)
     if factor is not None:
-        return replace(result, outcome=Outcome.SCALED, factor=told.formula(factor), difference=None)
-    return replace(result, outcome=Outcome.DIFFERS, remark=_where(difference, told.phase, shown.terms))
+        return replace(result, outcome=Outcome.SCALED, factor=ring.formula(factor), difference=None)
+    return replace(result, outcome=Outcome.DIFFERS, remark=_where(difference, ring.phase, shown.terms))
 
 
 def _where(difference: Harmonics, phase: str, terms: int) -> str:
@@ -275,10 +275,10 @@ def _formulas(system: System, told: SolutionInRing) -> WaveFormulas:
     constants = {f"#{name}": value for name, value in told.found.constants}
     for internal, shown in told.symbols.items():
         known[shown] = constants.get(internal, told.found.amplitude)
-    defined: dict[str, Expression] = {one.name: one.value for one in system.relations}
-    defined |= {one.name: one.value for one in system.notation}
-    defined |= {one.name: one.value for one in system.abbreviations}
-    signs = {one.name: one.sign for one in system.parameters} | {AMPLITUDE: "positive"}
+    defined: dict[str, Expression] = {relation.name: relation.value for relation in system.relations}
+    defined |= {notation.name: notation.value for notation in system.notation}
+    defined |= {abbreviation.name: abbreviation.value for abbreviation in system.abbreviations}
+    signs = {parameter.name: parameter.sign for parameter in system.parameters} | {AMPLITUDE: "positive"}
     return WaveFormulas(tower, told.phase, known, defined, signs)
 
 
@@ -311,27 +311,29 @@ class _InVariables:
     """
 
     def __init__(self, told: SolutionInRing, formulas: WaveFormulas, mixed: bool = False) -> None:
-        found = told.found
-        self.found, self.formulas, self.mixed = found, formulas, mixed
-        self.powers = dict(found.powers)
-        self.waves = dict(zip(found.names, found.series, strict=True))
+        oscillation = told.found
+        self.found, self.formulas, self.mixed = oscillation, formulas, mixed
+        self.powers = dict(oscillation.powers)
+        self.waves = dict(zip(oscillation.names, oscillation.series, strict=True))
 
     def series(self, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
-        found = self.found
+        oscillation = self.found
         match expression:
             case Name(name) if name in self.waves:
                 return self.powers.get(name, 0), self.waves[name]
-            case Name(name) if any(one.variable == name for one in found.drifts):
+            case Name(name) if any(drift.variable == name for drift in oscillation.drifts):
                 raise NoClosedForm(Message("[[name]] may drift: its oscillation is not compared", name=name))
             case Negative(operand):
                 power, inner = self.series(operand)
-                return power, [one.scaled(-found.tower.one) for one in inner]
+                return power, [harmonics.scaled(-oscillation.tower.one) for harmonics in inner]
             case Operation("+" | "-" as operator, left, right):
                 (power, one), (other, two) = self.series(left), self.series(right)
-                least, zero = min(power, other), Harmonics(found.tower, {})
+                least, zero = min(power, other), Harmonics(oscillation.tower, {})
                 if power != other and not self.mixed:
                     raise NoClosedForm(
-                        Message("terms with different powers of [[small]] in one sum: not compared", small=found.small)
+                        Message(
+                            "terms with different powers of [[small]] in one sum: not compared", small=oscillation.small
+                        )
                     )
                 one, two = ([*[zero] * (m - least), *x][: len(x)] for m, x in ((power, one), (other, two)))
                 return least, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
@@ -347,8 +349,8 @@ class _InVariables:
             case Call("sqrt", argument):
                 return self._root(self.series(argument))
             case Number() | Name():
-                zero = Harmonics(found.tower, {})
-                return self._power_of(expression), [self.formulas(expression), *([zero] * found.order)]
+                zero = Harmonics(oscillation.tower, {})
+                return self._power_of(expression), [self.formulas(expression), *([zero] * oscillation.order)]
         raise NoClosedForm("an expression that is not compared with expansions")
 
     def _product(
@@ -441,28 +443,30 @@ def _factor(tower: Tower, claimed: Harmonics, truth: Harmonics) -> Element | Non
 
 def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """The coefficient of eps^n of a fast variable on the slow manifold, or of the rate of a slow one there."""
-    told = derived.claimed_manifold
-    found = told.manifold
-    names, series = (found.fast, found.functions) if claim.of in found.fast else (found.slow, found.flow)
+    told_manifold = derived.claimed_manifold
+    manifold = told_manifold.manifold
+    names, series = (manifold.fast, manifold.functions) if claim.of in manifold.fast else (manifold.slow, manifold.flow)
     if claim.of not in names:
         raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
     one = series[names.index(claim.of)]
     if one.known is not None and claim.order >= one.known:
         raise NoClosedForm(
-            Message("the coefficient of [[small]]^[[order]] is not known", small=found.field.small, order=claim.order)
+            Message(
+                "the coefficient of [[small]]^[[order]] is not known", small=manifold.field.small, order=claim.order
+            )
         )
     coefficient = one.coefficients.get(claim.order)
-    ring = told.transfer.ring
-    truth = ring.zero if coefficient is None else told.formula(coefficient).polynomial
+    ring = told_manifold.transfer.ring
+    truth = ring.zero if coefficient is None else told_manifold.formula(coefficient).polynomial
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
-    if told.transfer.images:
-        claimed = ring.substitute(claimed, told.transfer.images)
+    if told_manifold.transfer.images:
+        claimed = ring.substitute(claimed, told_manifold.transfer.images)
     difference = ring.reduce(claimed - truth)
     result = ClaimResult(claim, about, Outcome.EXACT, Formula(ring, truth))
     known = derived.form.vanishes(difference)
     if known is True:
         return result
-    if not derived.system.speeds or found.root is not None:  # a square root may be written with squares in it
+    if not derived.system.speeds or manifold.root is not None:  # a square root may be written with squares in it
         outcome, where = decided(derived, difference)
     else:
         outcome, where = Outcome.DIFFERS if known is False else Outcome.UNDECIDED, ""
@@ -562,10 +566,10 @@ class WaveFormulas:
             self._values[name] = self(self.defined[name])
         return self._values[name]
 
-    def _product(self, one: Harmonics, other: Harmonics) -> Harmonics:
-        if max((*one.waves, 0)) + max((*other.waves, 0)) > MOST_HARMONIC:
+    def _product(self, harmonics: Harmonics, other: Harmonics) -> Harmonics:
+        if max((*harmonics.waves, 0)) + max((*other.waves, 0)) > MOST_HARMONIC:
             raise NoClosedForm(Message("a harmonic beyond [[most]]", most=MOST_HARMONIC))
-        return one * other
+        return harmonics * other
 
     def _power(self, base: Harmonics, exponent: Expression) -> Harmonics:
         form = linear_form(exponent)
@@ -579,10 +583,10 @@ class WaveFormulas:
             if power.denominator == 2:
                 value, power = self.square_root(value), power * 2
             base = self._constant(self.tower.reciprocal(value) if power < 0 else value)
-        found = self._constant(self.tower.one)
+        harmonics = self._constant(self.tower.one)
         for _ in range(abs(int(power))):
-            found = self._product(found, base)
-        return found
+            harmonics = self._product(harmonics, base)
+        return harmonics
 
     def _wave(self, function: str, argument: Expression) -> Harmonics:
         """sin or cos of k phase + m pi/2."""

@@ -75,15 +75,15 @@ def of_first_approximation(derived: Derived, claim: Claim) -> Polynomial:
     names = [derived.system.claimable[k - 1] for k in claim.entry]
     if claim.kind.startswith("subsystem"):
         _need([name for part in derived.linearisation.subsystems for name in part.coordinates], names)
-        (part,) = (one for one in derived.linearisation.subsystems if names[0] in one.coordinates)
+        (part,) = (subsystem for subsystem in derived.linearisation.subsystems if names[0] in subsystem.coordinates)
         if names[1] not in part.coordinates:
             return derived.ring.zero
         matrix, there = getattr(part, claim.kind[-1]), list(part.coordinates)
     else:
         matrix, there = getattr(derived.linearisation, claim.kind[-1]), list(derived.linearisation.coordinates)
         _need(there, names)
-    found: Polynomial = matrix[there.index(names[0]), there.index(names[1])].polynomial
-    return found
+    polynomial: Polynomial = matrix[there.index(names[0]), there.index(names[1])].polynomial
+    return polynomial
 
 
 def _need(there: Sequence[str], names: Sequence[str]) -> None:
@@ -132,10 +132,10 @@ def _in_inertial_axes(scene: Scene, kind: str, body: str) -> tuple[Polynomial, P
     """Radius vector or velocity of the mass centre."""
     motion = scene.motions[body]
     if kind == "position":
-        found = scene.position(motion.mass_centre, INERTIAL)
+        vector = scene.position(motion.mass_centre, INERTIAL)
     else:
-        found = scene.to_axes(motion.velocity_mass_centre, INERTIAL)
-    return (scene.ring.reduce(found[0]), scene.ring.reduce(found[1]), scene.ring.reduce(found[2]))
+        vector = scene.to_axes(motion.velocity_mass_centre, INERTIAL)
+    return (scene.ring.reduce(vector[0]), scene.ring.reduce(vector[1]), scene.ring.reduce(vector[2]))
 
 
 def _coefficient(ring: Ring, x: Polynomial, product: Polynomial) -> Polynomial:
@@ -182,7 +182,7 @@ def in_velocities(derived: Derived, kind: str, of: str) -> Polynomial:
         velocities = [ring.generator("velocity", name) for name in derived.system.coordinates]
         lagrangian = derived.energy.kinetic_energy.polynomial + derived.energy.force_function.polynomial
         return ring.reduce(ring.dot(list(known.values()), velocities) - lagrangian)
-    found = derived.routh
-    formula = found.function if kind == ROUTH else found.reduced_potential
+    routh = derived.routh
+    formula = routh.function if kind == ROUTH else routh.reduced_potential
     carry = Carrier(formula.ring, ring, ring_environment(derived.system, ring) | known)
     return ring.reduce(carry(formula.polynomial))

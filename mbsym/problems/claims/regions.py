@@ -75,12 +75,12 @@ class Inequality:
         return replace(self, relation=_NEGATED[self.relation])
 
 
-def is_certain(signs: Signs | None, wanted: Inequality) -> bool:
+def is_certain(signs: Signs | None, inequality: Inequality) -> bool:
     """Whether the inequality is proved by what is known; not where nothing is known, or it contradicts itself."""
     if signs is None:
         return False
     try:
-        return signs.sign(wanted.polynomial) in _CERTAIN[wanted.relation]
+        return signs.sign(inequality.polynomial) in _CERTAIN[inequality.relation]
     except ContradictionError:
         return False
 
@@ -106,22 +106,22 @@ class Region:
                 numerator = ring.times(numerator, factor)
         return numerator
 
-    def without_roots(self, wanted: Inequality) -> tuple[tuple[Inequality, ...], ...]:
+    def without_roots(self, inequality: Inequality) -> tuple[tuple[Inequality, ...], ...]:
         """Inequalities without roots, of each row of which one holds where ``wanted`` does; itself if none were found.
 
         With roots r >= 0: a + b r has the sign of (a + b r)(a - b r) where a - b r is known to be positive; for b <= 0
         it is positive if a and a^2 - b^2 r^2 are, for b >= 0 if a or b^2 r^2 - a^2 is.  So g > sqrt(k1) + sqrt(k2) is
         g^2 > k1 + k2 and (g^2 - k1 - k2)^2 > 4 k1 k2, for positive g, and w < sqrt(k) is w < 0 or w^2 < k.
         """
-        ring, p, apart = self.derived.ring, wanted.polynomial, list[tuple[Inequality, ...]]()
-        if wanted.relation not in (">", ">=") or not self._roots(p):
-            return ((wanted,),)
+        ring, p, apart = self.derived.ring, inequality.polynomial, list[tuple[Inequality, ...]]()
+        if inequality.relation not in (">", ">=") or not self._roots(p):
+            return ((inequality,),)
         known = signs_now(self.derived.parameters_scene)  # what claims hold was not there when the others were found
         try:
             for _ in range(_MOST_STEPS):
                 roots = self._roots(p)
                 if not roots:
-                    return (*apart, (Inequality(p, wanted.relation),))
+                    return (*apart, (Inequality(p, inequality.relation),))
                 norm = self._norm(p, roots, known)
                 if norm is not None:
                     p = self._numerator(ring.reduce(norm))
@@ -129,14 +129,14 @@ class Region:
                 first, norm, both = self._squared(p, roots, known)
                 p = self._numerator(ring.reduce(norm))
                 if both:
-                    apart.append((Inequality(first, wanted.relation),))
+                    apart.append((Inequality(first, inequality.relation),))
                 elif not self._roots(p):
-                    return (*apart, (Inequality(first, wanted.relation), Inequality(p, wanted.relation)))
+                    return (*apart, (Inequality(first, inequality.relation), Inequality(p, inequality.relation)))
                 else:
                     break
         except (Failure, LookupError):
             pass
-        return ((wanted,),)
+        return ((inequality,),)
 
     def _roots(self, p: Polynomial) -> list[int]:
         return [k for k in occurring([p]) if self.derived.ring.generators[k].kind == "root"]
@@ -233,19 +233,19 @@ class Region:
         except (ContradictionError, Failure):
             return depends()
 
-    def without(self, wanted: Inequality, bodies: bool = False) -> Verdict:
+    def without(self, inequality: Inequality, bodies: bool = False) -> Verdict:
         """The verdict where it does not hold."""
-        return self.verdict([wanted.negated()], bodies)
+        return self.verdict([inequality.negated()], bodies)
 
-    def exponential(self, wanted: Inequality, bodies: bool = False) -> tuple[str, ...] | None:
+    def exponential(self, inequality: Inequality, bodies: bool = False) -> tuple[str, ...] | None:
         """The coordinates of a part whose roots all lie to the left only where it holds; None where there is none."""
-        opposite = wanted.negated()
+        opposite = inequality.negated()
         for part in self.parts:
             requirements = [r for r in part.theory.requirements if not r.by_mass]
             if part.theory.variable != "lambda" or any(r.unwritten for r in requirements):
                 continue
             try:
-                carry, known = self._domain([wanted], bodies)
+                carry, known = self._domain([inequality], bodies)
                 lift = partial(self._carried, carry, part)
                 inside = where(*(x for r in requirements for x in atoms(r, lift)))
                 beyond = inside & where(atom(carry(opposite.polynomial), opposite.relation))
@@ -265,12 +265,14 @@ class Region:
             if r.relation == ">" and r.place is not Place.HARMLESS and not r.by_mass and not r.unwritten
         )
 
-    def _domain(self, wanted: Sequence[Inequality], bodies: bool) -> tuple[Lift, Signs]:
+    def _domain(self, inequalities: Sequence[Inequality], bodies: bool) -> tuple[Lift, Signs]:
         """How polynomials are carried into the ring of the parameters that occur, and what is known of these."""
         signs = self.signs_of_bodies if bodies else self.signs
         masses = [x.polynomial for x in self._mass() if not x.polynomial.is_constant()]
         held = [self._lifted(part, x) for part in self.parts for x in part.theory.polynomials]
-        ring, known = of_parameters(self.derived.ring, [[[*(x.polynomial for x in wanted), *held, *masses]]], signs)
+        ring, known = of_parameters(
+            self.derived.ring, [[[*(x.polynomial for x in inequalities), *held, *masses]]], signs
+        )
 
         def carry(x: Polynomial) -> Polynomial:
             return ring.project(x) if isinstance(ring, ParameterRing) else x
@@ -304,26 +306,26 @@ class Region:
         ring = self.derived.ring
         return self.cleared(part.ring.lift(x) if isinstance(part.ring, ParameterRing) else ring.reduce(x))
 
-    def on_border(self, wanted: Inequality, others: Sequence[Inequality] = ()) -> Verdict:
+    def on_border(self, inequality: Inequality, others: Sequence[Inequality] = ()) -> Verdict:
         """What holds of exactly linear equations where ``wanted`` is an equality and ``others`` hold.
 
         "depends on the parameters" also where that was not found.
         """
         if not (self.own and self.derived.balance.exactly_linear):
             return depends()
-        found = []
+        verdicts = []
         try:
             for part in self.parts:
                 if part.system is None or part.known is None:
                     return depends()
                 small = part.ring if isinstance(part.ring, ParameterRing) else None
-                p = _in(small, wanted.polynomial)
-                further = [(x, one.relation) for one in others if (x := _in(small, one.polynomial)) is not None]
+                p = _in(small, inequality.polynomial)
+                further = [(x, other.relation) for other in others if (x := _in(small, other.polynomial)) is not None]
                 there = None if p is None else on_border(part.system, part.known, p, further)
-                found.append(there or part.theory.verdict)
+                verdicts.append(there or part.theory.verdict)
         except (ContradictionError, Failure):
             return depends()
-        return combine(found, self.derived.balance.law.bounded)
+        return combine(verdicts, self.derived.balance.law.bounded)
 
     def makes_stiffness_singular(self, x: Polynomial) -> bool:
         """Whether x = 0 implies det K = 0 in a part M q'' + K q = 0: then q = q0 + q1 t solves it."""

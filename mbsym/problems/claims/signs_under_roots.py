@@ -166,11 +166,11 @@ def _is_allowed(system: System, values: Mapping[str, fmpq]) -> bool:
     if not system.assumptions:
         return True
     known = {name: rationals.fraction(x) for name, x in values.items()}
-    for one in system.relations:
-        value = number_of(one.value, known)
+    for relation in system.relations:
+        value = number_of(relation.value, known)
         if value is None:
             return True
-        known[one.name] = value
+        known[relation.name] = value
     return next(broken(system, known), None) is None
 
 

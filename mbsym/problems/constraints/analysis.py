@@ -90,18 +90,18 @@ class _Points:
         self.ring = ring
         self.found = found
         self.states = states
-        self.carriers = [Carrier(ring, one.state.numbers, one.state.values) for one in states]
+        self.carriers = [Carrier(ring, state.state.numbers, state.state.values) for state in states]
 
     @property
     def exact(self) -> bool:
-        return all(one.exact for one in self.states)
+        return all(state.exact for state in self.states)
 
     def jacobians(self) -> list[list[list[Any]]]:
         nodes = [x for row in self.found.jacobian for x in row]
         n = len(self.found.jacobian[0]) if self.found.jacobian else 0
         found = []
-        for one in self.states:
-            values = self.found.tree.program.evaluate(nodes, one.state.values, one.state.numbers)
+        for state in self.states:
+            values = self.found.tree.program.evaluate(nodes, state.state.values, state.state.numbers)
             found.append([values[i : i + n] for i in range(0, len(values), n)])
         return found
 
@@ -208,7 +208,7 @@ class _Analysis:
         at_rest = {self.ring.index("acceleration", name): self.ring.zero for name in self.system.coordinates}
         gammas = [self.ring.substitute(row.acceleration, at_rest) for row in self.rows]
         sides = list(zip(shifts, gammas, strict=True))
-        found = self._embedding(jacobian, sides, pivots)
+        embedding = self._embedding(jacobian, sides, pivots)
         holonomic = sum(self.rows[i].name.holonomic for i in independent)
         names, m = self.system.coordinates, range(len(self.rows))
         return Constraints(
@@ -218,12 +218,16 @@ class _Analysis:
             jacobian=Matrix.of(self.ring, [list(row) for row in jacobian]),
             acceleration=column(self.ring, gammas),
             independent=tuple(independent),
-            redundant=tuple(self._redundant(i, independent, sides, found, points) for i in m if i not in independent),
+            redundant=tuple(
+                self._redundant(i, independent, sides, embedding, points) for i in m if i not in independent
+            ),
             position_rank=holonomic,
             demanded=self._demanded(points, holonomic, len(independent)),
             coordinates=names,
             dependent=tuple(names[k] for k in pivots.columns),
-            integrability=self._integrability(found, pivots, shifts, holonomic, len(independent) - holonomic, points),
+            integrability=self._integrability(
+                embedding, pivots, shifts, holonomic, len(independent) - holonomic, points
+            ),
             alone=tuple(
                 (self.rows[i].name, is_exact_by_itself(self.scene, jacobian[i], shifts[i]))
                 for i in independent
@@ -231,7 +235,7 @@ class _Analysis:
             ),
             exact_points=points.exact,
             pivots=pivots,
-            solved=None if found is None else Solved.of(self.ring, found),
+            solved=None if embedding is None else Solved.of(self.ring, embedding),
             dependent_sets=self._dependent_sets(independent, m, points),
             dependent_positions=self._dependent_sets(
                 [i for i in independent if self.rows[i].name.holonomic],
@@ -275,7 +279,7 @@ class _Analysis:
                 return integrability(self.scene, found, rheonomic, holonomic, points.rank)
         if not rheonomic:
             with suppress(Failure, ZeroDivisionError):
-                states = [one.state for one in points.states]
+                states = [state.state for state in points.states]
                 known = by_program(self.system.coordinates, self.programs, pivots, holonomic, states)
                 if known is not None:
                     return known
@@ -307,8 +311,8 @@ class _Analysis:
 
     def _check_velocities(self, points: _Points, independent: Sequence[int]) -> None:
         """J q' + j = 0 must have a solution: at a point of the manifold what is left of a dependent row is zero."""
-        for one in points.states:
-            left = self.programs.tree.program.evaluate(self.programs.velocity, one.state.values, one.state.numbers)
+        for state in points.states:
+            left = self.programs.tree.program.evaluate(self.programs.velocity, state.state.values, state.state.numbers)
             wrong = tuple(self.rows[i].name for i, x in enumerate(left) if is_certain(x))
             if wrong:
                 message = "this contradicts the other constraints: no velocities keep them all"

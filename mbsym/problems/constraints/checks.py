@@ -49,14 +49,14 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
     system, rates, n = form.system, [u.rate_name for u in form.speeds], len(form.system.coordinates)
     nodes = [*(x for row in programs.jacobian for x in row), *programs.acceleration]
 
-    def pairs(one: OnManifold) -> list[Pair]:
-        oracle = Oracle(system, one.state)
+    def pairs(on_manifold: OnManifold) -> list[Pair]:
+        oracle = Oracle(system, on_manifold.state)
         state = completed(oracle)
-        truth = oracle_rows(system, one.state)
+        truth = oracle_rows(system, on_manifold.state)
         carry = Carrier(form.ring, state.numbers, state.values)
         columns, zero = _columns(form, oracle), state.numbers.zero
         second = [state.values[acceleration_name(name)] for name in system.coordinates]
-        values = programs.tree.program.evaluate(nodes, one.state.values, one.state.numbers)
+        values = programs.tree.program.evaluate(nodes, on_manifold.state.values, on_manifold.state.numbers)
         compared: list[Pair] = []
         for i, name in enumerate(found.names):
             row, position = truth[name.constraint][max(name.component - 1, 0)], found.position[i]
@@ -100,8 +100,8 @@ def check_embedded(form: SpeedForm, found: Constraints, embedded: Embedded, prog
     """
     system = form.system
 
-    def pairs(one: OnManifold) -> list[Pair]:
-        state = moving(form, one, found, programs)
+    def pairs(on_manifold: OnManifold) -> list[Pair]:
+        state = moving(form, on_manifold, found, programs)
         oracle = Oracle(system, state)
         carry, zero = Carrier(form.ring, state.numbers, state.values), state.numbers.zero
         assert found.solved is not None
@@ -137,21 +137,21 @@ def check_integrals(
 ) -> Check:
     """dI/dt along the motion, by series in time, with the accelerations of the equations with multipliers."""
 
-    def pairs(one: OnManifold) -> list[Pair]:
-        carry = in_time(form, moving(form, one, tied, programs))
-        return [(item.name, carry(item.formula.polynomial).b, one.state.numbers.zero) for item in found]
+    def pairs(on_manifold: OnManifold) -> list[Pair]:
+        carry = in_time(form, moving(form, on_manifold, tied, programs))
+        return [(item.name, carry(item.formula.polynomial).b, on_manifold.state.numbers.zero) for item in found]
 
     return compared_on_manifold(
         "first integrals", ("dI/dt along the motion with multipliers", "zero"), form, programs, pairs
     )
 
 
-def moving(form: SpeedForm, one: OnManifold, tied: Constraints, programs: ConstrainedPrograms) -> State:
+def moving(form: SpeedForm, on_manifold: OnManifold, tied: Constraints, programs: ConstrainedPrograms) -> State:
     """The state with the accelerations of  M q'' - J^T lambda = f,  J q'' = -gamma,  J of the independent rows.
 
     In enclosures where quaternions are no rational numbers; values of all variables are told, read off placed bodies.
     """
-    state, names = (one.enclosed if form.by_quaternion else one).state, form.system.coordinates
+    state, names = (on_manifold.enclosed if form.by_quaternion else on_manifold).state, form.system.coordinates
     program, n, m = programs.tree.program, len(names), len(tied.independent)
     rows = [programs.jacobian[i] for i in tied.independent]
     nodes = [x for row in programs.tree.mass_matrix for x in row] + [x for row in rows for x in row]
@@ -204,17 +204,17 @@ def compared_on_manifold(
     """
     done, exact = 0, True
     with ctx.workprec(PRECISION):
-        for found in Manifold(form.system.without_speeds, form.ring, programs).states(3 * STATES):
-            one = found.enclosed if form.by_quaternion else found
+        for state in Manifold(form.system.without_speeds, form.ring, programs).states(3 * STATES):
+            on_manifold = state.enclosed if form.by_quaternion else state
             try:
-                outcome, detail = _verdict(pairs(one))
+                outcome, detail = _verdict(pairs(on_manifold))
             except ZeroDivisionError:
                 continue
             if outcome == FAILED:
                 return Check(name, *routes, FAILED, detail, done)
             if outcome == EXACT:
                 done += 1
-                exact = exact and one.exact
+                exact = exact and on_manifold.exact
             if done == STATES:
                 break
     if done < STATES:

@@ -51,9 +51,9 @@ def constraints_in_speeds(
     still = {u.index: ring.zero for u in form.speeds}
     sides = [(ring.substitute(row.velocity, still), row.acceleration) for row in rows]
     try:
-        found = embedded(ring, [row.partials for row in rows], sides, pivots)
+        embedding = embedded(ring, [row.partials for row in rows], sides, pivots)
     except NoClosedForm:
-        found = None
+        embedding = None
     return replace(
         tied,
         position=tuple(None if row.position is None else Formula(ring, row.position) for row in rows),
@@ -63,7 +63,7 @@ def constraints_in_speeds(
         coordinates=names,
         dependent=tuple(names[k] for k in pivots.columns),
         pivots=pivots,
-        solved=None if found is None else Solved.of(ring, found),
+        solved=None if embedding is None else Solved.of(ring, embedding),
         in_speeds=True,
     )
 
@@ -109,13 +109,13 @@ def _pivots(
 
 def _at_points(form: SpeedForm, rows: Sequence[Row], programs: ConstrainedPrograms) -> list[list[list[Any]]]:
     """J in numbers at points of the manifold, those left out at which speeds do not determine velocities."""
-    found: list[list[list[Any]]] = []
-    for one in Manifold(form.system.without_speeds, form.ring, programs).states(4 * POINTS):
-        place = one.enclosed if form.by_quaternion else one
+    at_points: list[list[list[Any]]] = []
+    for on_manifold in Manifold(form.system.without_speeds, form.ring, programs).states(4 * POINTS):
+        place = on_manifold.enclosed if form.by_quaternion else on_manifold
         with suppress(*NOT_THERE):
             state = completed(Oracle(form.system, place.state))
             carry = Carrier(form.ring, state.numbers, state.values)
-            found.append([[carry(x) for x in row.partials] for row in rows])
-        if len(found) == POINTS:
+            at_points.append([[carry(x) for x in row.partials] for row in rows])
+        if len(at_points) == POINTS:
             break
-    return found
+    return at_points

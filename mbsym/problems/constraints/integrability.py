@@ -91,8 +91,8 @@ def by_program(
     program, n = rows.tree.program, len(coordinates)
     inputs = [rows.environment[name] for name in coordinates]
     sides = [(program.zero, program.zero)] * len(rows.names)
-    found = embedded(program, rows.jacobian, sides, pivots)
-    fields = [tuple(basis_vector(program, found, place)) for place in range(len(found.free))]
+    embedding = embedded(program, rows.jacobian, sides, pivots)
+    fields = [tuple(basis_vector(program, embedding, place)) for place in range(len(embedding.free))]
 
     def bracketed(a: Sequence[Node], b: Sequence[Node]) -> tuple[Node, ...]:
         forwards, back = directional(program, b, inputs, a), directional(program, a, inputs, b)
@@ -108,7 +108,7 @@ def by_program(
             best = max(best, eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n)).rank)
         return best, best == len(vectors)
 
-    whole, imposed = n - position_rank, len(found.dependent) - position_rank
+    whole, imposed = n - position_rank, len(embedding.dependent) - position_rank
     growth, _ = _growth(fields, whole, bracketed, lambda x: all(map(program.vanishes, x)), rank)
     if growth[-1] < whole:
         return None

@@ -113,9 +113,9 @@ class AlongMotion:
         """x at these states, or dx/dt of what holds no accelerations."""
         found: list[tuple[OnManifold, Any]] = []
         with ctx.workprec(PRECISION):
-            for one, carry, in_series in self._carried:
+            for on_manifold, carry, in_series in self._carried:
                 with suppress(*NOT_THERE):
-                    found.append((one, in_series(x).b if rate else carry(x)))
+                    found.append((on_manifold, in_series(x).b if rate else carry(x)))
         return found
 
     def vanishes_at_states(self, x: Polynomial, rate: bool = False) -> bool:
@@ -183,7 +183,7 @@ class _Kept(AlongMotion):
         form, ring = self.form, self.ring
         own = {velocity_name(name): name for name in form.coordinates}
         rates = [form.rate(ring.derivative(kinetic, u.name)) for u in form.speeds]
-        rest = [self.restricted(rate - one) for rate, one in zip(rates, self._residuals, strict=True)]
+        rest = [self.restricted(rate - residual) for rate, residual in zip(rates, self._residuals, strict=True)]
         rows = [self.tied.jacobian.polynomials[i] for i in self.tied.independent]
         for xi in kernel(ring, rest, *rows):
             name = form.speeds[max(xi)].name
@@ -225,9 +225,9 @@ class _Kept(AlongMotion):
     def _by_multipliers(self, left: Polynomial, multipliers: Sequence[Polynomial]) -> bool:
         """Whether a rate is mu . E on allowed velocities, and J mu vanishes or is J u + j in every row."""
         form, ring, tied = self.form, self.ring, self.tied
-        for factor, one in zip(multipliers, self._residuals, strict=False):
+        for factor, residual in zip(multipliers, self._residuals, strict=False):
             if not ring.vanishes(factor):
-                left = left - ring.times(factor, one)
+                left = left - ring.times(factor, residual)
         if not self.vanishes(left):
             return False
         works = [ring.dot(tied.jacobian.polynomials[i], multipliers) for i in tied.independent if multipliers]

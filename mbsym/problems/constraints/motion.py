@@ -160,9 +160,9 @@ def _is_linear(ring: Ring, p: Polynomial, name: str) -> bool:
 
 def dependent_velocities(form: SpeedForm, solved: Solved) -> dict[int, Polynomial]:
     """The generators of the dependent speeds or velocities, and what they are: S u + s."""
-    ring, found = form.ring, solved.embedding
-    free = [ring.context.gen(form.speeds[k].index) for k in found.free]
+    ring, embedding = form.ring, solved.embedding
+    free = [ring.context.gen(form.speeds[k].index) for k in embedding.free]
     return {
         form.speeds[k].index: ring.reduce(sum((ring.times(x, u) for x, u in zip(row, free, strict=True)), shift))
-        for k, row, shift in zip(found.dependent, found.matrix, found.shift, strict=True)
+        for k, row, shift in zip(embedding.dependent, embedding.matrix, embedding.shift, strict=True)
     }

@@ -60,13 +60,13 @@ def check_program(truth: Oracles, form: SpeedForm) -> Check:
 
 def _errors(oracle: Oracle, rates: Sequence[str], mass: Sequence[Sequence[Any]], forcing: Sequence[Any]) -> list[Any]:
     """(M u' - f)_r at the state."""
-    found = []
+    errors = []
     for row, force in zip(mass, forcing, strict=True):
         total = -force
         for entry, rate in zip(row, rates, strict=True):
             total = total + entry * oracle.state.values[rate]
-        found.append(total)
-    return found
+        errors.append(total)
+    return errors
 
 
 def _against(

@@ -242,10 +242,10 @@ class Place:
     @cached_property
     def _divisors(self) -> tuple[Polynomial, ...]:
         """Irreducible polynomials that stand in denominators on the branch."""
-        found: list[Polynomial] = []
+        divisors: list[Polynomial] = []
         for p in (*(s.denominator for s in self.branch.solved), self.fraction(self.arena.denominator)[0]):
-            found += [f for f, _ in irreducible_factors(p)[1] if f not in found] if p != 0 else []
-        return tuple(found)
+            divisors += [f for f, _ in irreducible_factors(p)[1] if f not in divisors] if p != 0 else []
+        return tuple(divisors)
 
     @cached_property
     def divided_by(self) -> tuple[Polynomial, ...]:

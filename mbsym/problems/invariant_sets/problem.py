@@ -77,18 +77,18 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     places = [place for branch in branches if (place := _on_relations(arena, branch, generic)) is not None]
     places = [place for place in places if not _is_empty(place, generic)]
     places = [with_lagrangian(place, whole) for place in places] if arena.floating else places
-    kept = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
-    singular = sum(1 for place in kept if place.vanishes(arena.denominator) is True)
-    kept = [place for place in kept if place.vanishes(arena.denominator) is not True]
-    looked = [_set(place, whole) for place in kept[:MOST_SETS]]
-    sets = [one for one in looked if one is not None]
+    kept_places = _largest([_by_variables(place) if _is_steady(place) else place for place in _largest(places)])
+    singular = sum(1 for place in kept_places if place.vanishes(arena.denominator) is True)
+    kept_places = [place for place in kept_places if place.vanishes(arena.denominator) is not True]
+    looked = [_set(place, whole) for place in kept_places[:MOST_SETS]]
+    sets = [stationary_set for stationary_set in looked if stationary_set is not None]
     # A piece of a larger set may be cut off it by what was divided by; alone it need not be invariant.  The whole is,
     # where K is an integral; where that is not seen a set that is not invariant stays, and is told as a defect.
-    failed = [one for one in sets if one.invariant is False]
+    failed = [stationary_set for stationary_set in sets if stationary_set.invariant is False]
     parts = failed if arena.floating or (failed and _conserved(arena)) else []
-    sets = [one for one in sets if one not in parts]
+    sets = [stationary_set for stationary_set in sets if stationary_set not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
-    unfinished = found.unfinished + max(0, len(kept) - MOST_SETS) + looked.count(None)
+    unfinished = found.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
     sets.sort(key=lambda one: (one.dimension, one.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
@@ -217,11 +217,11 @@ def _is_parameter(arena: Arena, p: Polynomial) -> bool:
 
 def _largest(places: Sequence[Place]) -> list[Place]:
     """Without those that lie in the closure of another."""
-    kept: list[Place] = []
+    kept_places: list[Place] = []
     for place in sorted(places, key=lambda one: len(one.branch.solved) + len(one.branch.remaining)):
-        if not any(_holds(other, place) for other in kept):
-            kept.append(place)
-    return kept
+        if not any(_holds(other, place) for other in kept_places):
+            kept_places.append(place)
+    return kept_places
 
 
 def _holds(outer: Place, inner: Place) -> bool:

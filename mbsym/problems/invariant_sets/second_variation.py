@@ -162,18 +162,18 @@ def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
 
 
 def _both(
-    place: Place, wanted: Sequence[Polynomial]
+    place: Place, polynomials: Sequence[Polynomial]
 ) -> tuple[tuple[Relation, ...] | None, tuple[Relation, ...] | None]:
     """Conditions for a form with these minors to be positive definite, and negative definite."""
-    return _sufficient(place, wanted), _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(wanted)])
+    return _sufficient(place, polynomials), _sufficient(place, [x * (-1) ** (k + 1) for k, x in enumerate(polynomials)])
 
 
-def _sufficient(place: Place, wanted: Sequence[Polynomial]) -> tuple[Relation, ...] | None:
+def _sufficient(place: Place, polynomials: Sequence[Polynomial]) -> tuple[Relation, ...] | None:
     """Conditions for all of them to be positive, each reduced by those before it; None where that is impossible."""
     arena = place.arena
     known, found = arena.signs, []
     try:
-        for p in wanted:
+        for p in polynomials:
             condition = _condition(place, known, p)
             if condition.kind == "never":
                 return None
@@ -191,7 +191,7 @@ def _sufficient(place: Place, wanted: Sequence[Polynomial]) -> tuple[Relation, .
 def _condition(place: Place, known: Signs, p: Polynomial) -> Condition:
     """For p > 0 on the branch: decided where it is so in all cases of the branch."""
     cases = [known.condition(images(p)) for images in place.cases]
-    decided = {one.kind for one in cases} in ({"always"}, {"never"})
+    decided = {condition.kind for condition in cases} in ({"always"}, {"never"})
     return cases[0] if decided or len(cases) == 1 else known.condition(p)
 
 

@@ -78,7 +78,7 @@ class _Sieve:
             [(float(c), [(g, int(power)) for g, power in enumerate(monomial) if power]) for monomial, c in p.terms()]
             for p in asked
         ]
-        self._asked = [one for one in terms if {g for _, powers in one for g, _ in powers} <= known]
+        self._asked = [term for term in terms if {g for _, powers in term for g, _ in powers} <= known]
         self.sharp = len(self._asked) == len(asked)
 
     def __call__(self, point: Mapping[int, arb]) -> bool:
@@ -101,16 +101,16 @@ def _definite(variation: SecondVariation, point: Mapping[int, arb]) -> bool:
 
 def _hold(relations: Sequence[Relation], point: Mapping[int, arb], strictly: bool = False) -> bool:
     """Proved by balls."""
-    for one in relations:
-        if any(_value(f.polynomial, point).contains(0) for f in one.unless):
+    for relation in relations:
+        if any(_value(f.polynomial, point).contains(0) for f in relation.unless):
             return False
-        value = _value(one.formula.polynomial, point)
-        if one.relation == "=":  # which no ball can prove
+        value = _value(relation.formula.polynomial, point)
+        if relation.relation == "=":  # which no ball can prove
             return False
-        if one.relation == "!=":
+        if relation.relation == "!=":
             if value.contains(0):
                 return False
-        elif not value > 0 and (strictly or one.relation == ">" or not value >= 0):
+        elif not value > 0 and (strictly or relation.relation == ">" or not value >= 0):
             return False
     return True
 

@@ -103,9 +103,9 @@ def along(
 
     with ctx.workprec(PRECISION):
         found = to(4)
-        tower, wanted = (_of_two_frequencies if conservative else _of_roots)(found, name, values)
-        roots = _roots([_norm(tower, x) for x in wanted.values()], interval)
-        _refuse_singular(tower, wanted, [factor for _, factor in roots], interval, name)
+        tower, elements = (_of_two_frequencies if conservative else _of_roots)(found, name, values)
+        roots = _roots([_norm(tower, x) for x in elements.values()], interval)
+        _refuse_singular(tower, elements, [factor for _, factor in roots], interval, name)
 
         def two_eigenvectors_at(value: Any) -> bool:
             """Where the discriminant vanishes: whether A^2 + w^2 does, exactly."""
@@ -125,12 +125,12 @@ def along(
                 return at_zero_root(to(ORDER), there)
             if "discriminant" in zero and not isinstance(value, Fraction):
                 return equal_frequencies(enclosed(to(4), there).hamiltonian(), two_eigenvectors_at(value))
-            decides = None if isinstance(value, Fraction) else _decides(tower, wanted, value, zero)
+            decides = None if isinstance(value, Fraction) else _decides(tower, elements, value, zero)
             return at_numbers(to, there, decides)
 
         specials = []
         for enclosure, factor in roots:
-            zero = tuple(key for key, x in wanted.items() if _vanishes(tower, x, name, factor, enclosure))
+            zero = tuple(key for key, x in elements.items() if _vanishes(tower, x, name, factor, enclosure))
             if zero:
                 exactly = fraction(-factor[0] / factor[1]) if factor.degree() == 1 else None
                 judged = judge(enclosure if exactly is None else exactly, zero)
@@ -138,13 +138,13 @@ def along(
                 specials.append(Special(enclosure, exactly, told, zero, judged))
         ends = [interval[0], *(one.enclosure if one.exactly is None else one.exactly for one in specials), interval[1]]
         between = [Between(sample, judge(sample, ())) for sample in (_between(a, b) for a, b in pairwise(ends))]
-        kept = [k for k, one in enumerate(specials) if _matters(one, between[k], between[k + 1])]
+        kept = [k for k, special in enumerate(specials) if _matters(special, between[k], between[k + 1])]
     return Along(
         name=name,
         low=interval[0],
         high=interval[1],
         hamiltonian=conservative,
-        coordinates=tuple(one for i, one in enumerate(found.coordinates) if i not in found.cyclic),
+        coordinates=tuple(coordinate for i, coordinate in enumerate(found.coordinates) if i not in found.cyclic),
         cyclic=tuple(found.coordinates[i] for i in found.cyclic),
         specials=tuple(specials[k] for k in kept),
         between=(*(between[k] for k in kept), between[-1]),
@@ -221,7 +221,7 @@ def _norm(tower: Tower, x: Element) -> fmpq_poly:
 
 def _refuse_singular(
     tower: Tower,
-    wanted: Mapping[str, Element],
+    elements: Mapping[str, Element],
     known: Sequence[fmpq_poly],
     interval: tuple[Fraction, Fraction],
     name: str,
@@ -230,7 +230,7 @@ def _refuse_singular(
 
     Beyond such a value other verdicts may hold, or none: they are not told from those before it by what is listed.
     """
-    polynomials = [_norm(tower, Element(tower, x.bottom, tower.one.top)) for x in wanted.values()]
+    polynomials = [_norm(tower, Element(tower, x.bottom, tower.one.top)) for x in elements.values()]
     rational = [x for x in tower.squares if not any(degree > 0 for degree in x.degrees()[:MOST_ROOTS])]
     polynomials += [_norm(tower, Element(tower, x, tower.one.top)) for x in rational]
     for root, factor in _roots([x for x in polynomials if x.degree() > 0], interval):
@@ -253,12 +253,12 @@ def _roots(polynomials: Sequence[fmpq_poly], interval: tuple[Fraction, Fraction]
             monic = factor / factor[factor.degree()]
             factors[tuple(map(str, monic.coeffs()))] = factor
     low, high = (arb(end.numerator) / end.denominator for end in interval)
-    found = []
+    roots = []
     for factor in factors.values():
         for root in acb_poly(factor).roots(tol=arb(2) ** (-(ctx.prec * 2 // 3))):
             if root.imag.contains(0) and root.real > low and root.real < high:
-                found.append((root.real, factor))
-    return sorted(found, key=lambda one: float(one[0]))
+                roots.append((root.real, factor))
+    return sorted(roots, key=lambda one: float(one[0]))
 
 
 def _vanishes(tower: Tower, x: Element, name: str, factor: fmpq_poly, enclosure: arb) -> bool:
@@ -284,7 +284,7 @@ def _bound(x: Any, upper: bool) -> Fraction:
 
 
 def _decides(
-    tower: Tower, wanted: Mapping[str, Element], value: arb, zero: Sequence[str]
+    tower: Tower, elements: Mapping[str, Element], value: arb, zero: Sequence[str]
 ) -> Callable[[tuple[int, ...], Sequence[arb]], bool | None]:
     """Resonances at an algebraic value: those that vanish there exactly."""
     known = {tuple(sorted(map(int, key.split(":")))) for key in zero if ":" in key}

@@ -35,16 +35,16 @@ from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, 
 
 def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tuple[str, ...]]:
     """x' and v' in the state, up to ``order``, and the coordinates in it."""
-    found, n = numbers.found, numbers.n
+    expansion, n = numbers.found, numbers.n
     rates = numbers.field()
-    places = [*(i for i in range(n) if i not in found.cyclic), *range(n, 2 * n)]
+    places = [*(i for i in range(n) if i not in expansion.cyclic), *range(n, 2 * n)]
     space = Space(len(places), order, numbers.zero, numbers.one)
 
     def cut(row: Truncated) -> Truncated:
         return Truncated(space, {tuple(key[k] for k in places): value for key, value in row.coefficients.items()})
 
-    positions = tuple(found.coordinates[i] for i in places if i < n)
-    velocities = [space.variable(places.index(n + found.coordinates.index(name))) for name in positions]
+    positions = tuple(expansion.coordinates[i] for i in places if i < n)
+    velocities = [space.variable(places.index(n + expansion.coordinates.index(name))) for name in positions]
     return [*velocities, *map(cut, rates)], positions
 
 
@@ -59,7 +59,7 @@ def judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> J
         return state_field(over_tower(to(order + 1), tower, exact), order)
 
     whole_ones = faddeev(matrix_of(field(1)[0]), tower.zero, tower.one)[1]
-    coefficients = [x for one in whole_ones if (x := tower.rational(one)) is not None]
+    coefficients = [x for whole_one in whole_ones if (x := tower.rational(whole_one)) is not None]
     if len(coefficients) < len(whole_ones):
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
     whole = fmpq_poly(coefficients)
@@ -138,18 +138,18 @@ def _coefficient(
 ) -> tuple[Element, str]:
     """a of r' = a r^3, or of r' = a r^5 where the field goes so far; and the coordinate whose amplitude r is."""
     root = tower.square_root(-square)
-    found: Reduced = on_pair(field, root, tower.reciprocal, _size)
-    j = next(j for j in range(len(positions)) if not found.lengths[j].is_zero())
-    whole, scale = (found.cubic, 4) if found.quintic is None else (found.quintic, found.lengths[j] * 16)
+    reduced: Reduced = on_pair(field, root, tower.reciprocal, _size)
+    j = next(j for j in range(len(positions)) if not reduced.lengths[j].is_zero())
+    whole, scale = (reduced.cubic, 4) if reduced.quintic is None else (reduced.quintic, reduced.lengths[j] * 16)
     real = (whole + tower.conjugate(whole, tower.place(root))) / 2
-    return real / (found.lengths[j] * scale), positions[j]
+    return real / (reduced.lengths[j] * scale), positions[j]
 
 
 def _zero(tower: Tower, field: Sequence[Truncated]) -> Judged:
-    found = on_zero(field, tower.reciprocal, _size)
-    if not found.quadratic.is_zero():
-        return Judged(Outcome.UNSTABLE, Theorem.REDUCTION, coefficient=tower.rational(found.quadratic))
-    value = tower.rational(found.cubic)
+    reduced = on_zero(field, tower.reciprocal, _size)
+    if not reduced.quadratic.is_zero():
+        return Judged(Outcome.UNSTABLE, Theorem.REDUCTION, coefficient=tower.rational(reduced.quadratic))
+    value = tower.rational(reduced.cubic)
     if value is None:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.COEFFICIENT_OPEN)
     outcome, theorem, why = _sign(value)
@@ -168,8 +168,8 @@ def focus(found: Expansion) -> Focus | None:
     if len(factor) != 2:
         return None
     coefficient, amplitude_of = _coefficient(tower, field, positions, factor[0])
-    told = [Formula(ring, in_ring(tower, ring, x)) for x in (factor[0], coefficient)]
-    return Focus(told[0], told[1], amplitude_of)
+    formulas = [Formula(ring, in_ring(tower, ring, x)) for x in (factor[0], coefficient)]
+    return Focus(formulas[0], formulas[1], amplitude_of)
 
 
 def taylor_field(found: Expansion, order: int = 3) -> PolynomialField:

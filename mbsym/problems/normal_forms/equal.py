@@ -100,8 +100,8 @@ def _by_amplitudes(hamiltonian: Truncated, w: arb) -> arb:
     rows = [hamiltonian.derivative(2 + i) for i in range(2)] + [-hamiltonian.derivative(i) for i in range(2)]
     space = Space(4, 3, acb(0), acb(1))
     field = [Truncated(space, row.coefficients) for row in rows]
-    found: arb = on_double_pair(field, acb(0, w), lambda x: 1 / x, lambda x: float(abs(x).mid())).real
-    return found
+    by_amplitudes: arb = on_double_pair(field, acb(0, w), lambda x: 1 / x, lambda x: float(abs(x).mid())).real
+    return by_amplitudes
 
 
 def _verify(hamiltonian: Truncated, form: NormalForm) -> None:

@@ -30,7 +30,7 @@ def exact_values(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> d
     None where there are others, or roots that are not independent (sqrt(2) beside sqrt(8)): what is zero would not be
     told then.
     """
-    written = {one.name: one.value for one in found.scene.system.parameters}
+    written = {parameter.name: parameter.value for parameter in found.scene.system.parameters}
     exact: dict[str, Element] = {}
     for name, value in values.items():
         if isinstance(value, Fraction):
@@ -68,7 +68,7 @@ def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> Num
 def occurring_parameters(found: Expansion) -> list[str]:
     """The parameters in the coefficients, within what is adjoined as well."""
     ring = found.scene.ring
-    parts = [*found.lagrangian, *(part for one in found.forces for part in one)]
+    parts = [*found.lagrangian, *(part for force in found.forces for part in force)]
     pending = [x for part in parts for x in part.values()]
     seen: set[int] = set()
     while pending:
@@ -169,7 +169,7 @@ def _power(factor: fmpq_poly, whole: fmpq_poly) -> int:
 
 def _signed_roots(tower: Tower, coefficients: Sequence[Element]) -> fmpq_poly | None:
     """The polynomial with the roots +-w, z = -w^2 the roots of q; None where its coefficients are not rational."""
-    numbers = [x for one in coefficients if (x := tower.rational(one)) is not None]
+    numbers = [x for coefficient in coefficients if (x := tower.rational(coefficient)) is not None]
     if len(numbers) < len(coefficients):
         return None
     return fmpq_poly([y for k, x in enumerate(numbers) for y in (x * (-1) ** k, fmpq(0))][:-1])
@@ -204,7 +204,7 @@ def rational_root(x: fmpq) -> fmpq | None:
 def rational_squares(tower: Tower | None, coefficients: Sequence[Element]) -> list[fmpq] | None:
     """w^2 for all roots, if all of them are rational numbers."""
     assert tower is not None
-    numbers = [x for one in coefficients if (x := tower.rational(one)) is not None]
+    numbers = [x for coefficient in coefficients if (x := tower.rational(coefficient)) is not None]
     if len(numbers) < len(coefficients):
         return None
     _, factors = fmpq_poly(numbers).factor()
@@ -279,10 +279,10 @@ def common_factor(tower: Tower, even: Sequence[Element], odd: Sequence[Element])
 
 def trimmed(polynomial: Sequence[Element]) -> list[Element]:
     """Without leading zeros."""
-    found = list(polynomial)
-    while found and found[-1].is_zero():
-        found.pop()
-    return found
+    elements = list(polynomial)
+    while elements and elements[-1].is_zero():
+        elements.pop()
+    return elements
 
 
 def known(compute: Any) -> tuple[Any, str]:
@@ -526,10 +526,10 @@ def on_curve(
     resultant = subresultant(tower, even, odd, 0)[0]
     constant, slope = _linear(tower, even, odd)
     root = tower.square_root(-constant / slope)
-    found = on_pair(field, root, tower.reciprocal, size)
-    j = max(range(len(positions)), key=lambda k: size(found.lengths[k]))
-    real = (found.cubic + tower.conjugate(found.cubic, tower.place(root))) / 2
-    return OnCurve(resultant, slope, coefficients[0], real / (found.lengths[j] * 4), positions[j])
+    reduced = on_pair(field, root, tower.reciprocal, size)
+    j = max(range(len(positions)), key=lambda k: size(reduced.lengths[k]))
+    real = (reduced.cubic + tower.conjugate(reduced.cubic, tower.place(root))) / 2
+    return OnCurve(resultant, slope, coefficients[0], real / (reduced.lengths[j] * 4), positions[j])
 
 
 def _linear(tower: Tower, even: Sequence[Element], odd: Sequence[Element]) -> list[Element]:
@@ -554,12 +554,12 @@ def subresultant(tower: Tower, p: Sequence[Element], q: Sequence[Element], j: in
     rows = [_shifted(tower, p, k, m + n - j) for k in reversed(range(n - j))]
     rows += [_shifted(tower, q, k, m + n - j) for k in reversed(range(m - j))]
     size = m + n - 2 * j
-    found = []
+    elements = []
     for i in range(j + 1):
         columns = [*(m + n - j - 1 - k for k in range(size - 1)), i]
         table = [[row[c] for c in columns] for row in rows]
-        found.append(determinant_by_traces(table, tower.zero, tower.one))
-    return found
+        elements.append(determinant_by_traces(table, tower.zero, tower.one))
+    return elements
 
 
 def _shifted(tower: Tower, p: Sequence[Element], by: int, length: int) -> list[Element]:

@@ -107,8 +107,8 @@ def expansion(
     applied = applied_forces(expanded)
     if tied is not None:
         times, nothing = expanded.algebra.times, expanded.algebra.zero
-        given = [applied[name] for name in scene.system.coordinates]
-        pulled = [sum((times(x, tied.slope(i, k)) for i, x in enumerate(given)), nothing) for k in range(n)]
+        jets = [applied[name] for name in scene.system.coordinates]
+        pulled = [sum((times(x, tied.slope(i, k)) for i, x in enumerate(jets)), nothing) for k in range(n)]
         applied = dict(zip(names, pulled, strict=True))
     forces = tuple(parts(applied[name]) for name in names)
     cyclic = tuple(i for i, name in enumerate(names) if name in ignored)
@@ -263,7 +263,7 @@ def have_generalized_potential(
 
 def has_forces(found: Expansion) -> bool:
     """Whether terms of applied forces are left in an expansion."""
-    return any(part for one in found.forces for part in one)
+    return any(part for force in found.forces for part in force)
 
 
 def taken_in(found: Expansion) -> Expansion:
@@ -291,17 +291,17 @@ def taken_in(found: Expansion) -> Expansion:
 
 def _force(potential: Terms, i: int, n: int) -> Terms:
     """dV/dx_i - d/dt dV/dv_i of V linear in v: the time derivative puts v_j for an x_j."""
-    found: Terms = {}
+    terms: Terms = {}
     for key, value in potential.items():
         count = Counter(key)
         if count[i]:
-            _add(found, _without(key, i), value * count[i])
+            _add(terms, _without(key, i), value * count[i])
         if count[n + i]:
             rest = _without(key, n + i)
             for j, times in Counter(rest).items():
                 if j < n:
-                    _add(found, tuple(sorted((*_without(rest, j), n + j))), value * (-times))
-    return found
+                    _add(terms, tuple(sorted((*_without(rest, j), n + j))), value * (-times))
+    return terms
 
 
 def _without(key: tuple[int, ...], one: int) -> tuple[int, ...]:

@@ -297,20 +297,20 @@ def twist(found: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower
     roots = [tower.square_root((difference * sign - trace) / 2) for sign in (-1, 1)]
     linear = diagonalised(hamiltonian, roots, tower.reciprocal, lambda d: float(not d.is_zero()))
     at = normal_form(hamiltonian, linear, tower.reciprocal).actions(2)
-    one, other = roots
+    element, other = roots
     zero = tower.zero
-    determinant = at.get((2, 0), zero) * other * other - at.get((1, 1), zero) * one * other
-    determinant = determinant + at.get((0, 2), zero) * one * one
+    determinant = at.get((2, 0), zero) * other * other - at.get((1, 1), zero) * element * other
+    determinant = determinant + at.get((0, 2), zero) * element * element
     named = {"trace": trace, "product": constant, "discriminant": discriminant, "determinant": determinant}
     resonances = {vector: resonance(tower, (constant, trace), vector) for vector in ((1, 2), (1, 3))}
-    told = {name: Formula(ring, in_ring(tower, ring, x)) for name, x in named.items()}
-    told["zero"] = Formula(ring, in_ring(tower, ring, primitive(tower, determinant)))
+    formulas = {name: Formula(ring, in_ring(tower, ring, x)) for name, x in named.items()}
+    formulas["zero"] = Formula(ring, in_ring(tower, ring, primitive(tower, determinant)))
     result = InSymbols(
-        trace=told["trace"],
-        product=told["product"],
-        discriminant=told["discriminant"],
-        determinant=told["determinant"],
-        zero=told["zero"],
+        trace=formulas["trace"],
+        product=formulas["product"],
+        discriminant=formulas["discriminant"],
+        determinant=formulas["determinant"],
+        zero=formulas["zero"],
         resonances=tuple((k, Formula(ring, in_ring(tower, ring, x))) for k, x in resonances.items()),
     )
     return result, tower, named | {f"{a}:{b}": x for (a, b), x in resonances.items()}

@@ -151,7 +151,7 @@ def judged(
             least_open = min(least_open, sum(map(abs, vector)))
         elif verdict:
             exact.append(Resonance(vector))
-    exact = [one for one in exact if one.order < least_open]
+    exact = [resonance for resonance in exact if resonance.order < least_open]
     known["resonances"] = tuple(exact)
     if len(omega) > 2 and exact and least_open > 3:
         grows = _together(lowered, omega, exact, known)
@@ -188,9 +188,9 @@ def _formed(
     space = Space(2 * len(omega), order, acb(0), acb(1))
     linear = diagonalised(whole, [acb(0, w) for w in omega], _inverse, absolute)
     kept: set[tuple[int, ...]] = set()
-    for one in exact:
-        oriented = tuple(k if w > 0 else -k for k, w in zip(one.vector, omega, strict=True))
-        for times in range(1, order // one.order + 1):
+    for resonance in exact:
+        oriented = tuple(k if w > 0 else -k for k, w in zip(resonance.vector, omega, strict=True))
+        for times in range(1, order // resonance.order + 1):
             kept |= {tuple(s * times * k for k in oriented) for s in (1, -1)}
     form = normal_form(whole, linear, _inverse, kept, space)
     if not all(value.contains(0) for value in defects(whole, form)):
@@ -216,7 +216,7 @@ def _two(
     known: dict[str, Any],
     vanishes: Vanishes,
 ) -> Judged:
-    by_order = {one.order: one for one in exact}
+    by_order = {resonance.order: resonance for resonance in exact}
     form = _formed(lowered, omega, exact, 4)
     if 3 in by_order:
         size = _amplitude(form, by_order[3].vector, omega)
@@ -241,7 +241,7 @@ def _two(
         return Judged(Outcome.STABLE, Theorem.ARNOLD_MOSER, **known)
     if order < 6 or least_open <= 6:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.DETERMINANT_OPEN, **known)
-    if any(4 < one.order <= 6 or one.order == 3 for one in exact):
+    if any(4 < resonance.order <= 6 or resonance.order == 3 for resonance in exact):
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.RESONANCE, **known)
     sixth = _formed(lowered, omega, exact, 6).actions(3)
     total = acb(0)
@@ -296,7 +296,7 @@ def _together(
     Where W = V - N sum |J|^(3/2) > 0, for a large N, all I_j are of one size and the I_m smaller, so that W' > 0
     (Chetaev).  None where that is not the case.
     """
-    third = [one for one in exact if one.order == 3]
+    third = [resonance for resonance in exact if resonance.order == 3]
     if len(third) != 1:
         return None
     signs = {k * w > 0 for k, w in zip(third[0].vector, omega, strict=True) if k}
@@ -311,7 +311,7 @@ def _together(
 def _many(
     lowered: Callable[[int], Truncated], omega: Sequence[arb], exact: Sequence[Resonance], known: dict[str, Any]
 ) -> Judged:
-    if any(one.order <= 4 for one in exact):
+    if any(resonance.order <= 4 for resonance in exact):
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.RESONANCE, **known)
     quadratic = _quadratic(_formed(lowered, omega, exact, 4))
     known["quadratic"] = tuple(sorted(quadratic.items()))

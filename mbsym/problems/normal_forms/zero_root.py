@@ -156,7 +156,7 @@ def _still(key: tuple[int, ...], roots: Sequence[acb]) -> bool:
 
 def _generator(part: Truncated, roots: Sequence[acb], nilpotent: Truncated, solves: Solves) -> Truncated:
     space, n = part.space, len(roots)
-    found, rest = space.nothing, part
+    truncated, rest = space.nothing, part
     for _ in range(2 * space.order + 2):
         if not rest.coefficients:
             break
@@ -171,9 +171,9 @@ def _generator(part: Truncated, roots: Sequence[acb], nilpotent: Truncated, solv
             for a, b, root in zip(key[:n], key[n:], roots, strict=True):
                 divisor += root * (a - b)
             solved[key] = value / divisor
-        found = found + Truncated(space, solved) + Truncated(space, still)
+        truncated = truncated + Truncated(space, solved) + Truncated(space, still)
         rest = bracket(nilpotent, Truncated(space, solved))
-    return found
+    return truncated
 
 
 @dataclass(frozen=True)
@@ -241,10 +241,10 @@ def _other_roots(coefficients: Sequence[acb]) -> list[acb] | None:
     if len(coefficients) < 2:
         return []
     try:
-        found: list[acb] = acb_poly(coefficients).roots(tol=arb(2) ** (-(ctx.prec // 2)))
+        other_roots: list[acb] = acb_poly(coefficients).roots(tol=arb(2) ** (-(ctx.prec // 2)))
     except ValueError:
         return None
-    return sorted(found, key=lambda z: float(z.real.mid()))
+    return sorted(other_roots, key=lambda z: float(z.real.mid()))
 
 
 def _along(whole: Truncated, scalars: Scalars) -> int | None:
@@ -279,8 +279,8 @@ def splitting(whole: Truncated, place: int, scalars: Scalars) -> tuple[Truncated
         left = [one.beyond(1) if step else one for one in left]
         for row, k in zip(back, others, strict=True):
             change = space.nothing
-            for factor, one in zip(row, left, strict=True):
-                change = change - one.scaled(factor)
+            for factor, truncated in zip(row, left, strict=True):
+                change = change - truncated.scaled(factor)
             x[k] = x[k] + change
     for slope in slopes:
         residual = slope.composed(x)

@@ -134,8 +134,8 @@ def _curves(field: PolynomialField) -> Iterator[tuple[list[Any], Any]]:
             others = [nmod_poly([random.randrange(1, prime)], prime) for _ in places[1:]]
             if group == moving:
                 others[0] = nmod_poly([0, 1], prime)
-            total = sum((one * one for one in others), nmod_poly([1], prime))
-            values = [*(2 * one for one in others), total - 2]
+            total = sum((other * other for other in others), nmod_poly([1], prime))
+            values = [*(2 * other for other in others), total - 2]
             if group == moving:
                 scale = total
             else:
@@ -178,10 +178,10 @@ def darboux_polynomials(
     if rise is None or (field.relations and not grading.free):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_HOMOGENEOUS)
     powers = powers_of_cofactor(grading)
-    if any(sum(1 for a in one if a) > 1 for one in powers):
+    if any(sum(1 for a in power if a) > 1 for power in powers):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.MIXED)
-    means = [rest_means(field, one) for one in powers]
-    if any(one is None for one in means):
+    means = [rest_means(field, power) for power in powers]
+    if any(mean is None for mean in means):
         return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_AT_REST)
     there = at_random(field, prime, f"darboux {found.degree}")
     before = [(weight, f, cofactor_of(field, f)) for weight, f in known]
@@ -189,7 +189,7 @@ def darboux_polynomials(
     counts: list[DarbouxCount] = []
     for weight in range(1, found.degree + 1):
         most = weight // min(weights)
-        choices = [_sums(one or [], most, field.context.constant(0)) for one in means]
+        choices = [_sums(mean or [], most, field.context.constant(0)) for mean in means]
         number = 1
         for choice in choices:
             number *= len(choice)
@@ -199,7 +199,7 @@ def darboux_polynomials(
             sum((c * monomial(field, one) for c, one in zip(values, powers, strict=True)), field.context.constant(0))
             for values in product(*choices)
         ]
-        counts += [search.of(weight, one) for one in cofactors if one != 0]
+        counts += [search.of(weight, cofactor) for cofactor in cofactors if cofactor != 0]
     return DarbouxPolynomials(found.degree, weights, tuple(search.found), tuple(counts), None)
 
 
@@ -280,16 +280,16 @@ def _coefficient(context: Any, p: Any, power: int) -> Any:
 
 def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:
     """All sums of at most so many of them, each once."""
-    found, last = [zero], [zero]
+    sums, last = [zero], [zero]
     for _ in range(most):
         new: list[Any] = []
         for total in (x + mean for x in last for mean in means):
-            if total not in found and total not in new:
+            if total not in sums and total not in new:
                 new.append(total)
-        found, last = found + new, new
-        if not new or len(found) > MOST_COFACTORS:
+        sums, last = sums + new, new
+        if not new or len(sums) > MOST_COFACTORS:
             break
-    return found
+    return sums
 
 
 @dataclass(frozen=True)
@@ -307,8 +307,8 @@ class DarbouxSearch:
         self, usual: PolynomialIntegrals, there: ModularField, known: Sequence[DarbouxPolynomial] = ()
     ) -> None:
         self.usual, self.there, self.field = usual, there, usual.field
-        self.integrals = [(one.weight, there.terms(one.polynomial)) for one in usual.generators]
-        self.factors = [_Factor(one, there.terms(one.polynomial)) for one in known]
+        self.integrals = [(generator.weight, there.terms(generator.polynomial)) for generator in usual.generators]
+        self.factors = [_Factor(polynomial, there.terms(polynomial.polynomial)) for polynomial in known]
         self.before = len(known)
 
     @property
@@ -330,8 +330,8 @@ class DarbouxSearch:
                 with suppress(NoClosedForm):  # too long to be written: the count stays incomplete
                     f = lifted(self.field, list(support), False, leading, factor=cofactor)
                 if f is not None:
-                    one = DarbouxPolynomial(f, weight, cofactor, is_regular_on(self.field, f))
-                    own = _Factor(one, self.there.terms(f))
+                    polynomial = DarbouxPolynomial(f, weight, cofactor, is_regular_on(self.field, f))
+                    own = _Factor(polynomial, self.there.terms(f))
                     self.factors.append(own)
                     rows, _ = echelon([*rows, own.terms], columns, prime)
         return DarbouxCount(weight, cofactor, len(most), len(rows))

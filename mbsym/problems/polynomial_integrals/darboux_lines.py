@@ -75,7 +75,7 @@ def darboux_along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> 
         return empty
     search = _Drops(usual, general)
     search.run()
-    found, undecided = [], []
+    specials, undecided = [], []
     for value in sorted(one for one in search.values if low <= one <= high):
         try:
             special = at_value(usual, general, value)
@@ -85,7 +85,7 @@ def darboux_along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> 
             undecided.append(value)
             continue
         if special.polynomials:
-            found.append(special)
+            specials.append(special)
         if not special.complete:
             undecided.append(value)
     return DarbouxAlong(
@@ -93,7 +93,7 @@ def darboux_along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> 
         low,
         high,
         general,
-        tuple(found),
+        tuple(specials),
         tuple(undecided),
         tuple(p for p in search.irrational if meets(p, low, high)),
         tuple(search.square),
@@ -114,8 +114,8 @@ def at_value(usual: PolynomialIntegrals, general: DarbouxPolynomials, value: Fra
     named = [(str(k), one.polynomial.compose(*images, ctx=field.context)) for k, one in enumerate(usual.generators)]
     here = polynomial_integrals(field, usual.grading, usual.degree, named)
     known = [(one.weight, one.polynomial.compose(*images, ctx=field.context)) for one in general.polynomials]
-    found = darboux_polynomials(here, known=known)
-    return DarbouxSpecial(value, field, found.polynomials, found.complete and here.complete)
+    polynomials = darboux_polynomials(here, known=known)
+    return DarbouxSpecial(value, field, polynomials.polynomials, polynomials.complete and here.complete)
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ class _Drops:
     def run(self) -> None:
         grading = self.usual.grading
         powers = powers_of_cofactor(grading)
-        listed = [self._eigenvalues(one) for one in powers]
+        listed = [self._eigenvalues(power) for power in powers]
         budget = MOST_TOTAL
         orbits = []
         for weight in range(1, self.usual.degree + 1):
@@ -179,11 +179,11 @@ class _Drops:
         self._of_products()
 
     def _eigenvalues(self, power: tuple[int, ...]) -> list[Value]:
-        found: list[Value] = []
+        eigenvalues: list[Value] = []
 
         def add(value: Value) -> None:
-            if (value[0] != 0 or value[1]) and value not in found:
-                found.append(value)
+            if (value[0] != 0 or value[1]) and value not in eigenvalues:
+                eigenvalues.append(value)
 
         for factor in rest_factors(self.field, power) or []:
             add((factor.mean, ()))
@@ -195,7 +195,7 @@ class _Drops:
                         add((factor.mean, ((j, Fraction(sign, 2)),)))
             elif factor.degree > 2 and factor.moves:
                 self.lost = True
-        return found
+        return eigenvalues
 
     def _place(self, delta: Any) -> int:
         if delta not in self.discriminants:
@@ -205,16 +205,16 @@ class _Drops:
     def _sums(self, values: Sequence[Value], most: int) -> list[Value]:
         """All sums of at most so many of them, each once."""
         zero: Value = (self.field.context.constant(0), ())
-        found, last = [zero], [zero]
+        sums, last = [zero], [zero]
         for _ in range(most):
             new: list[Value] = []
             for total in (_added(x, y) for x in last for y in values):
-                if total not in found and total not in new:
+                if total not in sums and total not in new:
                     new.append(total)
-            found, last = found + new, new
-            if not new or len(found) > MOST_SUMS:
+            sums, last = sums + new, new
+            if not new or len(sums) > MOST_SUMS:
                 break
-        return found
+        return sums
 
     def _orbits(
         self, weight: int, powers: Sequence[tuple[int, ...]], choices: Sequence[Sequence[Value]]
@@ -292,8 +292,8 @@ class _Drops:
             def build(there: ModularField, weight: int = count.weight, cofactor: Any = count.cofactor) -> list[Terms]:
                 return list(DarbouxSearch(self.usual, there, self.general.polynomials).products(weight, cofactor))
 
-            parts = [one.polynomial for one in self.general.polynomials]
-            parts += [one.polynomial for one in self.usual.generators]
+            parts = [polynomial.polynomial for polynomial in self.general.polynomials]
+            parts += [generator.polynomial for generator in self.usual.generators]
             degree = max((int(p.degrees()[0]) for p in parts), default=0)
             try:
                 self._take(dropped(self.line, build, count.weight * degree))

@@ -99,8 +99,8 @@ def dropped(line: Line, build: Build, extra: int = 0) -> nmod_poly:
     parts = [(part, _Part(somewhere[0], images, part, line.prime, source)) for part in coupled(images)]
     parts = [(part, one) for part, one in parts if one.rank]
     if sum((one.rank * entry + 1) * len(part) * one.height for part, one in parts) > MOST_WORK:
-        told = Message("the minors of [[count]] monomials along a line take too long", count=count)
-        raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+        message = Message("the minors of [[count]] monomials along a line take too long", count=count)
+        raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
     most = max((one.rank * entry for _, one in parts), default=0)
     values: list[list[tuple[int, int]]] = [[] for _ in parts]
     shift = source.randrange(line.prime)  # at small numbers leading coefficients may vanish
@@ -108,9 +108,9 @@ def dropped(line: Line, build: Build, extra: int = 0) -> nmod_poly:
         if all(one.rank * entry + 1 <= len(done) for (_, one), done in zip(parts, values, strict=True)):
             break
         here = build(line.at(t))
-        for (_, one), done in zip(parts, values, strict=True):
-            if len(done) <= one.rank * entry:
-                done.append(one.minors(here))
+        for (_, part), done in zip(parts, values, strict=True):
+            if len(done) <= part.rank * entry:
+                done.append(part.minors(here))
     for done in values:
         first = interpolated([a for a, _ in done], shift, line.prime)
         second = interpolated([b for _, b in done], shift, line.prime)
@@ -207,13 +207,13 @@ class Excess:
         self.usual = usual
         self.columns = 0
         weights = range(1, usual.degree + 1)
-        chosen = [None, *(usual.generators.index(one) for one in levels(usual))]
+        chosen = [None, *(usual.generators.index(level) for level in levels(usual))]
         self.blocks = [Block(weight, level) for level in chosen for weight in weights]
 
     @cached_property
     def on_levels(self) -> dict[int, OnLevel]:
         """What holds for almost all parameters where an integral vanishes, by the number of that one."""
-        return {self.usual.generators.index(one): on_level(self.usual, one) for one in levels(self.usual)}
+        return {self.usual.generators.index(level): on_level(self.usual, level) for level in levels(self.usual)}
 
     def _known(self, block: Block) -> list[tuple[int, Any]]:
         """Weights and polynomials of what holds for almost all parameters."""
@@ -310,15 +310,15 @@ class Excess:
             zero = self._zero(there, block.level)
             scale = pow(zero.terms[zero.leading], steps, there.prime)
             rests = [remainder(one, zero.terms, there.prime) for one in spanned]
-            return [{m: c * scale % there.prime for m, c in one.items()} for one in rests]
+            return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
         return images, most + (0 if block.level is None else steps * degree(usual[block.level].polynomial))
 
     def leading(self) -> list[Any]:
         """Of every level the leading coefficient of V, as a polynomial over QQ in the only parameter."""
         found = []
-        for one in levels(self.usual):
-            terms = one.polynomial.to_dict()
+        for level in levels(self.usual):
+            terms = level.polynomial.to_dict()
             top = max(tuple(map(int, m[1:])) for m in terms)
             powers = {int(m[0]): c for m, c in terms.items() if tuple(map(int, m[1:])) == top}
             found.append(fmpq_poly([powers.get(k, 0) for k in range(max(powers) + 1)]))

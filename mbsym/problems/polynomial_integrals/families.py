@@ -83,8 +83,8 @@ def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family
         yield from sorted(further, key=_size)
 
 
-def _size(one: Family) -> tuple[int, int]:
-    return len(one.zero) + len(one.equal), len(one.zero)
+def _size(family: Family) -> tuple[int, int]:
+    return len(family.zero) + len(family.equal), len(family.zero)
 
 
 def _alike(field: PolynomialField, names: Sequence[str]) -> list[list[str]]:
@@ -101,14 +101,14 @@ def _alike(field: PolynomialField, names: Sequence[str]) -> list[list[str]]:
 
 
 def _partitions(names: Sequence[str]) -> list[tuple[tuple[str, str], ...]]:
-    found: list[tuple[tuple[str, str], ...]] = [()]
+    partitions: list[tuple[tuple[str, str], ...]] = [()]
     for k, name in enumerate(names):
         further = []
-        for one in found:
+        for one in partitions:
             taken = {a for a, _ in one}
             further += [(*one, (name, other)) for other in names[:k] if other not in taken]
-        found += further
-    return found
+        partitions += further
+    return partitions
 
 
 def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = inf) -> Cases:
@@ -124,12 +124,12 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = i
         raise NoClosedForm("special parameters are looked for where equations are quasi-homogeneous; these are not")
     listed = list(families(field, positive))
     if len(listed) > MOST_FAMILIES:
-        told = Message(
+        message = Message(
             "[[count]] parameters have more than [[most]] families",
             count=len(field.parameters),
             most=MOST_FAMILIES,
         )
-        raise NoClosedForm(told, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
+        raise NoClosedForm(message, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
     return _Search(usual, positive).found(listed, budget)
 
 
@@ -225,7 +225,7 @@ class _Search:
         """The irreducible factors of the polynomial of a degree in the free parameters that has all points as zeros."""
         exponents = [m for k in range(degree + 1) for m in monomials((1,) * len(free), k)]
         numbers = [[there.values[name] for name in free] for there in those]
-        rows = [[_value(m, one, self.prime) for m in exponents] for one in numbers]
+        rows = [[_value(m, number, self.prime) for m in exponents] for number in numbers]
         basis, nullity = nmod_mat(rows, self.prime).nullspace()
         return self._lifted(free, exponents, [int(basis[k, 0]) for k in range(len(exponents))]) if nullity == 1 else []
 
@@ -266,8 +266,8 @@ class _Search:
         relations = tuple(_composed(p, images, context)[0] for p in field.relations)
         here = PolynomialField(context, left, field.variables, tuple(numerators), denominator, relations)
         known = [
-            (str(k), primitive(here, _composed(one.polynomial, images, context)[0]))
-            for k, one in enumerate(self.usual.generators)
+            (str(k), primitive(here, _composed(generator.polynomial, images, context)[0]))
+            for k, generator in enumerate(self.usual.generators)
         ]
         special = special_of(self.usual, here, known, None)
         if special is None:

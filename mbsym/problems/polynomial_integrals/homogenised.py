@@ -92,8 +92,8 @@ def along_of(
         raise NoClosedForm("special values are looked for where there is one unit vector or angle at most, and no root")
     found = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
-    values = [_new_at_one(larger, one, down) for one in found.values]
-    kept = tuple(one for one in values if one.integrals or one.levels)
+    values = [_new_at_one(larger, value, down) for value in found.values]
+    kept = tuple(value for value in values if value.integrals or value.levels)
     return replace(found, values=kept, weights=larger.grading.weights[:-1])
 
 
@@ -137,15 +137,15 @@ def zero_levels_of(
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
     if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        return ZeroLevels(tuple(on_level(usual, one) for one in levels(usual)), None)
+        return ZeroLevels(tuple(on_level(usual, level) for level in levels(usual)), None)
     larger = _larger(usual, kinds, known)
     if larger is None:
         return None
     down = _Down(larger.field.variables[-1])
     there = at_random(usual.field, PRIMES[0], "levels at one")
-    pairs = [(one.weight, there.terms(down.polynomial(one.polynomial))) for one in larger.generators]
+    pairs = [(generator.weight, there.terms(down.polynomial(generator.polynomial))) for generator in larger.generators]
     pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]  # that of the constant is 1
-    found = []
+    on_levels = []
     for one in filter(_irreducible, levels(larger)):
         at = on_level(larger, one)
         zero = there.terms(down.polynomial(one.polynomial))
@@ -154,8 +154,8 @@ def zero_levels_of(
             for w, f in ((w, primitive(usual.field, down.polynomial(f))) for w, f in at.integrals)
             if not _spanned(there, there.terms(f), zero, pairs, usual.degree)
         ]
-        found.append(OnLevel(down.generator(one), tuple(fresh), at.counts))
-    return ZeroLevels(tuple(found), larger.grading.weights[:-1])
+        on_levels.append(OnLevel(down.generator(one), tuple(fresh), at.counts))
+    return ZeroLevels(tuple(on_levels), larger.grading.weights[:-1])
 
 
 def other_levels_of(
@@ -166,22 +166,22 @@ def other_levels_of(
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
     if usual.grading.homogeneous and (usual.grading.free or not usual.field.relations):
-        lengths = [one for one in usual.generators if one.by_itself]
+        lengths = [generator for generator in usual.generators if generator.by_itself]
         if usual.field.relations and not lengths:  # its weight is beyond the degree: with any length there is nothing
             return other_levels(usual, None)
         return other_levels(usual, lengths[0] if lengths else None)
     larger = _larger(usual, kinds, known)
     if larger is None:
         return None
-    (unity,) = [one for one in larger.generators if one.name == UNITY]
+    (unity,) = [generator for generator in larger.generators if generator.name == UNITY]
     found = other_levels(larger, unity)
     down = _Down(larger.field.variables[-1])
     return replace(found, levels=tuple(map(down.other, found.levels)), weights=larger.grading.weights[:-1])
 
 
-def _irreducible(one: Generator) -> bool:
+def _irreducible(generator: Generator) -> bool:
     """Whether a polynomial is no product over QQ of others; numbers do not count."""
-    return sum(power for _, power in irreducible_factors(one.polynomial)[1]) == 1
+    return sum(power for _, power in irreducible_factors(generator.polynomial)[1]) == 1
 
 
 def _spanned(
@@ -210,8 +210,8 @@ def darboux_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         return darboux_polynomials(usual)
-    found = darboux_polynomials(larger)
-    return _Down(larger.field.variables[-1]).darboux(found)
+    polynomials = darboux_polynomials(larger)
+    return _Down(larger.field.variables[-1]).darboux(polynomials)
 
 
 def darboux_along_of(
@@ -236,8 +236,8 @@ def darboux_along_of(
         found,
         general=down.darboux(found.general),
         values=tuple(
-            replace(one, field=down.field(one.field), polynomials=tuple(map(down.factor, one.polynomials)))
-            for one in found.values
+            replace(value, field=down.field(value.field), polynomials=tuple(map(down.factor, value.polynomials)))
+            for value in found.values
         ),
         square=tuple(map(down.polynomial, found.square)),
     )
@@ -276,7 +276,7 @@ def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple
             for p, own in zip(field.numerators, weights, strict=True)
             for m in p.monoms()
         ]
-        rank = (sum(max(rises) - one for one in rises), sum(choice))
+        rank = (sum(max(rises) - rise for rise in rises), sum(choice))
         if best is None or rank < best[0]:
             best = rank, weights
     if best is None:
@@ -351,7 +351,7 @@ class _Down:
             found,
             weights=found.weights[:-1],
             polynomials=tuple(map(self.factor, found.polynomials)),
-            counts=tuple(replace(one, cofactor=self.polynomial(one.cofactor)) for one in found.counts),
+            counts=tuple(replace(count, cofactor=self.polynomial(count.cofactor)) for count in found.counts),
         )
 
     def other(self, one: OtherLevel) -> OtherLevel:

@@ -51,7 +51,7 @@ def levels(found: PolynomialIntegrals) -> tuple[Generator, ...]:
     """
     if not found.grading.homogeneous or (found.field.relations and not found.grading.free):
         return ()
-    return tuple(one for one in found.generators if not one.by_itself and one.name != UNITY)
+    return tuple(generator for generator in found.generators if not generator.by_itself and generator.name != UNITY)
 
 
 def on_level(found: PolynomialIntegrals, level: Generator) -> OnLevel:
@@ -103,7 +103,7 @@ def images_on(
     there: ModularField, columns: Sequence[Exponents], cofactor: Sequence[Exponents], zero: Terms
 ) -> list[Terms]:
     """The derivatives of the columns, then -x^b V."""
-    found = [there.derivative(one) for one in columns]
+    found = [there.derivative(column) for column in columns]
     return found + [times({one: there.prime - 1}, zero, there.prime) for one in cofactor]
 
 

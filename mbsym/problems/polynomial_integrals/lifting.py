@@ -36,19 +36,19 @@ def lifted(
     None where there is none (or more than one that has ``leading``).  Raises NoClosedForm where it outgrows its bounds.
     """
     if len(support) > MOST_SUPPORT:
-        told = Message(
+        message = Message(
             "an integral has [[count]] monomials, more than [[most]]",
             count=len(support),
             most=MOST_SUPPORT,
         )
-        raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
+        raise NoClosedForm(message, limit=Limit.TERMS, remedy=SMALLER)
     order = [one for one in support if one != leading]
     columns = [*order, leading]
-    images = [field.derivative(monomial(field, one)) for one in columns]
+    images = [field.derivative(monomial(field, column)) for column in columns]
     if factor is not None:
-        images = [image - factor * monomial(field, one) for image, one in zip(images, columns, strict=True)]
+        images = [image - factor * monomial(field, column) for image, column in zip(images, columns, strict=True)]
     if modulo:
-        images = [field.reduced(one) for one in images]
+        images = [field.reduced(image) for image in images]
     multiples = [monomial(field, one) * level for one in cofactor]
     equations = _equations(field, [*images[:-1], *multiples, images[-1]])
     solved = _eliminated(field, equations, len(order) + len(multiples))

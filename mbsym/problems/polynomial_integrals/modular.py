@@ -106,9 +106,9 @@ def at_random(field: PolynomialField, prime: int, seed: str = "") -> ModularFiel
     source = random.Random(f"{seed} {prime}")
     for _ in range(20):
         numbers = {name: source.randrange(1, prime) for name in field.parameters}
-        found = ModularField(field, prime, numbers)
-        if found.terms(field.denominator):
-            return found
+        modular_field = ModularField(field, prime, numbers)
+        if modular_field.terms(field.denominator):
+            return modular_field
     raise NoClosedForm("the equations divide by what vanishes at these values")
 
 
@@ -144,12 +144,12 @@ def _reduced(terms: Terms, rules: Sequence[tuple[Exponents, Terms]], prime: int)
 
 def times(a: Terms, b: Terms, prime: int) -> Terms:
     """The product."""
-    found: Terms = {}
+    terms: Terms = {}
     for m, c in a.items():
         for n, d in b.items():
             key = tuple(map(int.__add__, m, n))
-            found[key] = (found.get(key, 0) + c * d) % prime
-    return {m: c for m, c in found.items() if c}
+            terms[key] = (terms.get(key, 0) + c * d) % prime
+    return {m: c for m, c in terms.items() if c}
 
 
 def remainder(f: Terms, level: Terms, prime: int) -> Terms:
@@ -192,17 +192,17 @@ def kernel(there: ModularField, columns: Sequence[Exponents], modulo: bool) -> l
     """
     images = []
     terms = 0
-    for one in columns:
-        image = there.derivative(one)
+    for column in columns:
+        image = there.derivative(column)
         images.append(there.reduced(image) if modulo else image)
         terms += len(images[-1])
         if terms > MOST_TERMS:
-            told = Message(
+            message = Message(
                 "the derivatives of [[count]] monomials have more than [[most]] terms",
                 count=len(columns),
                 most=MOST_TERMS,
             )
-            raise NoClosedForm(told, limit=Limit.TERMS, remedy=SMALLER)
+            raise NoClosedForm(message, limit=Limit.TERMS, remedy=SMALLER)
     return [{columns[k]: c for k, c in vector.items()} for vector in kernel_of(images, there.prime)]
 
 
@@ -216,12 +216,12 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
     for part in coupled([images[k] for k in left]):
         part = [left[k] for k in part]
         if len(part) > MOST_COUPLED:
-            told = Message(
+            message = Message(
                 "[[count]] monomials are coupled with each other, more than [[most]]",
                 count=len(part),
                 most=MOST_COUPLED,
             )
-            raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+            raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
         matrix = matrix_of([images[k] for k in part], prime)
         for vector in null_space(matrix):
             found.append({part[k]: c for k, c in enumerate(vector) if c})

@@ -67,28 +67,28 @@ def other_levels(found: PolynomialIntegrals, fixed: Generator | None) -> OtherLe
 
     Of a quasi-homogeneous field; ``fixed`` is one of ``found.generators``, None where there is no such quantity.
     """
-    listed = [one for one in levels(found) if one is not fixed]
+    listed = [level for level in levels(found) if level is not fixed]
     return OtherLevels(found.degree, fixed is not None, tuple(_level(found, fixed, one) for one in listed))
 
 
-def _level(found: PolynomialIntegrals, fixed: Generator | None, one: Generator) -> OtherLevel:
+def _level(found: PolynomialIntegrals, fixed: Generator | None, generator: Generator) -> OtherLevel:
     if fixed is None:
-        return OtherLevel(one, 1, complete=found.complete)
-    step = gcd(one.weight, fixed.weight)
-    power, other = fixed.weight // step, one.weight // step
-    weights = _weights(found.degree, one.weight, fixed.weight)
+        return OtherLevel(generator, 1, complete=found.complete)
+    step = gcd(generator.weight, fixed.weight)
+    power, other = fixed.weight // step, generator.weight // step
+    weights = _weights(found.degree, generator.weight, fixed.weight)
     rise = found.grading.rise or 0
-    top = one.weight * power
+    top = generator.weight * power
     most = max(weights)
     if most + rise < top:  # K is zero: F is an integral everywhere, and those are all known where the list is complete
-        return OtherLevel(one, power, complete=_general(found, most).complete)
+        return OtherLevel(generator, power, complete=_general(found, most).complete)
     if count(found.grading.weights, most) > MOST_COLUMNS:
-        return OtherLevel(one, power, looked=False)
+        return OtherLevel(generator, power, looked=False)
     try:
         usual = _general(found, most)
-        return _Search(usual, fixed, one, power, other, weights).result()
+        return _Search(usual, fixed, generator, power, other, weights).result()
     except NoClosedForm:
-        return OtherLevel(one, power, looked=False)
+        return OtherLevel(generator, power, looked=False)
 
 
 def _weights(degree: int, first: int, second: int) -> list[int]:
@@ -110,7 +110,7 @@ def _general(found: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
     """The integrals up to a larger degree; those known keep their names."""
     if degree <= found.degree:
         return found
-    known = [(one.name, one.polynomial) for one in found.generators]
+    known = [(generator.name, generator.polynomial) for generator in found.generators]
     larger = polynomial_integrals(found.field, found.grading, degree, known)
     return replace(larger, generators=(*found.generators, *(x for x in larger.generators if x.weight > found.degree)))
 
@@ -223,15 +223,15 @@ class _Search:
             return a - nmod_mat([[int(x) * t % prime for x in row] for row in b.table()], prime)
 
         rank = at(source.randrange(prime), first, second).rank()
-        found = nmod_poly([0], prime)
+        drops = nmod_poly([0], prime)
         for _ in range(2):
             left = _random(rank, size, prime, source)
             right = _random(len(multiples), rank, prime, source)
             a, b = left * first * right, left * second * right
             shift = source.randrange(prime - rank - 2)
             values = [int(at(shift + 1 + k, a, b).det()) if rank else 1 for k in range(rank + 1)]
-            found = found.gcd(interpolated(values, shift, prime))
-        return found
+            drops = drops.gcd(interpolated(values, shift, prime))
+        return drops
 
     def _products(self, there: ModularField, weight: int, steps: int) -> list[Terms]:
         """Products of integrals modulo W, times a power of its leading coefficient."""
@@ -240,7 +240,7 @@ class _Search:
         spanned = products(pairs, weight, True, there.prime, len(self.field.variables), lambda terms: terms)
         scale = pow(zero.terms[zero.leading], steps, there.prime)
         rests = [remainder(one, zero.terms, there.prime) for one in spanned]
-        return [{m: c * scale % there.prime for m, c in one.items()} for one in rests]
+        return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
     def _usual_is_complete(self, line: Line, source: Random) -> bool:
         """Whether for almost all k there is nothing beyond products."""

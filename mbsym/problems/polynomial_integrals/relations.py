@@ -46,15 +46,15 @@ def linear_relations(
     """
     least = min(weights)
     chosen = [k for k, w in enumerate(weights) if w == least]
-    found: list[Relation] = []
+    relations: list[Relation] = []
     complete = True
     for number, k in enumerate(chosen):
-        one = _Leading(field, k, chosen[number + 1 :], positive)
-        for relation in one.relations():
-            if not any(_same(relation, other) for other in found):
-                found.append(relation)
-        complete = complete and one.complete
-    return Relations(tuple(found), complete and (free or not field.relations))
+        leading = _Leading(field, k, chosen[number + 1 :], positive)
+        for relation in leading.relations():
+            if not any(_same(relation, other) for other in relations):
+                relations.append(relation)
+        complete = complete and leading.complete
+    return Relations(tuple(relations), complete and (free or not field.relations))
 
 
 def _same(one: Relation, other: Relation) -> bool:

@@ -87,12 +87,12 @@ class PolynomialIntegrals:
 
     @property
     def complete(self) -> bool:
-        return all(one.complete for one in self.counts)
+        return all(count.complete for count in self.counts)
 
     @property
     def new(self) -> tuple[Generator, ...]:
         """Those that problem 7 does not list, nor combinations of what it lists."""
-        return tuple(one for one in self.generators if one.is_new)
+        return tuple(generator for generator in self.generators if generator.is_new)
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class OnLevel:
 
     @property
     def complete(self) -> bool:
-        return all(one.complete for one in self.counts)
+        return all(count.complete for count in self.counts)
 
 
 @dataclass(frozen=True)
@@ -254,7 +254,7 @@ class DarbouxPolynomials:
 
     @property
     def complete(self) -> bool:
-        return self.obstacle is None and all(one.complete for one in self.counts)
+        return self.obstacle is None and all(count.complete for count in self.counts)
 
 
 @dataclass(frozen=True)

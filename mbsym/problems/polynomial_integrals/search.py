@@ -197,11 +197,11 @@ class Search:
         products = self.products(weight)
         order = columns
         rows, _ = echelon(products, order, self.there.prime)
-        for one in [one for one in self.waiting if one.weight == weight]:
-            enlarged, _ = echelon([*rows, one.terms], order, self.there.prime)
+        for known in [one for one in self.waiting if one.weight == weight]:
+            enlarged, _ = echelon([*rows, known.terms], order, self.there.prime)
             if len(enlarged) > len(rows):
-                self.generators.append(one)
-                products = [*products, *([one.terms])]
+                self.generators.append(known)
+                products = [*products, *([known.terms])]
                 rows = enlarged
         if len(most) > len(rows):
             for f, terms in self._new(rows, most, columns):
@@ -224,7 +224,7 @@ class Search:
     def products(self, weight: int) -> list[Terms]:
         """Products of the generators of that weight (up to it, with 1, where weights are not told apart)."""
         exactly = self.grading.homogeneous and not self.modulo
-        pairs = [(one.weight, one.terms) for one in self.generators]
+        pairs = [(generator.weight, generator.terms) for generator in self.generators]
         reduce = self.there.reduced if self.modulo else lambda terms: terms
         return products(pairs, weight, exactly, self.there.prime, len(self.field.variables), reduce)
 
@@ -239,7 +239,7 @@ class Search:
 
     def _named(self, known: Sequence[tuple[str, Any]]) -> list[Known]:
         """Homogeneous parts of known integrals without their constants, those of least weight first."""
-        field, found = self.field, []
+        field, knowns = self.field, []
         apart = self.grading.homogeneous and not self.modulo
         listed = [(name, f, apart) for name, f in known]
         if self.grading.free:  # norms are integrals by themselves; their constant is no part of them
@@ -253,8 +253,8 @@ class Search:
                 rate = field.derivative(part)
                 if weight and (field.reduced(rate) if self.modulo else rate) == 0:
                     part = primitive(field, part)
-                    found.append(Known(part, weight, name, self.there.terms(part)))
-        return sorted(found, key=lambda one: one.weight)
+                    knowns.append(Known(part, weight, name, self.there.terms(part)))
+        return sorted(knowns, key=lambda one: one.weight)
 
 
 def products(
@@ -278,12 +278,12 @@ def products(
                 further.append((at, product))
         reached = further
         if len(reached) > MOST_PRODUCTS:
-            told = Message(
+            message = Message(
                 "the integrals have more than [[most]] products of weight [[weight]]",
                 most=MOST_PRODUCTS,
                 weight=weight,
             )
-            raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+            raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
     return [terms for at, terms in reached if at == weight or not exactly]
 
 
@@ -365,11 +365,11 @@ def refuse_too_many(field: PolynomialField, grading: Grading, degree: int) -> No
     """Raises NoClosedForm where the degree needs more monomials than are looked at."""
     needed = sum(count(grading.weights, one) for one in range(degree + 1))
     if needed > MOST_MONOMIALS:
-        told = Message(
+        message = Message(
             "weighted degree [[degree]] has [[needed]] monomials in [[count]] variables, more than [[most]]",
             degree=degree,
             needed=needed,
             count=len(field.variables),
             most=MOST_MONOMIALS,
         )
-        raise NoClosedForm(told, limit=Limit.DEGREE, remedy=SMALLER)
+        raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)

@@ -154,14 +154,14 @@ def special_of(
     here = polynomial_integrals(field, usual.grading, usual.degree, known)
     # A root of what is known in general, as r is of r^2, is one more, although it is a function of that.
     new = tuple((one.weight, one.polynomial) for one in here.generators if one.name in ("", FUNCTION))
-    named = {one.name: one for one in here.generators}
+    named = {generator.name: generator for generator in here.generators}
     on: list[OnLevel] = []
-    for one in levels(usual):
-        k = usual.generators.index(one)
+    for level in levels(usual):
+        k = usual.generators.index(level)
         if str(k) in named:
             there = on_level(here, named[str(k)])
-            if len(there.integrals) > len(on_level(usual, one).integrals):
-                on.append(OnLevel(one, there.integrals, there.counts))
+            if len(there.integrals) > len(on_level(usual, level).integrals):
+                on.append(OnLevel(level, there.integrals, there.counts))
     complete = here.complete and all(one.complete for one in on)
     return Special(value, field, new, tuple(on), complete) if new or on else None
 

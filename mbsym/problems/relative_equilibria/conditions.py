@@ -42,11 +42,11 @@ class Conditions:
         self.unfinished = False
 
     def _conditions(self) -> None:
-        found, ring = self.found, self.ring
-        forcing = [*found.kept, *self.case.zero, *self.case.left]
+        rest, ring = self.found, self.ring
+        forcing = [*rest.kept, *self.case.zero, *self.case.left]
         for joint, other in zip(self.chart.joints, self.chart.replaced, strict=True):
             # Where the angles are regular these follow, and with them the exact solution is much faster.
-            forcing += () if other or found.rows else moments(found, joint)
+            forcing += () if other or rest.rows else moments(rest, joint)
         polynomials = [y for x in forcing for y in self._for_all_times(x)]
         self.equations: list[Polynomial] = []
         self.nonzero: list[Polynomial] = [*self.case.nonzero]
@@ -59,8 +59,8 @@ class Conditions:
             elif not numerator.is_zero():
                 self.equations.append(numerator)
         used = set(occurring(self.equations))
-        self.occurring = tuple(name for name in found.constant if any(ring.depends_on(x, name) for x in self.equations))
-        self.free = tuple(name for name in found.constant if name not in self.occurring)
+        self.occurring = tuple(name for name in rest.constant if any(ring.depends_on(x, name) for x in self.equations))
+        self.free = tuple(name for name in rest.constant if name not in self.occurring)
         usual = [
             x for x in self.chart.nonzero if any(ring.generators[k].name in self.occurring for k in occurring([x]))
         ]

@@ -115,7 +115,7 @@ def equilibria(
 def _listed(first: Rest, described_by: System, within: float, limits: Limits, rank: int | None) -> Equilibria:
     """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``."""
     remarks: list[str] = []
-    found: list[Solution] = []
+    solutions: list[Solution] = []
     families: list[EquilibriumFamily] = []
     complete = True
     uncounted: list[bool] = []
@@ -132,13 +132,13 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits, ra
         _counted_once(searches)
         uncounted += [x.is_real for x in searches if rank is not None and x.case.rank < rank and x.leaves_none]
         for search in searches:
-            found += search.points
+            solutions += search.points
             families += search.families
             remarks += [*search.remarks, *search.doubts]
             complete = complete and search.complete
         if any(not x.equations and not x.impossible for x in searches):  # everywhere: other angles add nothing
             break
-    listed = [_described(group) for group in groups(found)]
+    listed = [_described(group) for group in groups(solutions)]
     listed.sort(key=lambda x: (_ORDER[x.verdict.word], x.coordinates_of, _sort_key(x)))
     singular = tuple(x for x in listed if x.verdict.coordinates_singular)
     beyond = tuple(x for x in listed if x.beyond and x not in singular)

@@ -97,7 +97,7 @@ class Listing(Conditions):
         with ctx.workprec(PRECISION):
             return all(self.ring.evaluate(x, place.balls).contains(0) for x in self.equations)
 
-    def _same(self, one: Place, other: Place) -> bool:
+    def _same(self, place: Place, other: Place) -> bool:
         """Whether two places have coordinates that balls of PRECISION bits cannot tell apart."""
         ring = self.ring
         compared = [
@@ -105,7 +105,7 @@ class Listing(Conditions):
             for name in self.occurring
             for kind in (("sine", "cosine") if self._periodic(name) else ("coordinate",))
         ]
-        return all(one.ball(x).overlaps(other.ball(x)) for x in compared)
+        return all(place.ball(x).overlaps(other.ball(x)) for x in compared)
 
     def _known(self, place: Sequence[float], tolerance: float) -> bool:
         """Whether a solution is listed already, within ``tolerance``."""

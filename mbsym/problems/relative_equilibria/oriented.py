@@ -145,14 +145,14 @@ class Cosines:
         """(exponents, its terms in sines and cosines), short ones first."""
         entries = [self.matrix[k][j] for k, j in self.choice.entries]
         known: dict[tuple[int, ...], Polynomial] = {(): self.ring.one}
-        found = []
+        monomials = []
         for size in range(degree + 1):
             for chosen in combinations_with_replacement(range(len(entries)), size):
                 if chosen:
                     known[chosen] = self.ring.reduce(known[chosen[:-1]] * entries[chosen[-1]])
                 exponents = tuple(chosen.count(k) for k in range(len(entries)))
-                found.append((exponents, {tuple(map(int, m)): c for m, c in known[chosen].terms()}))
-        return found
+                monomials.append((exponents, {tuple(map(int, m)): c for m, c in known[chosen].terms()}))
+        return monomials
 
 
 def _beneath(ring: Ring, x: Polynomial) -> set[int]:
@@ -247,23 +247,23 @@ class _System:
         moments: Sequence[Sequence[Polynomial | None]],
         split: Split,
     ) -> _System | None:
-        found, ring = chart.found, chart.found.ring
+        rest, ring = chart.found, chart.found.ring
         inside = {name for joint in joints for name in joint.angles}
-        conditions = [x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in inside]
+        conditions = [x for name, x in zip(rest.system.coordinates, rest.at_rest, strict=True) if name not in inside]
         conditions += [x for part in moments for x in part if x is not None]
         parts = [y for x in conditions for y in split(x)]
         equations = [ring.fraction(x)[0] for x in (*parts, *chart.restrictions)]
-        cosines = [Cosines(found, joint, choice) for joint, choice in zip(joints, chosen, strict=True)]
+        cosines = [Cosines(rest, joint, choice) for joint, choice in zip(joints, chosen, strict=True)]
         system = _System(chart, cosines, [x for x in equations if not x.is_zero()])
         return system if system._written() else None
 
     def _written(self) -> bool:
         """Whether the equations are polynomials in the entries; they are made on the way."""
         terms: list[dict[tuple[tuple[int, ...], ...], Any]] = [{(): x} for x in self.original]
-        for one in self.cosines:
+        for cosine in self.cosines:
             fresh: list[dict[tuple[tuple[int, ...], ...], Any]] = []
             for item in terms:
-                written = one.written(list(item.values()))
+                written = cosine.written(list(item.values()))
                 if written is None:
                     return False
                 grown: dict[tuple[tuple[int, ...], ...], Any] = {}
@@ -274,7 +274,7 @@ class _System:
             terms = fresh
         others = [x for item in terms for x in item.values() if not x.is_constant()]
         self.table = Unknowns(self.ring, others)
-        entries = [f"r{k}_{i}{j}" for k, one in enumerate(self.cosines) for i, j in one.choice.entries]
+        entries = [f"r{k}_{i}{j}" for k, cosines in enumerate(self.cosines) for i, j in cosines.choice.entries]
         self.context = context([*entries, *(f"y{k}" for k in range(len(self.table.indices)))])
         self.equations = [self._integral(item) for item in terms] + self._relations(len(entries))
         return True
@@ -294,20 +294,20 @@ class _System:
     def _relations(self, entries: int) -> list[Any]:
         """Unit vectors, at right angles; and the relations of the other unknowns."""
         gens = iter(self.context.gens())
-        found = []
-        for one in self.cosines:
-            vectors = [[next(gens) for _ in vector] for vector in one.choice.vectors]
-            found += [sum(x * x for x in v) - 1 for v in vectors]
+        relations = []
+        for cosine in self.cosines:
+            vectors = [[next(gens) for _ in vector] for vector in cosine.choice.vectors]
+            relations += [sum(x * x for x in v) - 1 for v in vectors]
             if len(vectors) == 2:
-                found.append(sum(x * y for x, y in zip(*vectors, strict=True)))
+                relations.append(sum(x * y for x, y in zip(*vectors, strict=True)))
         for x in self.table.relations():
-            found.append(self.context.from_dict({((0,) * entries + tuple(m)): c for m, c in x.terms()}))
-        return found
+            relations.append(self.context.from_dict({((0,) * entries + tuple(m)): c for m, c in x.terms()}))
+        return relations
 
     # --- solutions ---------------------------------------------------------------------------------------------------
 
     def solved(self, names: Sequence[str], nonzero: Sequence[Polynomial], limits: Limits) -> Orientations | None:
-        entries = sum(len(one.choice.entries) for one in self.cosines)
+        entries = sum(len(cosine.choice.entries) for cosine in self.cosines)
         bounded = [*range(entries), *(entries + k for k in self.table.bounded())]
         used = {k for x in self.equations for k, degree in enumerate(x.degrees()) if degree > 0}
         if used != set(range(self.context.nvars())):
@@ -335,16 +335,16 @@ class _System:
                 if any(x.contains(0) for x in values):
                     return None
                 places.append(place)
-        return Orientations(tuple(places), tuple(one.joint.body for one in self.cosines))
+        return Orientations(tuple(places), tuple(cosine.joint.body for cosine in self.cosines))
 
     def _described(self, point: AlgebraicPoint, names: Sequence[str]) -> list[Place] | None:
         """The place in each of its sets of angles; [] where the angles are singular, None where that is not known."""
-        ring, found = self.ring, self.chart.found
+        ring, rest = self.ring, self.chart.found
         start = 0
         sets: list[list[_Angles]] = []
-        for one in self.cosines:
-            count = len(one.choice.entries)
-            angles = _angles(one, point, point.values[start : start + count], names)
+        for cosine in self.cosines:
+            count = len(cosine.choice.entries)
+            angles = _angles(cosine, point, point.values[start : start + count], names)
             if not angles:
                 return None if angles is None else []
             sets.append(angles)
@@ -357,7 +357,7 @@ class _System:
             for item in chosen:
                 exact |= item.exact
                 balls |= item.balls
-            for name in (x for x in found.constant if x not in balls):
+            for name in (x for x in rest.constant if x not in balls):
                 if name not in names:  # any value does; 0 is one
                     exact |= {ring.index("coordinate", name): fmpq_poly([0])}
                     if name in ring.angles:
@@ -369,7 +369,7 @@ class _System:
                     balls[name] = point.enclosure(exact[ring.index("coordinate", name)], PRECISION)
                 else:
                     return None
-            places.append(Place(found, balls, exact | exact_rates(found), point.modulus, point.enclosure))
+            places.append(Place(rest, balls, exact | exact_rates(rest), point.modulus, point.enclosure))
         return places
 
 
@@ -432,10 +432,10 @@ def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: S
     return found
 
 
-def _simple(one: Cosines, known: Mapping[tuple[int, int], Any]) -> Iterator[tuple[tuple[int, ...], Any]]:
+def _simple(cosines: Cosines, known: Mapping[tuple[int, int], Any]) -> Iterator[tuple[tuple[int, ...], Any]]:
     """(generators, value of their product) for each entry that is +- a product of different sines and cosines."""
     for (k, j), value in known.items():
-        terms = list(one.matrix[k][j].terms())
+        terms = list(cosines.matrix[k][j].terms())
         if len(terms) == 1:
             ((monomial, coefficient),) = terms
             if coefficient in (1, -1) and all(e in (0, 1) for e in monomial):

@@ -211,15 +211,15 @@ def _changes_sign(x: Polynomial) -> bool:
 
 def _along(x: Sequence[Polynomial], y: Sequence[Polynomial]) -> Polynomial | None:
     """K with  x x y = K g  (g not of length 1: an identity of homogeneous polynomials), or None."""
-    found: Polynomial | None = None
+    polynomial: Polynomial | None = None
     for k, g in enumerate(_CONTEXT.gens()):
         i, j = (k + 1) % 3, (k + 2) % 3
         product = x[i] * y[j] - x[j] * y[i]
         quotient, left = divmod(product, g)
-        if not left.is_zero() or (found is not None and quotient != found):
+        if not left.is_zero() or (polynomial is not None and quotient != polynomial):
             return None
-        found = quotient
-    return found
+        polynomial = quotient
+    return polynomial
 
 
 def _text(x: Polynomial) -> str:

@@ -285,21 +285,21 @@ class SearchInBoxes(Listing):
 
     def _square_system(self) -> Square | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""
-        ring, found = self.ring, self.found
-        if found.rows:
+        ring, rest = self.ring, self.found
+        if rest.rows:
             square = len(self.equations) == len(self.occurring) and not self.case.zero and not self.chart.restrictions
-            kept = sum(not x.is_zero() for x in found.kept)
+            kept = sum(not x.is_zero() for x in rest.kept)
             return (
                 Square((*self.equations[kept:], *self.equations[:kept]), self.occurring, (), kept) if square else None
             )
         chosen = [
             ring.fraction(x)[0]
-            for name, x in zip(found.system.coordinates, found.at_rest, strict=True)
+            for name, x in zip(rest.system.coordinates, rest.at_rest, strict=True)
             if name in self.occurring
         ]
         varying = any(len(list(self._for_all_times(x))) != 1 for x in chosen)
         others = [
-            x for name, x in zip(found.system.coordinates, found.at_rest, strict=True) if name not in self.occurring
+            x for name, x in zip(rest.system.coordinates, rest.at_rest, strict=True) if name not in self.occurring
         ]
         if (
             varying
@@ -315,22 +315,22 @@ class SearchInBoxes(Listing):
 
         None where some rows follow from others, so that nothing determines their multipliers.
         """
-        ring, found = self.ring, self.found
-        moving = [*found.turning, *(item.name for item in found.system.prescribed), "t"]
-        redundant = self.ranks[1] is not None and self.ranks[1] < len(found.rows)
+        ring, rest = self.ring, self.found
+        moving = [*rest.turning, *(item.name for item in rest.system.prescribed), "t"]
+        redundant = self.ranks[1] is not None and self.ranks[1] < len(rest.rows)
         if (
             self.chart.restrictions
             or redundant
-            or any(ring.dependencies(x, moving) for x in (*found.balanced, *found.kept))
+            or any(ring.dependencies(x, moving) for x in (*rest.balanced, *rest.kept))
         ):
             return None
         forces, kept = (
-            [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (found.balanced, found.kept)
+            [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (rest.balanced, rest.kept)
         )
         equations = [*forces, *kept]
         coordinates, multipliers = (
             tuple(name for name in names if any(ring.depends_on(x, name) for x in equations))
-            for names in (found.constant, found.multipliers)
+            for names in (rest.constant, rest.multipliers)
         )
         square = len(equations) == len(coordinates) + len(multipliers) and coordinates == self.occurring
         return Square(tuple(equations), coordinates, multipliers, len(kept)) if square else None
@@ -396,15 +396,15 @@ def reach(ring: Ring, equations: Sequence[Polynomial], plain: Sequence[str]) -> 
 
 
 def _terms(ring: Ring, x: Polynomial) -> _Terms:
-    found: _Terms = {}
+    terms: _Terms = {}
     for monomial, coefficient in x.terms():
         powers, value = list(monomial), arb(coefficient)
         for k, e in enumerate(powers):
             if e and ring.generators[k].kind == "parameter" and ring.generators[k].name == "pi":
                 value, powers[k] = value * arb.pi() ** int(e), 0
         key = tuple(int(e) for e in powers)
-        found[key] = found.get(key, arb(0)) + value
-    return found
+        terms[key] = terms.get(key, arb(0)) + value
+    return terms
 
 
 def _decoupled(sums: Sequence[_Terms], unknowns: Sequence[int]) -> list[_Terms]:

@@ -108,8 +108,8 @@ class LinearAtRest:
             ring.is_zero(x) is not True for x in (*by_velocities, *(x for row in self.matrices[2] for x in row))
         )
         conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
-        found = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
-        return drifting(found) if found is not None and self.ignorable else found
+        verdict = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
+        return drifting(verdict) if verdict is not None and self.ignorable else verdict
 
     @property
     def conservative(self) -> bool:

@@ -115,16 +115,16 @@ class Order:
     @property
     def places(self) -> set[int]:
         """Where the phases stand in the ring."""
-        return {k for one in self.phases for k in one}
+        return {k for phase in self.phases for k in phase}
 
     def leading(self, p: Polynomial, what: str) -> Polynomial:
         """The terms of order eps^0.  Raises NoClosedForm where p grows as eps tends to 0, or hides what matters."""
-        grown, kept = self.split(p, what)
+        grown, polynomial = self.split(p, what)
         if grown != 0:
             raise NoClosedForm(
                 Message("[[what]] grows with the rate of the phase: more has to be small than was told", what=what)
             )
-        return kept
+        return polynomial
 
     def split(self, p: Polynomial, what: str) -> tuple[Polynomial, Polynomial]:
         """The terms of order eps^-1 and eps^0.  Raises NoClosedForm where p has larger ones, or hides what matters."""
@@ -288,14 +288,14 @@ def _even(n: int) -> int:
 
 def _exponentials(a: int, b: int) -> dict[int, tuple[fmpq, fmpq]]:
     """s^a c^b = sum of (x + i y) exp(i n u), by n: (z - 1/z)^a (z + 1/z)^b = (2i)^a 2^b s^a c^b."""
-    found = {}
+    exponentials = {}
     for n in range(-a - b, a + b + 1, 2):
         drop = (a + b - n) // 2  # so many factors give 1/z
         count = sum((-1) ** j * comb(a, j) * comb(b, drop - j) for j in range(min(a, drop) + 1))
         if count:
             x = fmpq(count, 2 ** (a + b))
-            found[n] = ((x, fmpq(0)), (fmpq(0), -x), (-x, fmpq(0)), (fmpq(0), x))[a % 4]  # times i^-a
-    return found
+            exponentials[n] = ((x, fmpq(0)), (fmpq(0), -x), (-x, fmpq(0)), (fmpq(0), x))[a % 4]  # times i^-a
+    return exponentials
 
 
 def averaged(
@@ -423,11 +423,11 @@ def without_constants(ring: Ring, names: Sequence[str]) -> Callable[[Polynomial]
 
     def moving(p: Polynomial) -> Polynomial:
         terms = {m: ring.context.from_dict({m: c}) for m, c in p.to_dict().items()}
-        kept = ring.zero
+        polynomial = ring.zero
         for term in terms.values():
             if ring.dependencies(term, names):
-                kept += term
-        return kept
+                polynomial += term
+        return polynomial
 
     return moving
 
@@ -443,9 +443,9 @@ def _other_loads(
     ring, system = scene.ring, scene.system
     phase = order.told
     pushes, steady, beside = {}, {}, []
-    for name, found in generalized_forces(scene).items():
+    for name, generalized_force in generalized_forces(scene).items():
         what = Message("the force on [[name]]", name=name)
-        grown, force = order.split(found, what)
+        grown, force = order.split(generalized_force, what)
         try:
             slopes = {a: [ring.velocity_derivative(x, a) for x in (grown, force)] for a in system.coordinates}
             bends = [ring.velocity_derivative(x, b) for _, x in slopes.values() for b in system.coordinates]
@@ -461,7 +461,7 @@ def _other_loads(
             )
         if any(not ring.vanishes(x) for x in bends):
             raise NoClosedForm(Message("[[what]] is not linear in the velocities", what=what))
-        if order.holds_phase(order.unscaled(found)):
+        if order.holds_phase(order.unscaled(generalized_force)):
             raise NoClosedForm(
                 Message("[[what]] depends on [[phase]] by itself", what=what, phase=phase), remedy=_REMEDY
             )

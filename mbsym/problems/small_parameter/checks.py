@@ -79,9 +79,9 @@ def residual_orders(
     return tuple(found)
 
 
-def _polynomial(one: Series, at: Sequence[fmpq]) -> fmpq_poly:
-    top = max(one.coefficients, default=-1)
-    return fmpq_poly([_value(one.coefficients[k], at) if k in one.coefficients else 0 for k in range(top + 1)])
+def _polynomial(series: Series, at: Sequence[fmpq]) -> fmpq_poly:
+    top = max(series.coefficients, default=-1)
+    return fmpq_poly([_value(series.coefficients[k], at) if k in series.coefficients else 0 for k in range(top + 1)])
 
 
 def _value(x: Quotient, at: Sequence[fmpq]) -> fmpq:
@@ -133,16 +133,16 @@ class Numbers:
         bottom = self._of(x.bottom)
         return self.reduced(self._of(x.top)) / bottom.leading_coefficient()
 
-    def wave(self, one: Harmonics) -> Any:
+    def wave(self, harmonics: Harmonics) -> Any:
         """cos k T = T_k(c), sin k T = s U_(k-1)(c)."""
         total = self.context.constant(0)
-        for k, (c, s) in one.waves.items():
+        for k, (c, s) in harmonics.waves.items():
             first, second = _chebyshev(self.context.constant(1), self.cosine, k)
             total = total + self(c) * first + self(s) * self.sine * second
         return total
 
     def series(self, parts: Sequence[Harmonics]) -> Any:
-        return sum((self.wave(one) * self.eps**n for n, one in enumerate(parts)), self.context.constant(0))
+        return sum((self.wave(part) * self.eps**n for n, part in enumerate(parts)), self.context.constant(0))
 
     def slope(self, p: Any) -> Any:
         """d/dT."""
@@ -172,9 +172,9 @@ def oscillation_orders(rows: Any, names: Sequence[str], found: Oscillation, seed
         return oscillation_orders(rows, names, found, seed + 1)
     context, eps = numbers.context, numbers.eps
     rates = {}
-    for one in found.drifts:
-        series[one.variable] = numbers.series(one.waves)
-        rates[one.variable] = sum((numbers(x) * eps**n for n, x in enumerate(one.rates)), context.constant(0))
+    for drift in found.drifts:
+        series[drift.variable] = numbers.series(drift.waves)
+        rates[drift.variable] = sum((numbers(x) * eps**n for n, x in enumerate(drift.rates)), context.constant(0))
     powers: dict[tuple[str, int], Any] = {}
 
     def power(name: str, exponent: int) -> Any:

@@ -195,12 +195,12 @@ def _roots(tower: Tower, polynomial: Sequence[Element]) -> list[Element]:
         half = polynomial[1] / tower.number(2)
         root = tower.square_root(half * half - polynomial[0])
         return [root - half, -root - half]
-    found: list[Element] = []
+    roots: list[Element] = []
     for factor in _factors(tower, polynomial):
         if len(factor) <= 3:
             lead = factor[-1]
-            found += _roots(tower, [c / lead for c in factor])
-    return found
+            roots += _roots(tower, [c / lead for c in factor])
+    return roots
 
 
 def _factors(tower: Tower, polynomial: Sequence[Element]) -> list[list[Element]]:
@@ -214,15 +214,15 @@ def _factors(tower: Tower, polynomial: Sequence[Element]) -> list[list[Element]]
     if free is None or any(d > 0 for c in polynomial for d in c.top.degrees()[: len(gens) - len(tower.parameters)]):
         return [list(polynomial)]
     whole = sum((c.top * (common / c.bottom) * free**k for k, c in enumerate(polynomial)), context.constant(0))
-    found: list[list[Element]] = []
+    factors: list[list[Element]] = []
     for factor, exponent in whole.factor()[1]:
         top = factor.degrees()[-1]
         if top > 0:
             parts: list[dict[Any, Any]] = [{} for _ in range(top + 1)]
             for monomial, number in factor.to_dict().items():
                 parts[monomial[-1]][(*monomial[:-1], 0)] = number
-            found += [[tower.made(context.from_dict(one), context.constant(1)) for one in parts]] * int(exponent)
-    return found
+            factors += [[tower.made(context.from_dict(part), context.constant(1)) for part in parts]] * int(exponent)
+    return factors
 
 
 # A polynomial field as x' = sum_k eps^k rows[k](x) over a tower, with x eps^power for variables that are small.
@@ -274,14 +274,14 @@ def graded_rows(
                 ),
                 remedy="see 'mbsym expand' for slow manifolds, and the powers that are declared",
             )
-        found: _Graded = {}
+        graded: _Graded = {}
         for k in range(most + 1):
             part = dict(above.get(k, {}))
             for j, factor in below.items():
                 if j <= k:
-                    _subtract(part, factor, found[k - j])
-            found[k] = {m: c * back for m, c in part.items() if not c.is_zero()}
-        rows.append({k: part for k, part in found.items() if part})
+                    _subtract(part, factor, graded[k - j])
+            graded[k] = {m: c * back for m, c in part.items() if not c.is_zero()}
+        rows.append({k: part for k, part in graded.items() if part})
     return rows
 
 
@@ -336,18 +336,18 @@ def adjoined(tower: Tower, field: PolynomialField) -> dict[str, Element]:
 
     Raises NoClosedForm where a square is one in the parameters that are left: of which sign its root is nobody says.
     """
-    found: dict[str, Element] = {}
+    elements: dict[str, Element] = {}
     for name, square in field.roots:
         inside = angle_in(name)
         if inside is not None:
-            found[name] = tower.sin_cos(LinearForm(((inside[1], Fraction(1, inside[2])),)))[0]
+            elements[name] = tower.sin_cos(LinearForm(((inside[1], Fraction(1, inside[2])),)))[0]
             continue
         total = tower.zero
         for monomial, c in square.to_dict().items():
             product = tower.element(c)
             for other, e in zip(field.parameters, monomial, strict=False):
                 for _ in range(int(e)):
-                    product = product * (found[other] if other in found else tower.parameter(other))
+                    product = product * (elements[other] if other in elements else tower.parameter(other))
             total = total + product
         root = tower.square_root(total)
         number = tower.rational(root)
@@ -358,5 +358,5 @@ def adjoined(tower: Tower, field: PolynomialField) -> dict[str, Element]:
                 "a square root in the coefficients becomes rational, and its sign is not known",
                 remedy="put in numbers for the parameters under it",
             )
-        found[name] = root
-    return found
+        elements[name] = root
+    return elements

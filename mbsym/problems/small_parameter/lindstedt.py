@@ -134,8 +134,8 @@ class Orders:
             self.series[i] = [Harmonics.constant(tower, value)]
         for block in system.blocks:
             forcing = [self.forcing(i, 0) for i in block]
-            for i, one in zip(block, self._answer(block, forcing, 0), strict=True):
-                self.series[i][0] = one
+            for i, harmonics in zip(block, self._answer(block, forcing, 0), strict=True):
+                self.series[i][0] = harmonics
             if block == self.mode.block:
                 for i, (c, s) in zip(block, self.right, strict=True):
                     wave = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))})
@@ -156,15 +156,15 @@ class Orders:
         for block in system.blocks:
             forcing = [self.forcing(i, order) for i in block]
             answer = self._led(forcing, order) if block == self.mode.block else self._answer(block, forcing, order)
-            for i, found in zip(block, answer, strict=True):
-                self.series[i][order] = found
+            for i, harmonics in zip(block, answer, strict=True):
+                self.series[i][order] = harmonics
         self.complete = order + 1
 
     def _answer(self, block: tuple[int, ...], forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
         """The forced oscillations of a block."""
         found: list[dict[int, Any]] = [{} for _ in block]
-        for k in sorted({k for one in forcing for k in one.waves}):
-            cosines, sines = self._at(block, [one.wave(k) for one in forcing], k, order)
+        for k in sorted({k for harmonics in forcing for k in harmonics.waves}):
+            cosines, sines = self._at(block, [harmonics.wave(k) for harmonics in forcing], k, order)
             for place, wave in enumerate(zip(cosines, sines, strict=True)):
                 found[place][k] = wave
         return [Harmonics(self.tower, one) for one in found]
@@ -205,7 +205,7 @@ class Orders:
         if k:  # chi(i k omega) = parts[0] + i k omega parts[1]
             parts = [_at(tower, polynomial[first::2], square) for first in range(2)]
         parts = [x for x in parts if not x.is_zero()]
-        if any(one.variables == names and one.harmonic == k for one in self.divisors):
+        if any(divisor.variables == names and divisor.harmonic == k for divisor in self.divisors):
             return
         if not parts or any(self._is_multiple(x, len(block)) for x in parts):
             return  # of multiples of the frequency itself it is said already that they are not zero
@@ -229,8 +229,8 @@ class Orders:
         found = self._answer(block, rest, order)
         # l G = i omega nu a (l v), G = F_c - i F_s.
         top = bottom = (tower.zero, tower.zero)
-        for l, one, v in zip(self.left, forcing, self.right, strict=True):
-            c, s = one.wave(1)
+        for l, harmonics, v in zip(self.left, forcing, self.right, strict=True):
+            c, s = harmonics.wave(1)
             top = _sum(top, _times(l, (c, -s)))
             bottom = _sum(bottom, _times(l, v))
         real, imaginary = _over(tower, top, bottom)
@@ -242,8 +242,8 @@ class Orders:
         # What is left has solutions; the one without the leading variable is taken.
         speed, zero, place = self.frequency, tower.zero, block.index(self.leading)
         loads = []
-        for one, (c, s) in zip(forcing, self.right, strict=True):
-            a, b = one.wave(1)
+        for harmonics, (c, s) in zip(forcing, self.right, strict=True):
+            a, b = harmonics.wave(1)
             own = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))}).slope().wave(1)
             loads.append((a - own[0] * shift * speed, b - own[1] * shift * speed))
         kept = [j for j in range(size) if j != place]
@@ -273,7 +273,7 @@ class Orders:
 
     def quadratures(self, order: int) -> list[Drift]:
         """The variables that no equation needs; those that depend on one that drifts are left out."""
-        found: list[Drift] = []
+        drifts: list[Drift] = []
         drifting: set[int] = set()
         for i in self.system.aside:
             held = {j for part in self.system.rows[i].values() for key in part for j, e in enumerate(key) if e}
@@ -285,8 +285,8 @@ class Orders:
             self.series[i] = list(drift.waves)
             if any(not x.is_zero() for x in drift.rates):
                 drifting.add(i)
-            found.append(drift)
-        return found
+            drifts.append(drift)
+        return drifts
 
 
 def integrated(name: str, slopes: Sequence[Harmonics], frequency: Element, shifts: Sequence[Element]) -> Drift:
@@ -316,12 +316,12 @@ def _driven(names: Sequence[str], k: int, order: int) -> str:
             "time; solutions in which other variables keep them from that are not looked for",
             where=where,
         )
-    told = Message("[[k]] times the frequency", k=k) if k > 1 else Message("the frequency")
+    message = Message("[[k]] times the frequency", k=k) if k > 1 else Message("the frequency")
     return Message(
         "[[where]] at [[told]], which is a frequency of their own: secular terms are not removed; "
         "solutions in which these oscillate by themselves from the beginning are not looked for",
         where=where,
-        told=told,
+        told=message,
     )
 
 
@@ -330,10 +330,10 @@ Pair = tuple[Element, Element]
 
 def _without(polynomial: Sequence[Element], square: Element) -> list[Element]:
     """The quotient by lambda^2 + square, of which it is a multiple; coefficients from low to high."""
-    found: list[Element] = []
+    elements: list[Element] = []
     for k, c in enumerate(reversed(polynomial[2:])):
-        found.append(c - square * found[k - 2] if k > 1 else c)
-    return found[::-1]
+        elements.append(c - square * elements[k - 2] if k > 1 else c)
+    return elements[::-1]
 
 
 def _at(tower: Any, polynomial: Sequence[Element], x: Element) -> Element:
@@ -357,10 +357,10 @@ def _at_imaginary(tower: Any, adjugates: Sequence[Any], speed: Element) -> tuple
     size = len(adjugates[0])
     parts = [[[tower.zero] * size for _ in range(size)] for _ in range(2)]
     power, signs = tower.one, (1, 1, -1, -1)
-    for k, one in enumerate(reversed(adjugates)):
+    for k, adjugate in enumerate(reversed(adjugates)):
         for r in range(size):
             for c in range(size):
-                parts[k % 2][r][c] = parts[k % 2][r][c] + one[r][c] * power * signs[k % 4]
+                parts[k % 2][r][c] = parts[k % 2][r][c] + adjugate[r][c] * power * signs[k % 4]
         power = power * speed
     return parts[0], parts[1]
 
@@ -386,7 +386,7 @@ def solved(tower: Tower, rows: Sequence[Sequence[Element]], right: Sequence[Elem
     work, pivots = echelon(tower, work, count, lambda x: None if x.is_zero() else len(x.top) + len(x.bottom))
     if any(not row[-1].is_zero() for row in work[len(pivots) :]):
         return None
-    found = [tower.zero] * count
+    elements = [tower.zero] * count
     for place, column in enumerate(pivots):
-        found[column] = work[place][-1]
-    return found
+        elements[column] = work[place][-1]
+    return elements

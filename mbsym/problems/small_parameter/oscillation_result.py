@@ -85,7 +85,7 @@ class Oscillation:
     @property
     def verified(self) -> bool:
         """Whether what is left is of higher order than the expansion in every equation."""
-        return bool(self.residuals) and all(one is None or one > self.order for one in self.residuals)
+        return bool(self.residuals) and all(residual is None or residual > self.order for residual in self.residuals)
 
 
 # Trigonometric polynomials of one phase over the elements of a tower: sum_k C_k cos(k T) + S_k sin(k T).

@@ -54,7 +54,7 @@ class ModeIsOpen(NoClosedForm):
     def __init__(self, blocks: Sequence[tuple[str, ...]]) -> None:
         self.blocks = tuple(blocks)
         counts = Counter(self.blocks)
-        told = joined((_together(one, n) for one, n in counts.items()), "; ")
+        message = joined((_together(one, n) for one, n in counts.items()), "; ")
         remedy = Message(
             "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
         )
@@ -62,7 +62,8 @@ class ModeIsOpen(NoClosedForm):
             which = Message("say which of the frequencies that variables share: --frequency K")
             remedy = which if len(counts) == 1 else joined((remedy, which), "; ")
         super().__init__(
-            Message("without the small parameter several frequencies are there, of: [[told]]", told=told), remedy=remedy
+            Message("without the small parameter several frequencies are there, of: [[told]]", told=message),
+            remedy=remedy,
         )
 
 
@@ -137,7 +138,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         tuple((there.names[i], constants[i]) for i in system.constant),
         tuple(tuple(orders.series[i][: order + 1]) for i in names),
         tuple(orders.quadratures(order)),
-        tuple(one for one in orders.divisors if one.order <= order),
+        tuple(divisor for divisor in orders.divisors if divisor.order <= order),
         tuple((tuple(there.names[i] for i in one.block), one.square) for one in system.modes if one is not mode),
         damped=_named(there, system.damped),
         with_zero=_named(there, system.with_zero),
@@ -158,14 +159,14 @@ def _exponent(there: Equations, found: Oscillation, names: Sequence[int]) -> tup
     if found.kind is Amplitude.FREE or len(names) != 2 or found.drifts:
         return None
     tower, series = found.tower, dict(zip(names, found.series, strict=True))
-    one = Harmonics.constant(tower, tower.one)
+    harmonics = Harmonics.constant(tower, tower.one)
     total = [Harmonics(tower, {}) for _ in range(found.order + 1)]
     for i in names:
         for k, terms in there.rows[i].items():
             for exponents, c in terms.items():
                 if not exponents[i] or k > found.order:
                     continue
-                product = {k: one.scaled(c * exponents[i])}
+                product = {k: harmonics.scaled(c * exponents[i])}
                 for j in (place for place, e in enumerate(exponents) for _ in range(e - (place == i))):
                     product = _times(product, series[j], found.order)
                 for n, part in product.items():
@@ -175,18 +176,18 @@ def _exponent(there: Equations, found: Oscillation, names: Sequence[int]) -> tup
 
 def _times(a: Mapping[int, Harmonics], b: Sequence[Harmonics], most: int) -> dict[int, Harmonics]:
     """A product of series in eps, up to eps^most."""
-    found: dict[int, Harmonics] = {}
+    times: dict[int, Harmonics] = {}
     for n, x in a.items():
         for k, y in enumerate(b[: most - n + 1]):
-            found[n + k] = found[n + k] + x * y if n + k in found else x * y
-    return found
+            times[n + k] = times[n + k] + x * y if n + k in times else x * y
+    return times
 
 
 def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:
     if leading:
         if leading not in there.names:
             raise NoClosedForm(Message("the equations do not depend on [[name]]", name=leading))
-        own = [one for one in system.modes if there.names.index(leading) in one.block]
+        own = [mode for mode in system.modes if there.names.index(leading) in mode.block]
     else:
         own = list(system.modes)
     if not own:
@@ -214,8 +215,8 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         if leading:
             raise NoClosedForm(Message("[[name]] does not oscillate where the small parameter is zero", name=leading))
         raise NoClosedForm("nothing oscillates where the small parameter is zero")
-    if len({one.block for one in own}) > 1 or (len(own) > 1 and not leading):
-        raise ModeIsOpen([tuple(there.names[i] for i in one.block) for one in own])
+    if len({mode.block for mode in own}) > 1 or (len(own) > 1 and not leading):
+        raise ModeIsOpen([tuple(there.names[i] for i in mode.block) for mode in own])
     if which > len(own):
         one = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
         more = (
@@ -243,7 +244,7 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
     The condition holds for a and -a alike, which are one solution: its factors are taken by the squares of a.  Where a
     number was given for the amplitude, that one is asked.
     """
-    tower, symbol, given = there.tower, there.tower.parameter(AMPLITUDE), there.values.get(AMPLITUDE)
+    tower, symbol, element = there.tower, there.tower.parameter(AMPLITUDE), there.values.get(AMPLITUDE)
     place = MOST_ROOTS + tower.parameters.index(AMPLITUDE)
     squares: list[Element] = []
     unsolved: list[Element] = []
@@ -276,11 +277,11 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
     if not squares:
         raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
     chosen = next((x for x in squares if there.sign(x) == "positive"), squares[0])
-    if given is not None:
-        asked = [x for x in squares if (x - given * given).is_zero()]
-        if not asked:
+    if element is not None:
+        elements = [x for x in squares if (x - element * element).is_zero()]
+        if not elements:
             raise _other_amplitude(there, demand)
-        chosen = asked[0]
+        chosen = elements[0]
     rest = [symbol * symbol - x for x in squares if x is not chosen] + unsolved
     others = None
     for one in rest:

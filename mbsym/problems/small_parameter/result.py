@@ -43,7 +43,7 @@ class Hurwitz:
     @property
     def decided(self) -> bool:
         """Whether a coefficient of every minor is known that is not zero."""
-        return all(one.lowest is not None for one in self.minors)
+        return all(minor.lowest is not None for minor in self.minors)
 
     @property
     def bounded(self) -> bool:
@@ -52,7 +52,7 @@ class Hurwitz:
         All roots grow where every side of Newton's polygon falls: where the last coefficient begins with a lower power
         of eps than all before it.
         """
-        *before, last = (one.lowest for one in self.polynomial)
+        *before, last = (series.lowest for series in self.polynomial)
         return last is not None and any(k is not None and k <= last for k in before)
 
 
@@ -112,7 +112,7 @@ class SlowManifold:
     @property
     def verified(self) -> bool:
         """Whether what is left is of higher order than the expansion in every equation."""
-        return all(one is None or one > self.order for one in self.residuals)
+        return all(residual is None or residual > self.order for residual in self.residuals)
 
 
 # A polynomial field sorted by powers of a small parameter.

@@ -155,7 +155,7 @@ def adjoined(
         return context.from_dict(p.to_dict())
 
     tops, bottom = in_lowest_terms(cleared[1:], cleared[0])
-    found = replace(
+    polynomial_field = replace(
         field,
         context=context,
         parameters=tuple(context.names()[:first]),
@@ -164,7 +164,7 @@ def adjoined(
         denominator=renamed(bottom),
         relations=tuple(renamed(put(p, {k: value}).top) for p in field.relations),
     )
-    return found, Adjoined(label, k, names[k], square, Quotient(renamed(value.top), renamed(value.bottom)))
+    return polynomial_field, Adjoined(label, k, names[k], square, Quotient(renamed(value.top), renamed(value.bottom)))
 
 
 def _linear_in_one(left: Sequence[Quotient], unknown: Sequence[int]) -> tuple[int, int, Quotient] | None:
@@ -205,9 +205,9 @@ def inverse(matrix: Sequence[Sequence[Quotient]]) -> tuple[list[list[Quotient]],
     """Gauss-Jordan's, exactly, and the determinant; None for a singular matrix."""
     n = len(matrix)
     context = matrix[0][0].top.context()
-    one, nothing = Quotient.of(context.constant(1)), Quotient.of(context.constant(0))
-    work = [[*row, *(one if i == j else nothing for j in range(n))] for i, row in enumerate(matrix)]
-    determinant = one
+    quotient, nothing = Quotient.of(context.constant(1)), Quotient.of(context.constant(0))
+    work = [[*row, *(quotient if i == j else nothing for j in range(n))] for i, row in enumerate(matrix)]
+    determinant = quotient
     for column in range(n):
         pivot = next((r for r in range(column, n) if not work[r][column].is_zero), None)
         if pivot is None:

@@ -109,8 +109,8 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int, start: Root | 
             return [one.exactly() for one in functions]
         changed = []
         for function, row in zip(functions, start.inverse, strict=True):
-            for c, one in zip(row, left, strict=True):
-                function = function - Series.constant(c) * one
+            for c, series in zip(row, left, strict=True):
+                function = function - Series.constant(c) * series
             changed.append(function.up_to(order + 1).exactly())
         functions = changed
     raise NoClosedForm(
@@ -156,9 +156,9 @@ def divisors(
 ) -> tuple[Polynomial, ...]:
     """What is not zero where the expansion holds: det L, and the denominator of the equations at eps = 0 on h_0."""
     start = roots_of(there, fast).known[0] if start is None else start
-    below = _on(there, fast)(there.denominator, [one.up_to(1) for one in functions], 1).coefficients.get(0)
-    quotients = [one for one in (start.determinant, below) if one is not None]
-    parts = [p for one in quotients for p in (one.top, one.bottom)]
+    below = _on(there, fast)(there.denominator, [function.up_to(1) for function in functions], 1).coefficients.get(0)
+    quotients = [quotient for quotient in (start.determinant, below) if quotient is not None]
+    parts = [p for quotient in quotients for p in (quotient.top, quotient.bottom)]
     return tuple(p for p in parts if not p.is_constant())
 
 
@@ -168,7 +168,7 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
     Raises NoClosedForm where the denominator vanishes at eps = 0 on the whole manifold.
     """
     on = _on(there, fast)
-    near = [one.up_to(order + 1) for one in functions]
+    near = [function.up_to(order + 1) for function in functions]
     below = on(there.denominator, near, None)
     if 0 not in below.coefficients:
         raise NoClosedForm(

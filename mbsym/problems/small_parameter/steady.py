@@ -46,17 +46,17 @@ def steady_states(
         return _put(c, first, [values[name] for name in names])
 
     def on(x: Series) -> Series:
-        found = {k: at(c) for k, c in x.coefficients.items()}
-        return Series(context, {k: c for k, c in found.items() if not c.is_zero}, x.known)
+        quotients = {k: at(c) for k, c in x.coefficients.items()}
+        return Series(context, {k: c for k, c in quotients.items() if not c.is_zero}, x.known)
 
     for name, one in flow.items():
         if on(one).coefficients:
             raise NoClosedForm(
                 Message("the motion is no steady state on the manifold: [[name]] does not stay constant", name=name)
             )
-    for name, one in functions.items():
-        given = Series.constant(values[name])
-        if (on(one) - given).coefficients:
+    for name, function in functions.items():
+        series = Series.constant(values[name])
+        if (on(function) - series).coefficients:
             raise NoClosedForm(
                 Message("the motion does not lie on the manifold: [[name]] is another one there", name=name)
             )
@@ -122,8 +122,8 @@ def characteristic(context: object, matrix: Sequence[Sequence[Series]]) -> list[
 
 def _units(context: object) -> tuple[Series, Series]:
     """0 and 1."""
-    one = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
-    return one - one, one
+    series = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
+    return series - series, series
 
 
 def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list[Series], list[Series]]:
@@ -139,8 +139,8 @@ def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list
 def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
     """The leading minors of Hurwitz's matrix of a monic polynomial."""
     n = len(polynomial) - 1
-    nothing, one = _units(context)
-    minors = [determinant_by_traces(matrices.hurwitz(polynomial, nothing, k), nothing, one) for k in range(1, n + 1)]
+    nothing, series = _units(context)
+    minors = [determinant_by_traces(matrices.hurwitz(polynomial, nothing, k), nothing, series) for k in range(1, n + 1)]
     return Hurwitz(tuple(polynomial), tuple(minors))
 
 
@@ -151,7 +151,7 @@ def _put(c: Quotient, first: int, values: Sequence[Quotient]) -> Quotient:
     images = [*gens[:first], *(x.top for x in values)]
     if all(x.bottom.is_constant() for x in values):
         return Quotient.of(c.top.compose(*images), c.bottom.compose(*images))
-    found = []
+    quotients = []
     for p in (c.top, c.bottom):
         total = Quotient.of(context.constant(0))
         for monomial, number in p.to_dict().items():
@@ -160,5 +160,5 @@ def _put(c: Quotient, first: int, values: Sequence[Quotient]) -> Quotient:
                 for _ in range(exponent):
                     term = term * x
             total = total + term
-        found.append(total)
-    return found[0] / found[1]
+        quotients.append(total)
+    return quotients[0] / quotients[1]

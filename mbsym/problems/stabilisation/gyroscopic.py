@@ -132,7 +132,7 @@ class Cleared:
 
 def cleared(ring: Ring, matrices: Sequence[Matrix | None], signs: Signs) -> Cleared:
     """The matrices (None: without columns) over parameters.  Raises NoClosedForm where roots or functions occur."""
-    given: list[Rows] = [[] if one is None else [list(row) for row in one.polynomials] for one in matrices]
+    given: list[Rows] = [[] if matrix is None else [list(row) for row in matrix.polynomials] for matrix in matrices]
     factor = ring.one
     for x in (x for rows in given for row in rows for x in row):
         for bottom, exponent in ring.fraction(ring.reduce(ring.times(x, factor)))[1]:

@@ -58,8 +58,8 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
     if not minors:
         return Rank(False, Certainty.PROVED, (), None, "the inputs do not even enter")
     common = minors[0]
-    for one in minors[1:]:
-        common = common.gcd(one)
+    for minor in minors[1:]:
+        common = common.gcd(minor)
     in_lambda, free = _split(common, variable)
     if not rest:
         in_lambda = [x for x in in_lambda if x != variable.large.gen(variable.index)]
@@ -120,15 +120,15 @@ def _maximal_minors(rows: list[list[Any]], variable: _Variable) -> list[Any]:
     choices = list(combinations(range(width), height))
     if len(choices) > MOST_MINORS:
         raise TooLargeError("too many minors")
-    found = []
+    maximal_minors = []
     for columns in choices:
         minor = determinant([[row[j] for j in columns] for row in rows])
         if minor == 0:
             continue
         if len(minor) > MOST_TERMS:
             raise TooLargeError("minors with too many terms")
-        found.append(minor)
-    return found
+        maximal_minors.append(minor)
+    return maximal_minors
 
 
 def _split(p: Any, variable: _Variable) -> tuple[list[Any], list[Polynomial]]:
@@ -180,8 +180,8 @@ def _locus(
     except TooLargeError:
         return None
     common = values[0]
-    for one in values[1:]:
-        common = common.gcd(one)
+    for value in values[1:]:
+        common = common.gcd(value)
     for factor in _open_factors(common, whole.known):
         lost.setdefault(str(factor), factor)
     # What vanishes together, beside what is lost anyhow; numbers, powers and positive factors say nothing of where.

@@ -199,10 +199,10 @@ def feedback(there: AtValues) -> Feedback | str:
     import numpy as np
     from scipy.linalg import LinAlgError, solve_continuous_are
 
-    given, there = there, there.middle if there.enclosed else there
+    at_values, there = there, there.middle if there.enclosed else there
     assert there.inputs is not None
     if not is_stabilisable(there):
-        if given.enclosed:
+        if at_values.enclosed:
             return "near the given values, which are irrational, a motion that does not decay is out of reach"
         return "a motion that does not decay is out of reach of the inputs (proved)"
     a, b = there.state, there.gain(there.inputs)
@@ -227,9 +227,9 @@ def feedback(there: AtValues) -> Feedback | str:
         if not verdict.word.asymptotic:
             return "the two judges of the closed loop disagree"
         function = lyapunov_function(closed)
-        if given.enclosed and (function is None or not _proves_enclosed(given, gains, function)):
+        if at_values.enclosed and (function is None or not _proves_enclosed(at_values, gains, function)):
             continue
-        told = () if given.enclosed else tuple(fraction(x) for x in characteristic)
+        told = () if at_values.enclosed else tuple(fraction(x) for x in characteristic)
         return Feedback((), "", _rows(gains), told, verdict, function)
     return "no rounded feedback was proved to work"
 

@@ -69,10 +69,10 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
     parts = [[linear.coordinates.index(name) for name in part.coordinates] for part in linear.subsystems]
     turning, damping, energies = [], [], []
     pushed: list[str] = []
-    given = scene.system.linear
+    model = scene.system.linear
     nonholonomic = linear.constrained is not None and not linear.constrained.holonomic
     # x' = A x has no energy, and of nonholonomic systems the matrices say nothing of it.
-    for at in () if nonholonomic or (given is not None and given.of_first_order) else parts:
+    for at in () if nonholonomic or (model is not None and model.of_first_order) else parts:
         names = tuple(linear.coordinates[i] for i in at)
         mass, damped, gyro, stiff, circulatory = (_block(matrix, at) for matrix in linear.matrices)
         if not circulatory.is_zero:
@@ -87,11 +87,20 @@ def stabilisation(scene: Scene[Any], linear: Linearisation, signs: Signs, values
             damping.append(_dissipation(whole, names, own, None if there is None else _damping(scene, damped, values)))
     if there is None and values is not None and few and linear.B is not None:
         there = enclosed_at(scene, linear, values)
-    control, least, found, why = _controlled(scene, linear, signs, parts, there)
+    control, least, feedback, why = _controlled(scene, linear, signs, parts, there)
     idle = () if linear.constrained is None else linear.constrained.idle
     apart = tuple(name for name in idle if name not in linear.coordinates)
     return Stabilisation(
-        tuple(turning), tuple(damping), control, least, found, why, tuple(energies), apart, nonholonomic, tuple(pushed)
+        tuple(turning),
+        tuple(damping),
+        control,
+        least,
+        feedback,
+        why,
+        tuple(energies),
+        apart,
+        nonholonomic,
+        tuple(pushed),
     )
 
 
@@ -101,7 +110,7 @@ def on_motion(scene: Scene[Any], equilibrium: Equilibrium, values: Mapping[str, 
     exact = {name: algebra.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     carry = Carrier(scene.ring, algebra, exact)
     try:
-        return all(name in exact and carry(wanted.polynomial) == exact[name] for name, wanted in equilibrium.solved)
+        return all(name in exact and carry(formula.polynomial) == exact[name] for name, formula in equilibrium.solved)
     except NOT_THERE:
         return False
 
@@ -178,8 +187,8 @@ def _energy(whole: Cleared | None, names: tuple[str, ...], damped: Matrix, there
         try:
             found = definiteness(whole.matrices[3], whole.known, "K")
             definite = _PROVED.get(found.word)
-            wanted = [one.condition for one in found.requirements if one.condition.kind == "inequality"]
-            minors = tuple(whole.formula(one.polynomial) for one in wanted)
+            conditions = [one.condition for one in found.requirements if one.condition.kind == "inequality"]
+            minors = tuple(whole.formula(condition.polynomial) for condition in conditions)
         except TooLargeError:
             pass
     bundle, positive = None, None

@@ -90,12 +90,12 @@ def _point(
     given: dict[int, Polynomial] = {}
     for parameter in scene.system.parameters:
         value = values.get(parameter.name)
-        told = number(value) if isinstance(value, Fraction) else parameter.value
-        if told is None:
+        expression = number(value) if isinstance(value, Fraction) else parameter.value
+        if expression is None:
             continue
-        given[whole.index("parameter", parameter.name)] = scene.lower(told)
+        given[whole.index("parameter", parameter.name)] = scene.lower(expression)
         if parameter.name in whole.angles:
-            sine, cosine = scene.lower.angle(divide(told, number(whole.angles[parameter.name])))
+            sine, cosine = scene.lower.angle(divide(expression, number(whole.angles[parameter.name])))
             given |= {whole.index("sine", parameter.name): sine, whole.index("cosine", parameter.name): cosine}
     dependent = determined(scene, [(name, x.polynomial) for name, x in equilibrium.solved if name not in values])
     notation = {item.name for item in scene.system.notation}

@@ -267,7 +267,7 @@ def lowest_form(size: int, derivative: Derivative, field: NumberField) -> tuple[
 
     def contracted(*places: Any) -> Element:
         """A derivative along vectors, and in the places that are given as numbers."""
-        at = next((k for k, one in enumerate(places) if not isinstance(one, int)), None)
+        at = next((k for k, place in enumerate(places) if not isinstance(place, int)), None)
         if at is None:
             return entry(*places)
         terms = (

@@ -34,8 +34,8 @@ def enclosed_verdict(matrices: Sequence[Rows], conservative: bool, bits: int = 2
     """
     m, d, g, k, n = matrices
     with ctx.workprec(bits):
-        found = _verdict(m, d, g, k, n, conservative, exact)
-    return exactly(found) if exact else found
+        verdict = _verdict(m, d, g, k, n, conservative, exact)
+    return exactly(verdict) if exact else verdict
 
 
 def enclosed_verdict_with_cyclic(
@@ -206,8 +206,8 @@ class Spectrum:
 
 def from_characteristic(coordinates: Sequence[str], characteristic: Sequence[Any], scale: Any) -> Spectrum:
     """From the exact polynomial (coefficients low to high) in lambda/scale, tau = scale t."""
-    found = enclosures(characteristic, PRECISION)
-    return Spectrum(tuple(coordinates), tuple(Root(_times(x.ball, scale), x.multiplicity) for x in found))
+    roots = enclosures(characteristic, PRECISION)
+    return Spectrum(tuple(coordinates), tuple(Root(_times(x.ball, scale), x.multiplicity) for x in roots))
 
 
 def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows], following: Sequence[int] = ()) -> Spectrum | None:

@@ -168,10 +168,10 @@ def verdict_at(system: LinearSystem, point: Mapping[int, Fraction]) -> PointVerd
 
 def verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     """The same where the matrices' entries have exact values of whatever kind; ``polynomial`` is of that kind."""
-    found = _verdict_over(system, at)
-    if system.exact and found.roots is not None:
-        found = replace(found, verdict=_of_linear_equations(system, at, found.verdict))
-    return replace(found, verdict=on_the_motion(system, found.verdict))
+    verdict = _verdict_over(system, at)
+    if system.exact and verdict.roots is not None:
+        verdict = replace(verdict, verdict=_of_linear_equations(system, at, verdict.verdict))
+    return replace(verdict, verdict=on_the_motion(system, verdict.verdict))
 
 
 def on_the_motion(system: LinearSystem, verdict: Verdict) -> Verdict:
@@ -257,19 +257,19 @@ def _judge(system: LinearSystem, matrices: Sequence[Numbers], a: Numbers, roots:
         facts |= {Fact.EXACTLY_LINEAR}
     if roots.right:
         how_many = Reason(Because.RIGHT_ROOTS, (roots.right,))
-        found = concluded(facts | {Fact.ROOT_RIGHT})
-        further = [reason for reason in found.reasons if reason.code is not Because.RIGHT_ROOT]
-        return replace(found, reasons=(how_many, *further))
+        verdict = concluded(facts | {Fact.ROOT_RIGHT})
+        further = [reason for reason in verdict.reasons if reason.code is not Because.RIGHT_ROOT]
+        return replace(verdict, reasons=(how_many, *further))
     if roots.left == roots.degree:
         return concluded(facts | {Fact.ROOTS_LEFT})
     if implied(facts) >= {Fact.MASS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE}:
         if Fact.ENERGY_NEVER_GROWS not in implied(facts):
             return bounded(facts, Reason(Because.NO_ENERGY), Reason(Because.HIGHER_ORDER))
-        found = concluded(facts)
+        verdict = concluded(facts)
         if Fact.UNDAMPED in facts:
-            return found
+            return verdict
         names = ", ".join(system.name(i) for i in _undamped(a, d))
-        return replace(found, reasons=(*found.reasons, Reason(Because.UNDAMPED_MOTION, (names,))))
+        return replace(verdict, reasons=(*verdict.reasons, Reason(Because.UNDAMPED_MOTION, (names,))))
     blocks = counted(a.minpoly()) if max(roots.imaginary_multiplicity, roots.zero) > 1 else roots
     if max(blocks.imaginary_multiplicity, blocks.zero) > 1:
         return undecided(Because.JORDAN_BLOCK)

@@ -38,20 +38,20 @@ def where_zero(
     entries = [x for matrix in system.matrices for row in matrix for x in row]
     if signs.normal is not None or p == 0 or p.is_constant() or sum(map(len, entries)) > MOST_TERMS:
         return None
-    found: list[Verdict] = []
+    verdicts: list[Verdict] = []
     try:
         for factor, _ in irreducible_factors(p)[1]:
             if not signs.never_zero(factor):
                 there = _where_irreducible(system, signs, factor, judge, further)
                 if there is None:
                     return None
-                found.append(there)
+                verdicts.append(there)
     except Failure:
         return None
-    if not found:
+    if not verdicts:
         return None
-    alike = len({one.word for one in found}) == 1 or all(one.stable for one in found)
-    return weakest(found) if alike else depends()
+    alike = len({verdict.word for verdict in verdicts}) == 1 or all(verdict.stable for verdict in verdicts)
+    return weakest(verdicts) if alike else depends()
 
 
 def _where_irreducible(

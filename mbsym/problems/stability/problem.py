@@ -88,8 +88,8 @@ class SubsystemStability(Shown):
     @property
     def unreduced(self) -> tuple[tuple[str, Formula, str], ...]:
         """The open conditions as they arise: whole coefficients, minors and discriminants."""
-        wanted = [r for r in self.theory.requirements if not r.always and not r.unwritten]
-        return tuple((r.label, self._formula(r.polynomial), r.relation) for r in wanted)
+        requirements = [r for r in self.theory.requirements if not r.always and not r.unwritten]
+        return tuple((r.label, self._formula(r.polynomial), r.relation) for r in requirements)
 
     @property
     def sufficient(self) -> tuple[tuple[str, Formula, str], ...]:
@@ -117,20 +117,20 @@ class SubsystemStability(Shown):
     @property
     def guaranteed(self) -> tuple[tuple[str, Formula, str], ...]:
         """The same for the conditions that hold because the kinetic energy is positive definite."""
-        wanted = [item for item in self.theory.requirements if item.by_mass]
-        return tuple((item.label, self._formula(item.polynomial), item.relation) for item in wanted)
+        requirements = [item for item in self.theory.requirements if item.by_mass]
+        return tuple((item.label, self._formula(item.polynomial), item.relation) for item in requirements)
 
     def _open(self, requirements: Sequence[Requirement]) -> Iterator[tuple[str, Formula, str]]:
-        for wanted in requirements:
-            condition = wanted.condition
-            if wanted.always or wanted.unwritten:
+        for requirement in requirements:
+            condition = requirement.condition
+            if requirement.always or requirement.unwritten:
                 continue
             if condition.kind == "inequality":
-                yield wanted.label, self._formula(condition.polynomial), wanted.relation
+                yield requirement.label, self._formula(condition.polynomial), requirement.relation
             elif condition.kind != "nonzero":
-                yield wanted.label, self._formula(wanted.polynomial), wanted.relation
+                yield requirement.label, self._formula(requirement.polynomial), requirement.relation
             for x in condition.nonzero:
-                yield wanted.label, self._formula(x), "!="
+                yield requirement.label, self._formula(x), "!="
 
     def _formula(self, x: Polynomial) -> Formula:
         return Formula(self.factor.ring, self.in_whole(x))
@@ -249,9 +249,9 @@ def _spectrum(
         return from_characteristic(part.coordinates, point.characteristic, _balls(scene, [[scale]], values)[0][0])
     if point is not None:
         return None
-    about, given = linear.constrained, scene.system.linear
+    about, model = linear.constrained, scene.system.linear
     first_order = set() if about is None else set(about.following)
-    if given is not None and given.of_first_order:
+    if model is not None and model.of_first_order:
         first_order = set(part.coordinates)
     following = [i for i, name in enumerate(part.coordinates) if name in first_order]
     return from_matrices(part.coordinates, matrices_at(scene, linear, part.coordinates, values), following)
@@ -295,17 +295,17 @@ def _at_irrational(
 
     By enclosures (True); where these leave it open and the numbers are in one field of a low degree, exactly (False).
     """
-    found = _by_enclosures(scene, linear, part, values, balance, theory)
-    if not found.word.open or found.coordinates_singular:
-        return found, True
+    verdict = _by_enclosures(scene, linear, part, values, balance, theory)
+    if not verdict.word.open or verdict.coordinates_singular:
+        return verdict, True
     at = algebraic_point(scene, part.ring, (*part.system.matrices, [part.system.turned]), values, equilibrium)
     if at is None:
-        return found, True
+        return verdict, True
     try:
         exact = verdict_over(part.at(balance.at(values)), at).verdict
     except Failure:
-        return found, True
-    return (found, True) if exact.word is Word.UNDECIDED else (exact, False)
+        return verdict, True
+    return (verdict, True) if exact.word is Word.UNDECIDED else (exact, False)
 
 
 def _by_enclosures(
@@ -323,11 +323,11 @@ def _by_enclosures(
     if part.system.nonholonomic is not None:
         even = theory.variable == "lambda^2"
         form, power, exact = part.system.nonholonomic, theory.zero_power, there.exactly_linear
-        found = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
-        found = exactly(found) if exact else found
+        verdict = nonholonomic.enclosed(form, matrices, power, PRECISION, even, exact)
+        verdict = exactly(verdict) if exact else verdict
     else:
-        found = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
-    return on_the_motion(system, found)
+        verdict = enclosed_verdict_with_cyclic(matrices, there.law.bounded, cyclic, PRECISION, there.exactly_linear)
+    return on_the_motion(system, verdict)
 
 
 def _judge(scene: Scene, made: Prepared, values: Mapping[str, Fraction] | None, balance: Balance) -> SubsystemStability:
@@ -479,12 +479,12 @@ def _prepared(
     )
     hidden = _displaced(scene, part, balance, signs, cyclic, equilibrium, turns) if lagrangian else None
     if hidden is not None:
-        found, basis = hidden
+        displacements, basis = hidden
         inner = basis.through(scene.ring, elimination)
         changed = [inner.congruent(scene.ring, matrix) for matrix in rows]
-        count = len(found.directions)
+        count = len(displacements.directions)
         if all(x.is_zero() for matrix in changed[3:] for row in matrix[:count] for x in row):
-            rows, cyclic, driven, names = changed, tuple(range(count)), found.driven, basis.names
+            rows, cyclic, driven, names = changed, tuple(range(count)), displacements.driven, basis.names
         else:
             basis = None
     turned = [elimination(x) for x in turned]
@@ -572,9 +572,9 @@ class ExactVerdicts:
         """Right, or "undecided" with the reason."""
         numbers = Rationals({}, {})
         carry = Carrier(self.scene.ring, numbers, {name: numbers.number(value) for name, value in values.items()})
-        for name, wanted in self.equilibrium.solved:
+        for name, formula in self.equilibrium.solved:
             try:
-                fits = bool(carry(wanted.polynomial) == numbers.number(values[name]))
+                fits = bool(carry(formula.polynomial) == numbers.number(values[name]))
             except Failure:
                 fits = False
             if not fits:
@@ -582,17 +582,17 @@ class ExactVerdicts:
         elsewhere = _motion_at(self.scene, self.equilibrium, values) or _solved_at(self.scene, self.linear, values)
         if elsewhere is not None:
             return elsewhere
-        there, found = self.balance.at(values), []
+        there, verdicts = self.balance.at(values), []
         for part in self._parts:
             point = _point(self.scene, part.ring, part.system.matrices, values)
             if point is None:  # a number there is irrational
                 verdict, _ = _at_irrational(
                     self.scene, self.linear, part, values, self.balance, part.theory, self.equilibrium
                 )
-                found.append(verdict)
+                verdicts.append(verdict)
             else:
-                found.append(verdict_at(part.at(there), point).verdict)
-        return combine(found, there.law.bounded)
+                verdicts.append(verdict_at(part.at(there), point).verdict)
+        return combine(verdicts, there.law.bounded)
 
 
 def _turned(

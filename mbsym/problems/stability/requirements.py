@@ -247,16 +247,16 @@ def cells_of(cases: Sequence[Case], lift: Lift = lambda p: p) -> tuple[Cell, ...
 
     ``lift`` carries polynomials into the ring in which sets of several parts are compared.
     """
-    found: list[Cell] = []
+    cells: list[Cell] = []
     left = EVERYTHING
     try:
         for case in cases:
             there = _set_of(case, lift)
             if there is None:
                 return None
-            found.append(Cell(left & there, case.verdict))
+            cells.append(Cell(left & there, case.verdict))
             left = left & there.complement()
-        return (*found, Cell(left, undecided(Because.BORDER)))
+        return (*cells, Cell(left, undecided(Because.BORDER)))
     except Failure:
         return None
 
@@ -265,15 +265,15 @@ def _set_of(case: Case, lift: Lift) -> ParameterSet | None:
     """Where the case holds, whatever the others do."""
     if any(r.unwritten for r in (*case.all_of, *case.any_of)):
         return None
-    found = EVERYTHING
+    parameter_set = EVERYTHING
     for requirement in case.all_of:
-        found = found & where(*atoms(requirement, lift))
+        parameter_set = parameter_set & where(*atoms(requirement, lift))
     if case.any_of:
         some = NOTHING
         for requirement in case.any_of:
             some = some | where(*atoms(requirement, lift))
-        found = found & some
-    return found
+        parameter_set = parameter_set & some
+    return parameter_set
 
 
 def atoms(requirement: Requirement, lift: Lift = lambda p: p) -> tuple[Atom, ...]:
@@ -353,9 +353,9 @@ def _common(cells: Sequence[Cell], signs: Signs) -> Verdict:
     if not cells:
         return undecided(Because.BORDER)
     verdicts = [cell.verdict for cell in cells]
-    if len({one.word for one in verdicts}) == 1 or _all_stable(cells):
+    if len({verdict.word for verdict in verdicts}) == 1 or _all_stable(cells):
         return weakest(verdicts)
-    unstable = [one for one in verdicts if one.word is Word.UNSTABLE]
+    unstable = [verdict for verdict in verdicts if verdict.word is Word.UNSTABLE]
     others = [cell for cell in cells if cell.verdict.word is not Word.UNSTABLE]
     if unstable and all(_is_empty(cell.where.inner(), signs) for cell in others):
         return unstable_inside(weakest(unstable))

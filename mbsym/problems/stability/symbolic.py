@@ -180,29 +180,29 @@ def analyse(
     budget are left out, with a remark; then nothing is claimed in symbols.
     """
     try:
-        found = _analyse(system, signs, borders)
+        theory = _analyse(system, signs, borders)
     except TooLargeError as error:
-        found = _left_out(system, signs, message_of(error))
+        theory = _left_out(system, signs, message_of(error))
     if system.exact:
-        null = null_rows(added(system.K, system.N), signs.normalised) if found.zero_power else ()
-        calm = len(null) == found.zero_power  # the zero roots have no Jordan blocks, where there are no others
+        null = null_rows(added(system.K, system.N), signs.normalised) if theory.zero_power else ()
+        calm = len(null) == theory.zero_power  # the zero roots have no Jordan blocks, where there are no others
         cases = tuple(
-            replace(case, verdict=exactly(case.verdict, calm and _without_further_zeros(found, signs, case)))
-            for case in found.cases
+            replace(case, verdict=exactly(case.verdict, calm and _without_further_zeros(theory, signs, case)))
+            for case in theory.cases
         )
-        calm = calm and _without_further_zeros(found, signs, found.cases[0] if found.cases else None)
-        left_open = found.verdict.because(Because.BORDER)
-        verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(found.verdict, calm)
+        calm = calm and _without_further_zeros(theory, signs, theory.cases[0] if theory.cases else None)
+        left_open = theory.verdict.because(Because.BORDER)
+        verdict = undecided(Because.LINEAR_OPEN) if left_open else exactly(theory.verdict, calm)
         at_hand = verdict.word.open or verdict.because(Because.LINEAR_GROWS)
         if at_hand and not occurring(x for matrix in system.matrices for row in matrix for x in row):
             verdict = verdict_at(system, {}).verdict
-        found = replace(found, cases=cases, verdict=verdict)
-    found = replace(
-        found,
-        cases=tuple(replace(case, verdict=on_the_motion(system, case.verdict)) for case in found.cases),
-        verdict=on_the_motion(system, found.verdict),
+        theory = replace(theory, cases=cases, verdict=verdict)
+    theory = replace(
+        theory,
+        cases=tuple(replace(case, verdict=on_the_motion(system, case.verdict)) for case in theory.cases),
+        verdict=on_the_motion(system, theory.verdict),
     )
-    return found if point is None else replace(found, at_point=verdict_at(system, point))
+    return theory if point is None else replace(theory, at_point=verdict_at(system, point))
 
 
 def _without_further_zeros(found: Theory, signs: Signs, case: Case | None) -> bool:
@@ -288,7 +288,7 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
     if zero_power:
         several = Message("[[count]] zero roots split off.", count=zero_power)
         remarks.append(several if zero_power > 1 else Message("One zero root splits off."))
-    found = replace(
+    theory = replace(
         start,
         removed=removed,
         zero_power=zero_power,
@@ -301,18 +301,18 @@ def _analyse(system: LinearSystem, signs: Signs, borders: bool) -> Theory:
         turned=turned is not None,
     )
     if system.nonholonomic is not None:
-        cases, reduced = _cases_of_roots(system, system.nonholonomic, found, known), None
+        cases, reduced = _cases_of_roots(system, system.nonholonomic, theory, known), None
     elif zero_power:
-        cases, reduced = _cases_with_zero_roots(system, found, known)
+        cases, reduced = _cases_with_zero_roots(system, theory, known)
     else:
-        cases, reduced = _cases(system, found, known), None
+        cases, reduced = _cases(system, theory, known), None
     if system.exact and zero_power and not any(case.verdict.word.stable for case in cases):
-        linear = _cases_of_linear(system, found, known)
+        linear = _cases_of_linear(system, theory, known)
         # What changes the relations of a leaf acts like a constant force: along zero roots velocities grow under it.
         if not (system.leaf and any(case.verdict.word.stable for case in linear)):
             cases = linear or cases
     verdict, left = _first_certain(cases, known)
-    return replace(found, cases=cases, reduced=reduced, verdict=verdict, uncovered=left)
+    return replace(theory, cases=cases, reduced=reduced, verdict=verdict, uncovered=left)
 
 
 def on_border(
@@ -381,13 +381,13 @@ def _has_blocks(system: LinearSystem, factor: Factor, known: Signs, further: boo
 
 
 def _with_equality(
-    system: LinearSystem, wanted: Requirement, every: Sequence[Requirement], known: Signs, even: bool
+    system: LinearSystem, requirement: Requirement, every: Sequence[Requirement], known: Signs, even: bool
 ) -> Requirement:
     """The requirement with the places that the verdicts on its borders give it; ``even``: none decays anywhere."""
-    condition = wanted.condition
-    if condition.kind not in ("inequality", "nonzero") or Place.HARMLESS in (wanted.place, wanted.strict):
-        return wanted
-    others = [fact for r in every if r is not wanted and not r.always for fact in _facts_of(r)]
+    condition = requirement.condition
+    if condition.kind not in ("inequality", "nonzero") or Place.HARMLESS in (requirement.place, requirement.strict):
+        return requirement
+    others = [fact for r in every if r is not requirement and not r.always for fact in _facts_of(r)]
     apart = tuple(x for x in condition.nonzero)
     places = []
     for polynomials in ((condition.polynomial,) if condition.kind == "inequality" else (), apart):
@@ -396,7 +396,7 @@ def _with_equality(
             beside = [*others, *((y, "!=") for y in apart if y is not x)]
             found.add(_place_of_equality(system, x, known, beside, even))
         places.append(found.pop() if len(found) == 1 else None)
-    return replace(wanted, place=places[0] or wanted.place, strict=places[1] or wanted.strict)
+    return replace(requirement, place=places[0] or requirement.place, strict=places[1] or requirement.strict)
 
 
 def _facts_of(r: Requirement) -> Iterator[tuple[Polynomial, str]]:
@@ -485,7 +485,7 @@ def _requirements(
             _required(known, label, index if several else 0, value, p, _places(system, label, even))
             for label, value in wanted
         ]
-        left_out = joined((one.label for one in reduced if one.unwritten), ", ")
+        left_out = joined((requirement.label for requirement in reduced if requirement.unwritten), ", ")
         if left_out:
             remarks.append(
                 Message(
@@ -507,10 +507,10 @@ def _requirements(
     return tuple(_without_following(requirements, signs)), remarks
 
 
-def _without_following(wanted: Sequence[Requirement], signs: Signs) -> Iterator[Requirement]:
+def _without_following(requirements: Sequence[Requirement], signs: Signs) -> Iterator[Requirement]:
     """p > 0 goes without saying where another q > 0 is wanted and q >= 0 shows it: p < 0 is nowhere but where q < 0."""
-    standing = [r for r in wanted if _in_short(r)]
-    for r in wanted:
+    standing = [r for r in requirements if _in_short(r)]
+    for r in requirements:
         by = next((q for q in standing if q is not r and _in_short(r) and _shows(q, r, signs)), None)
         if by is not None:
             standing = [q for q in standing if q is not r]
@@ -569,34 +569,36 @@ def _required(
         return replace(unwritten(p[0]), label=label, place=place, strict=strict, coefficients=made)
 
 
-def _spared(wanted: list[Requirement], degree: int) -> list[Requirement]:
+def _spared(requirements: list[Requirement], degree: int) -> list[Requirement]:
     """Lienard-Chipart needs, besides a_0 and the minors, only every second coefficient: the simpler half is kept.
 
     ``wanted`` begins with a_(n-1), ..., a_0; for even n the first of them is the minor Delta_1 and stays.
     """
-    if degree < 3 or any(r.never for r in wanted):
-        return wanted
+    if degree < 3 or any(r.never for r in requirements):
+        return requirements
     first = 1 if degree % 2 == 0 else 0
-    numbered = list(zip(range(degree - 1 - first, 0, -1), wanted[first:], strict=False))
+    numbered = list(zip(range(degree - 1 - first, 0, -1), requirements[first:], strict=False))
     halves = [[r for k, r in numbered if k % 2 == odd] for odd in (0, 1)]
     weight = [sum(len(r.condition.polynomial) for r in half if not r.always) for half in halves]
     left_out = halves[0] if weight[0] > weight[1] else halves[1]
-    return [r for r in wanted if not any(r is other for other in left_out)]
+    return [r for r in requirements if not any(r is other for other in left_out)]
 
 
-def _without_implied(wanted: list[Requirement], known: Signs) -> list[Requirement]:
+def _without_implied(wanted_requirements: list[Requirement], known: Signs) -> list[Requirement]:
     """f != 0 goes without saying where a product with f has to be positive, or where the other g != 0 show it."""
-    strict = [f for r in wanted for f in r.condition.factors]
-    apart = known.apart([f for r in wanted for f in r.condition.nonzero if not any(f in (g, -g) for g in strict)])
-    found = []
-    for r in wanted:
+    strict = [f for r in wanted_requirements for f in r.condition.factors]
+    apart = known.apart(
+        [f for r in wanted_requirements for f in r.condition.nonzero if not any(f in (g, -g) for g in strict)]
+    )
+    requirements = []
+    for r in wanted_requirements:
         left = tuple(f for f in r.condition.nonzero if f in apart)
         if r.condition.kind == "nonzero" and not left:
             r = replace(r, condition=Condition("always", r.condition.polynomial))
         elif left != r.condition.nonzero:
             r = replace(r, condition=replace(r.condition, nonzero=left))
-        found.append(r)
-    return found
+        requirements.append(r)
+    return requirements
 
 
 def _power_name(even: bool, i: int) -> str:
@@ -669,12 +671,12 @@ def _is_semisimple(system: LinearSystem, factor: Factor) -> bool:
 
 
 def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
-    stiff, wanted, facts = found.stiffness.requirements, found.requirements, system.facts
-    unstable = _unstable(wanted, known)
+    stiff, requirements, facts = found.stiffness.requirements, found.requirements, system.facts
+    unstable = _unstable(requirements, known)
     if not is_zero(system.N) or found.dissipation is not None:
         if found.variable == "lambda^2":
             why = Reason(Because.IMAGINARY_SIMPLE), Reason(Because.HIGHER_ORDER)
-            return Case(wanted, (), bounded(facts & {Fact.EXACTLY_LINEAR}, *why)), *unstable
+            return Case(requirements, (), bounded(facts & {Fact.EXACTLY_LINEAR}, *why)), *unstable
         if found.dissipation is None:
             odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
             return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
@@ -684,8 +686,8 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
             if Ground.ENERGY in applying(minimum):
                 # With D >= 0 and N = 0 roots are all to the left only where K > 0 (Kelvin-Chetaev).
                 decaying = concluded(minimum | {Fact.ROOTS_LEFT})
-                return Case(wanted, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
-            return Case(wanted, (), _all_left(found.turned)), *unstable
+                return Case(requirements, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
+            return Case(requirements, (), _all_left(found.turned)), *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
     if found.dissipation is not None:
@@ -702,7 +704,7 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     odd_degree = concluded(facts | {Fact.STIFFNESS_ODD}, Reason(Because.ODD_DEGREE_REMAINS))
     return (
         Case(stiff, (), _conservative(minimum)),
-        Case(wanted, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))),
+        Case(requirements, (), bounded(facts - {Fact.STIFFNESS_POSITIVE}, Reason(Because.GYROSCOPIC_ONLY))),
         Case((), negative[-1:], odd_degree),
         *unstable,
     )
@@ -735,23 +737,23 @@ def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple
     if not null:
         return ()
     drifts = system.shifts or (system.free and _no_gyroscopic(system, null, known))
-    wanted = _wanted(found)
+    requirements = _wanted(found)
     decays = found.variable == "lambda" and bool(found.factors)
     calm = bounded({Fact.EXACTLY_LINEAR})
     if found.zero_power == len(null):
         if decays and drifts:
             calm = drifting(_all_left(False), constant_momenta=False)
-        return Case(wanted, (), calm), *unstable
+        return Case(requirements, (), calm), *unstable
     still = all(known.normalised(dot(row, v)) == 0 for row in rates for v in null)
     if drifts and still and found.zero_power == 2 * len(null):
         calm = drifting(_all_left(False) if decays else calm) if found.factors else coasting()
         calm = here(calm) if len(null) > len(system.shifts) else calm
-        return Case(wanted, (), calm), *unstable
+        return Case(requirements, (), calm), *unstable
     if system.shifts:
         return ()
     grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
-    if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in wanted):
-        return (Case(wanted, (), only_drifts(grows)),)
+    if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in requirements):
+        return (Case(requirements, (), only_drifts(grows)),)
     letter = "A" if system.of_first_order else "K + N"
     return (Case(_of_full_rank(places, letter, len(null), known), (), grows),)
 
@@ -828,10 +830,10 @@ def _energy_besides(system: LinearSystem, known: Signs) -> tuple[Case, ...]:
         return ()
     if Fact.DAMPING_SEMIDEFINITE not in _semidefinite(system, known):
         return ()
-    wanted = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
+    requirements = definiteness(block or system.kinetic, known, "K" if block else "M").requirements
     if not block:  # T is all of the energy
-        wanted = tuple(replace(r, by_mass=True) for r in wanted)
-    return (Case(wanted, (), drifting(energy_besides(system), constant_momenta=False)),)
+        requirements = tuple(replace(r, by_mass=True) for r in requirements)
+    return (Case(requirements, (), drifting(energy_besides(system), constant_momenta=False)),)
 
 
 def _all_left(turned: bool) -> Verdict:

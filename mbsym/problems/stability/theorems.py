@@ -200,11 +200,11 @@ def implied(shown: Set[Fact]) -> frozenset[Fact]:
 def applying(shown: Set[Fact]) -> dict[Ground | None, Theorem]:
     """By what they give, the first theorem all of whose hypotheses are among the facts."""
     every = implied(shown)
-    found: dict[Ground | None, Theorem] = {}
+    theorems: dict[Ground | None, Theorem] = {}
     for theorem in THEOREMS:
         if theorem.needs <= every:
-            found.setdefault(theorem.gives, theorem)
-    return found
+            theorems.setdefault(theorem.gives, theorem)
+    return theorems
 
 
 def reason_of(theorem: Theorem) -> Reason:

@@ -219,21 +219,21 @@ def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     """What is true of one system at all parameters, each of which has one of these verdicts."""
     if len({(one.word, one.theorems, one.reasons, one.grounds, one.flaws) for one in verdicts}) == 1:
         return verdicts[0]
-    kept = set.intersection(*({*one.laid} for one in verdicts))
-    grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept}
-    flaws = frozenset[Flaw]().union(*(one.flawed for one in verdicts))
-    row = row_of(kept, flaws)
-    if not row.word.stable and all(one.stable for one in verdicts):
+    kept_grounds = set.intersection(*({*verdict.laid} for verdict in verdicts))
+    grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept_grounds}
+    flaws = frozenset[Flaw]().union(*(verdict.flawed for verdict in verdicts))
+    row = row_of(kept_grounds, flaws)
+    if not row.word.stable and all(verdict.stable for verdict in verdicts):
         last = max(verdicts, key=lambda one: [*Word].index(one.word))
         if last.flawed >= flaws - {Flaw.HERE}:  # stable everywhere, though no one theorem says so
-            names = tuple(sorted({name for one in verdicts for name in one.theorems}))
+            names = tuple(sorted({name for verdict in verdicts for name in verdict.theorems}))
             return replace(last, theorems=names, flaws=flaws)
     names = () if row.ground is None else grounds[row.ground]
-    alike = [one for one in verdicts if one.word == row.word]
+    alike = [verdict for verdict in verdicts if verdict.word == row.word]
     if row.ground is None and row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS):
-        names = tuple(sorted({name for one in alike for name in one.theorems}))
-    reasons = {_uncounted(reason) for one in alike for reason in one.reasons}
-    if not all(one.because(Because.LINEAR_DRIFTS) for one in verdicts):
+        names = tuple(sorted({name for verdict in alike for name in verdict.theorems}))
+    reasons = {_uncounted(reason) for verdict in alike for reason in verdict.reasons}
+    if not all(verdict.because(Because.LINEAR_DRIFTS) for verdict in verdicts):
         reasons.discard(_DRIFTS)
     reasons = _telling(reasons)
     return Verdict(row.word, names, tuple(sorted(reasons, key=lambda x: x.rank)), tuple(grounds.items()), flaws)
@@ -245,11 +245,11 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     ``reasons`` replace those of the theorem; where no theorem applies and the first approximation is not shown to be
     stable, ``why_not`` is the reason.
     """
-    found = applying(shown)
-    if None in found:
-        return Verdict(Word.UNSTABLE, (found[None].name,), reasons or (reason_of(found[None]),))
+    theorems = applying(shown)
+    if None in theorems:
+        return Verdict(Word.UNSTABLE, (theorems[None].name,), reasons or (reason_of(theorems[None]),))
     grounds: dict[Ground, tuple[str, ...]] = {
-        ground: (theorem.name,) for ground, theorem in found.items() if ground is not None
+        ground: (theorem.name,) for ground, theorem in theorems.items() if ground is not None
     }
     every = implied(shown)
     if not grounds and Fact.BOUNDED not in every:
@@ -265,7 +265,7 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     if Ground.UNDAMPED in grounds and Ground.ENERGY not in grounds and not positive:
         flaws.add(Flaw.INDEFINITE)
     row = row_of({*grounds}, flaws)
-    theorem = found.get(row.ground)
+    theorem = theorems.get(row.ground)
     told = reasons or ((reason_of(theorem),) if theorem is not None else ())
     names = () if row.ground is None else grounds[row.ground]
     return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
@@ -409,14 +409,14 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
         raise ValueError("no subsystem, no verdict")
     if len(parts) == 1:
         return parts[0]
-    kept = set.intersection(*({*part.laid} for part in parts))
+    kept_grounds = set.intersection(*({*part.laid} for part in parts))
     grounds = {
         ground: tuple(sorted({name for part in parts for name in part.laid[ground]}))
         for ground in Ground
-        if ground in kept
+        if ground in kept_grounds
     }
     flaws = frozenset[Flaw]().union(*(part.flawed for part in parts))
-    row = row_of(kept, flaws)
+    row = row_of(kept_grounds, flaws)
     if row.ground is not None:
         if row.ground is Ground.ENERGY and Flaw.CYCLIC in flaws:
             grounds[Ground.ENERGY] = _at_constant_momenta(grounds[Ground.ENERGY])
@@ -442,41 +442,41 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
     idle = [part for part in parts if Ground.IDLE in part.laid]
     moving = [part for part in parts if part not in idle]
-    found: set[Reason] = set()
+    reasons: set[Reason] = set()
     if row.wanted - _SOUND or len(alike) == len(parts) or (alike and row.ground in (Ground.UNDAMPED, None)):
-        told = [part for part in alike if part in moving] or alike
-        found = {reason for part in told for reason in part.reasons}
+        verdicts = [part for part in alike if part in moving] or alike
+        reasons = {reason for part in verdicts for reason in part.reasons}
     elif row.ground is None:
-        found = {Reason(Because.UNLIKE_PARTS)}
+        reasons = {Reason(Because.UNLIKE_PARTS)}
     elif row.ground in (Ground.LINEAR, Ground.SHIFTED):
-        found = {Reason(Because.LINEAR_BOUNDED if row.ground is Ground.LINEAR else Because.LINEAR_SHIFTED)}
+        reasons = {Reason(Because.LINEAR_BOUNDED if row.ground is Ground.LINEAR else Because.LINEAR_SHIFTED)}
     elif row.ground is Ground.DECAYS and len({part.word for part in moving}) == 1:
-        found = {reason for part in moving for reason in part.reasons}
+        reasons = {reason for part in moving for reason in part.reasons}
     else:
         if row.ground is Ground.ENERGY and not all(Ground.UNDAMPED in part.laid for part in parts):
-            found = {reason for part in alike if part in moving for reason in part.reasons}
-            if found or any(part.because(_MINIMUM) or part.because(_WITH_DISSIPATION) for part in moving):
-                found = found - {Reason(_MINIMUM)} | {Reason(_WITH_DISSIPATION)}
+            reasons = {reason for part in alike if part in moving for reason in part.reasons}
+            if reasons or any(part.because(_MINIMUM) or part.because(_WITH_DISSIPATION) for part in moving):
+                reasons = reasons - {Reason(_MINIMUM)} | {Reason(_WITH_DISSIPATION)}
             else:
-                found = {_BESIDE_ZERO_ROOTS.get(reason, reason) for part in moving for reason in part.reasons}
+                reasons = {_BESIDE_ZERO_ROOTS.get(reason, reason) for part in moving for reason in part.reasons}
         if any(Flaw.CYCLIC in part.flawed for part in moving) or (row.ground is Ground.ENERGY and idle):
-            found.add(Reason(Because.PARTLY_CYCLIC))
+            reasons.add(Reason(Because.PARTLY_CYCLIC))
     if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
-        found.discard(_DRIFTS)  # of a part: others grow otherwise
+        reasons.discard(_DRIFTS)  # of a part: others grow otherwise
     if Flaw.CYCLIC in row.wanted:
-        found |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
+        reasons |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
     if idle and moving and row.ground is Ground.DECAYS:
-        found.add(Reason(Because.CONSTANT_MOMENTA))
-    if Reason(Because.CONSTANT_MOMENTA) in found:
-        found = {_BESIDE_CONSTANT_MOMENTA.get(reason, reason) for reason in found}
+        reasons.add(Reason(Because.CONSTANT_MOMENTA))
+    if Reason(Because.CONSTANT_MOMENTA) in reasons:
+        reasons = {_BESIDE_CONSTANT_MOMENTA.get(reason, reason) for reason in reasons}
     several = len(alike) > 1
-    found = {_uncounted(x) if several else x for x in found}
-    found = {Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in found}
-    if not all(part.because(Because.COMPLETE) for part in parts) and Reason(Because.COMPLETE) in found:
-        found = found - {Reason(Because.COMPLETE)} | {Reason(Because.LEFT)}
+    reasons = {_uncounted(x) if several else x for x in reasons}
+    reasons = {Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in reasons}
+    if not all(part.because(Because.COMPLETE) for part in parts) and Reason(Because.COMPLETE) in reasons:
+        reasons = reasons - {Reason(Because.COMPLETE)} | {Reason(Because.LEFT)}
     if any(Flaw.CYCLIC in part.flawed for part in parts):
-        found = {_BUT_CYCLIC.get(reason, reason) for reason in found}
-    return tuple(sorted(_telling(found), key=lambda reason: reason.rank))
+        reasons = {_BUT_CYCLIC.get(reason, reason) for reason in reasons}
+    return tuple(sorted(_telling(reasons), key=lambda reason: reason.rank))
 
 
 #: What is said of K and D of a part, and need not be true of those of the whole (with cyclic coordinates det K = 0).

@@ -83,7 +83,7 @@ class Symmetries:
     @property
     def new(self) -> tuple[Symmetry, ...]:
         """Those that problem 7 does not list, nor functions of what it lists."""
-        return tuple(one for one in self.symmetries if one.is_new)
+        return tuple(symmetry for symmetry in self.symmetries if symmetry.is_new)
 
 
 Images = Mapping[int, Polynomial]
@@ -183,12 +183,12 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     """
     unknowns = _unknowns(blocks)
     if len(unknowns) > MOST_UNKNOWNS:
-        told = Message(
+        message = Message(
             "a field of degree one has [[count]] constants, more than [[most]]",
             count=len(unknowns),
             most=MOST_UNKNOWNS,
         )
-        raise NoClosedForm(told, limit=Limit.WORK)
+        raise NoClosedForm(message, limit=Limit.WORK)
     bound = _bound(system, blocks, unknowns)
     able, most = (list(range(len(unknowns))), -1) if bound is None else bound
     columns = [_condition(blocks, unknowns[k]) for k in able]
@@ -212,28 +212,28 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
 def _unknowns(blocks: Blocks) -> list[Unknown]:
     """Those of Gamma first: pivots of the elimination, so that fields are what is free."""
     positions, directions = range(len(blocks.positions)), range(len(blocks.names))
-    found = [Unknown((j, k), None) for j in positions for k in positions if j <= k]
-    found += [Unknown((j,), None) for j in positions]
-    found += [Unknown((j,), r) for r in directions for j in positions]
-    found += [Unknown((), r) for r in directions]
-    return [*found, Unknown((), None, True)]
+    unknowns = [Unknown((j, k), None) for j in positions for k in positions if j <= k]
+    unknowns += [Unknown((j,), None) for j in positions]
+    unknowns += [Unknown((j,), r) for r in directions for j in positions]
+    unknowns += [Unknown((), r) for r in directions]
+    return [*unknowns, Unknown((), None, True)]
 
 
-def _condition(blocks: Blocks, one: Unknown) -> Polynomial:
+def _condition(blocks: Blocks, unknown: Unknown) -> Polynomial:
     """What a constant is multiplied by, in independent variables."""
     ring, s, changes = blocks.ring, blocks.positions, blocks.changes
-    if one.time:
+    if unknown.time:
         return blocks.plain(blocks.power)
-    if one.direction is None:
-        if len(one.factors) == 1:
-            return blocks.plain(-changes[one.factors[0]])
-        j, k = one.factors
+    if unknown.direction is None:
+        if len(unknown.factors) == 1:
+            return blocks.plain(-changes[unknown.factors[0]])
+        j, k = unknown.factors
         return blocks.plain(-ring.times(s[j], changes[k]) - ring.times(s[k], changes[j]))
-    rate = blocks.rates[one.direction]
-    if not one.factors:
+    rate = blocks.rates[unknown.direction]
+    if not unknown.factors:
         return blocks.plain(rate)
-    (j,) = one.factors
-    return blocks.plain(ring.times(s[j], rate) + ring.times(changes[j], blocks.momenta[one.direction]))
+    (j,) = unknown.factors
+    return blocks.plain(ring.times(s[j], rate) + ring.times(changes[j], blocks.momenta[unknown.direction]))
 
 
 # --- how many there can be ---
@@ -292,13 +292,13 @@ def _moves(ring: Ring, monomial: Sequence[int]) -> bool:
 
 
 def _norms(blocks: Blocks, source: Random) -> dict[str, fmpq]:
-    found: dict[str, fmpq] = {}
+    norms: dict[str, fmpq] = {}
     for names in blocks.norms:
         plane = [fmpq(source.randint(-99, 99), source.randint(1, 99)) for _ in names[1:]]
         square = sum((x * x for x in plane), fmpq(0))
         values = [(1 - square) / (1 + square), *(2 * x / (1 + square) for x in plane)]
-        found |= dict(zip(names, values, strict=True))
-    return found
+        norms |= dict(zip(names, values, strict=True))
+    return norms
 
 
 class _Plain:
@@ -324,17 +324,17 @@ def _row(carry: Carrier, blocks: _Plain, unknowns: Sequence[Unknown]) -> list[in
     s, changes = at(blocks.positions), at(blocks.changes)
     (power,) = at([blocks.power])
     found = []
-    for one in unknowns:
-        if one.time:
+    for unknown in unknowns:
+        if unknown.time:
             value = power
-        elif one.direction is None:
-            j, *rest = one.factors
+        elif unknown.direction is None:
+            j, *rest = unknown.factors
             value = -s[j] * changes[rest[0]] - s[rest[0]] * changes[j] if rest else -changes[j]
-        elif one.factors:
-            (j,) = one.factors
-            value = s[j] * rates[one.direction] + changes[j] * p[one.direction]
+        elif unknown.factors:
+            (j,) = unknown.factors
+            value = s[j] * rates[unknown.direction] + changes[j] * p[unknown.direction]
         else:
-            value = rates[one.direction]
+            value = rates[unknown.direction]
         found.append(value % prime)
     return found
 
@@ -352,18 +352,18 @@ def _symmetry(blocks: Blocks, unknowns: Sequence[Unknown], vector: dict[int, Pol
     left, time, gauge = ring.zero, ring.zero, ring.zero
     field = [ring.zero for _ in blocks.names]
     for k, c in vector.items():
-        one = unknowns[k]
-        left = left + ring.times(c, _condition(blocks, one))
-        if one.time:
+        unknown = unknowns[k]
+        left = left + ring.times(c, _condition(blocks, unknown))
+        if unknown.time:
             time = c
             continue
         term = c
-        for j in one.factors:
+        for j in unknown.factors:
             term = ring.times(term, blocks.positions[j])
-        if one.direction is None:
+        if unknown.direction is None:
             gauge = gauge + term
         else:
-            field[one.direction] = field[one.direction] + term
+            field[unknown.direction] = field[unknown.direction] + term
     whole = ring.times(time, blocks.energy) - gauge
     for xi, p in zip(field, blocks.momenta, strict=True):
         whole = whole + ring.times(xi, p)
@@ -393,17 +393,17 @@ def _told_apart(
         if not _constant(blocks, one.integral.polynomial)
     ]
     judged = []
-    for one in sorted(moving, key=lambda one: (not one.name, one.integral.terms)):
-        x = one.integral.polynomial
-        if one.name:
-            judged.append(replace(one, certainty=Certainty.PROVED))
+    for symmetry in sorted(moving, key=lambda one: (not one.name, one.integral.terms)):
+        x = symmetry.integral.polynomial
+        if symmetry.name:
+            judged.append(replace(symmetry, certainty=Certainty.PROVED))
         elif known is None or (grown := of_all.add(x)) is None:
-            judged.append(one)
+            judged.append(symmetry)
         elif grown:
-            judged.append(replace(one, certainty=Certainty.PROVED))
+            judged.append(replace(symmetry, certainty=Certainty.PROVED))
         else:
             name = FUNCTION if of_known.grows(x) is False else DEPENDENT
-            judged.append(replace(one, name=name, certainty=Certainty.VERIFIED))
+            judged.append(replace(symmetry, name=name, certainty=Certainty.VERIFIED))
     return judged
 
 

@@ -175,7 +175,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
         functions=functions,
         named=bodies_of(named, writer, comment) if named and bodies else None,
-        frames=[comment(one.name) for one in named.frames] if named else [],
+        frames=[comment(frame.name) for frame in named.frames] if named else [],
         without=wrap(comment(named.told_without), 110, break_long_words=False) if named else [],
         upper=upper,
         entries=entries,

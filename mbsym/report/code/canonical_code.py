@@ -61,17 +61,17 @@ class FormsCode:
 
 def canonical_code(analysis: Analysis, problems: Sequence[int], writer: Functions) -> FormsCode:
     """The code; none where the system has inputs, which functions of (t, q, p) would not know."""
-    found = forms_of(analysis, (*problems, 3) if 3 in analysis.problems else problems)
+    forms = forms_of(analysis, (*problems, 3) if 3 in analysis.problems else problems)
     code, missing = programs_of(analysis)
-    lacking = [f"There is no code of {_TITLES[name]}: {why.reason}" for name, why in found.failures if name in _TITLES]
+    lacking = [f"There is no code of {_TITLES[name]}: {why.reason}" for name, why in forms.failures if name in _TITLES]
     if code is None or analysis.system.inputs:
         reason = missing if code is None else "inputs are not taken into account there"
-        there = [title for name, title in _TITLES.items() if getattr(found, name) is not None]
+        there = [title for name, title in _TITLES.items() if getattr(forms, name) is not None]
         return FormsCode(None, None, (*lacking, *(f"There is no code of {title}: {reason}" for title in there)))
-    names = {name for one in (found.hamilton, found.routh) if one is not None for name in one.momenta}
+    names = {name for one in (forms.hamilton, forms.routh) if one is not None for name in one.momenta}
     taken = {*writer.reserved, *writer.names.values()}
     writer.names |= injective(sorted(names), lambda name: name + "_" if name in taken else name, taken)
-    return _Code(analysis, writer).forms(found, tuple(lacking))
+    return _Code(analysis, writer).forms(forms, tuple(lacking))
 
 
 _TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form"}

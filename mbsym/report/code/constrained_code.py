@@ -94,12 +94,14 @@ def tied_of(analysis: Analysis) -> Tied | str:
 
 
 def _tied(analysis: Analysis) -> Tied:
-    found, code = analysis.constraints, programs_of(analysis)
+    constraints, code = analysis.constraints, programs_of(analysis)
     order = sorted(range(len(code.names)), key=lambda i: code.position[i] is None)
-    rows, sets = counted_anew(order, found.independent, found.dependent_sets, found.dependent_positions)
+    rows, sets = counted_anew(
+        order, constraints.independent, constraints.dependent_sets, constraints.dependent_positions
+    )
     positions = sum(code.position[i] is not None for i in rows)
     chosen = Chosen(tuple((code.names[i].constraint, code.names[i].component) for i in rows), *sets)
-    tied = Tied(code, tuple(rows), positions, found.velocity_rank, found.position_rank, chosen)
+    tied = Tied(code, tuple(rows), positions, constraints.velocity_rank, constraints.position_rank, chosen)
     try:
         return replace(tied, dynamics=constrained_dynamics(analysis.system, analysis.ring, chosen))
     except Failure as reason:

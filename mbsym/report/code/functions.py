@@ -104,10 +104,10 @@ class Functions:
         """x = initial + rate*t for the prescribed quantities that occur."""
         program = Program()
         lower = Lowering(program, program_environment(self.system, program))
-        wanted = [item for item in self.system.prescribed if item.name in used]
-        values = [lower(prescribed_value(item)) for item in wanted]
+        prescribeds = [item for item in self.system.prescribed if item.name in used]
+        values = [lower(prescribed_value(item)) for item in prescribeds]
         found = listing(program, values, self.names, self.dialect, self.reserved | taken)
-        named = tuple((self.names[item.name], x) for item, x in zip(wanted, found.results, strict=True))
+        named = tuple((self.names[item.name], x) for item, x in zip(prescribeds, found.results, strict=True))
         return Listing((*found.assignments, *named), (), found.inputs)
 
 
@@ -241,7 +241,7 @@ def parameters_of(system: System, writer: Functions) -> list[Value]:
     """A relation gives a value unless it goes round in a circle; else the description's number does."""
     related = {item.name: item.value for item in system.relations}
     related |= {p.name: p.value for p in system.parameters if p.name not in related and p.value and _made(p.value)}
-    found = []
+    values = []
     for item in system.parameters:
         written, needs = "", set[str]()
         if item.name in related and not _circular(item.name, related):
@@ -251,8 +251,8 @@ def parameters_of(system: System, writer: Functions) -> list[Value]:
             written = number(exact(item.value, {}))
         unit = system.units.of(item.name) or ""
         used = tuple(name for name in system.parameter_names if name in needs)
-        found.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used, unit))
-    return found
+        values.append(Value(item.name, writer.names[item.name], written, " ".join(item.meaning.split()), used, unit))
+    return values
 
 
 def _made(value: Expression) -> bool:
@@ -287,11 +287,11 @@ def ordered(parameters: Sequence[Value]) -> tuple[Value, ...]:
 
 def initial_values(system: System, writer: Functions) -> list[tuple[str, str]]:
     """(name, value) of q and q'; velocities that are not given are zero, as in simulations."""
-    given = {item.coordinate: item for item in system.begun}
+    values = {item.coordinate: item for item in system.begun}
     placed: list[tuple[str, str]] = []
     moving: list[tuple[str, str]] = []
     for name, rate in zip(system.coordinates, system.velocities, strict=True):
-        entry = given.get(name)
+        entry = values.get(name)
         position = entry.position if entry is not None else None
         velocity = entry.velocity if entry is not None else None
         placed.append((name, "" if position is None else _value(writer, position)))

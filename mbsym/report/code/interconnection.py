@@ -167,19 +167,19 @@ def _strips(parents: Sequence[int], most_rows: int, most_columns: int) -> list[_
         else:
             kept[k], cut[k] = (groups[0], groups[1:]) if groups else ([], [])
         width[k] = max(1, sum(width[child] for child in kept[k]))
-    found = []
+    strips = []
     waiting = [(0, kept[0])]
     waiting += [(0, group) for group in cut[0]]
     for root, first in waiting:
         strip = _Strip(root, {})
-        found.append(strip)
+        strips.append(strip)
         inside = [(root, first)]
         for k, below in inside:
             strip.children[k] = list(below)
             inside += [(child, kept[child]) for child in below]
         members = sorted(k for k, _ in inside[1:])
         waiting += [(k, group) for k in members for group in cut[k]]
-    return found
+    return strips
 
 
 def _groups(children: Sequence[int], width: Sequence[int], most: int) -> list[list[int]]:

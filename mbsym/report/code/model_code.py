@@ -173,9 +173,9 @@ def _reactions(
     except Failure as reason:
         return (), str(reason)
     totals = []
-    for one in found:
-        total = [*one.force, *one.moment]
-        for weight, (force, moment) in zip(multipliers, one.per_multiplier, strict=True):
+    for reaction in found:
+        total = [*reaction.force, *reaction.moment]
+        for weight, (force, moment) in zip(multipliers, reaction.per_multiplier, strict=True):
             total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
         totals.append(tuple(total))
     return tuple(totals), ""
@@ -194,19 +194,22 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
     if stage.failure is not None:
         return Integrals((), code.program, (), stage.failure.reason)
     elsewhere = ("unit vectors", "quaternion", "speed momentum", "symmetry", "polynomial")
-    found: Sequence[Integral] = [item for item in stage.value if item.kind not in elsewhere]
-    named = [NamedIntegral(name, item.name, item.status) for item, name in zip(found, identifiers(found), strict=True)]
+    integrals: Sequence[Integral] = [item for item in stage.value if item.kind not in elsewhere]
+    named = [
+        NamedIntegral(name, item.name, item.status)
+        for item, name in zip(integrals, identifiers(integrals), strict=True)
+    ]
     system = analysis.system
     lagrangian: dict[tuple[str, str], Node] = {(ENERGY, "time"): generalized_energy(code, system)}
     for name, node in zip(system.coordinates, momenta(code, system), strict=True):
         lagrangian["cyclic momentum", name] = node
-    keys = [(item.kind, item.of) for item in found]
+    keys = [(item.kind, item.of) for item in integrals]
     if system.constraints:  # a momentum may be one along a displacement of several coordinates
-        for item, key in zip(found, keys, strict=True):
+        for item, key in zip(integrals, keys, strict=True):
             if item.kind == "cyclic momentum" and item.name != f"momentum of {item.of}":
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
-    for item, key in zip(found, keys, strict=True):
+    for item, key in zip(integrals, keys, strict=True):
         if item.kind in (WITH_FORCES, GYROSCOPIC):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
@@ -397,9 +400,9 @@ def _corrections(analysis: Analysis) -> tuple[Part, ...]:
     """lambda and the shortest ways back to the constraints."""
     tied = _tied(analysis)
     assert not isinstance(tied, str)
-    found = tied.dynamics
-    assert found is not None
-    program, n = found.program, len(found.accelerations)
+    dynamics = tied.dynamics
+    assert dynamics is not None
+    program, n = dynamics.program, len(dynamics.accelerations)
 
     def column(nodes: Sequence[Node]) -> dict[Place, Node]:
         return _nonzero(program, {(i,): node for i, node in enumerate(nodes)})
@@ -411,14 +414,14 @@ def _corrections(analysis: Analysis) -> tuple[Part, ...]:
             "lambda, in the order of constraint_velocity",
             (len(tied.rows),),
             program,
-            column(found.multipliers),
+            column(dynamics.multipliers),
         ),
         Part("velocity_correction", f"What to add to q' for J q' + j = 0: {step}", (n,), program,
-             column(found.velocity_correction)),
+             column(dynamics.velocity_correction)),
     ]  # fmt: skip
     if tied.positions:
         words = f"What to add to q for phi = 0: {step}"
-        made.insert(1, Part("position_correction", words, (n,), program, column(found.position_correction)))
+        made.insert(1, Part("position_correction", words, (n,), program, column(dynamics.position_correction)))
     return tuple(made)
 
 

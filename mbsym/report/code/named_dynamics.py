@@ -102,14 +102,14 @@ class Bodies:
 def bodies(found: NamedDynamics, writer: Functions, plain: Callable[[str], str]) -> Bodies:
     """In a language; names of frames may stand in its strings and comments when they are ``plain``."""
 
-    def body(one: Computed | None) -> Function | None:
-        return None if one is None else writer.function(one.program, one.nodes)
+    def body(computed: Computed | None) -> Function | None:
+        return None if computed is None else writer.function(computed.program, computed.nodes)
 
     frames = []
-    for one in found.frames:
-        places, nodes = one.entries(len(writer.system.coordinates))
-        pose = writer.function(one.pose.program, one.pose.nodes)
-        frames.append((plain(one.name), pose, writer.function(one.jacobian.program, nodes), places))
+    for frame in found.frames:
+        places, nodes = frame.entries(len(writer.system.coordinates))
+        pose = writer.function(frame.pose.program, frame.pose.nodes)
+        frames.append((plain(frame.name), pose, writer.function(frame.jacobian.program, nodes), places))
     return Bodies(body(found.inverse), body(found.forward), body(found.coriolis), body(found.gravity), frames)
 
 
@@ -126,7 +126,7 @@ def named_dynamics(analysis: Analysis) -> NamedDynamics:
 
 def _named_dynamics(analysis: Analysis) -> NamedDynamics:
     system, ring = analysis.system, analysis.ring
-    found: dict[str, Computed | None] = {}
+    computeds: dict[str, Computed | None] = {}
     makers: dict[str, Callable[[], Computed | None]] = {
         "inverse": lambda: _inverse(system, ring),
         "forward": lambda: _forward(analysis),
@@ -135,19 +135,19 @@ def _named_dynamics(analysis: Analysis) -> NamedDynamics:
     }
     for name, make in makers.items():
         try:
-            found[name] = make()
+            computeds[name] = make()
         except Failure:
-            found[name] = None
+            computeds[name] = None
     frames, without = _frames(system, ring)
-    return NamedDynamics(**found, frames=frames, without=without)
+    return NamedDynamics(**computeds, frames=frames, without=without)
 
 
 def _inverse(system: System, ring: Ring) -> Computed:
     """M q'' - f by one recursion of Newton and Euler's."""
     program = Program()
     scene = Scene(system, program, _unforced(system, program), ring)
-    found = residuals(scene)
-    return Computed(program, tuple(found[name] for name in system.coordinates))
+    nodes = residuals(scene)
+    return Computed(program, tuple(nodes[name] for name in system.coordinates))
 
 
 def _unforced(system: System, program: Program) -> dict[str, Node]:
@@ -170,8 +170,8 @@ def _forward(analysis: Analysis) -> Computed | None:
     else:
         found = forward_dynamics(system, ring, pushed=pushed)
     program = Program()
-    given = _unforced(system, program) | {force: program.input(force) for force in pushed.values()}
-    return Computed(program, tuple(found.program.evaluate(list(found.accelerations), given, program)))
+    nodes = _unforced(system, program) | {force: program.input(force) for force in pushed.values()}
+    return Computed(program, tuple(found.program.evaluate(list(found.accelerations), nodes, program)))
 
 
 def _coriolis(system: System, ring: Ring) -> Computed:
@@ -184,7 +184,7 @@ def _coriolis(system: System, ring: Ring) -> Computed:
 def _gravity(system: System, ring: Ring) -> Computed:
     program = Program()
     alone = replace(
-        system, loads=tuple(one for one in system.loads if isinstance(one, UniformGravity | NewtonianGravity))
+        system, loads=tuple(load for load in system.loads if isinstance(load, UniformGravity | NewtonianGravity))
     )
     inputs = program_environment(alone, program)
     potential = -force_function(scene_without_accelerations(alone, ring, program, inputs))
@@ -202,10 +202,10 @@ def _frames(system: System, ring: Ring) -> tuple[tuple[FrameCode, ...], tuple[st
     for name in sorted(scene.motions, key=lambda one: one in carrying):
         if spent > MOST_OPERATIONS:
             break
-        one = placed.frame(name)
-        spent += program.operations([*one.pose.nodes, *one.jacobian.nodes])
+        frame_code = placed.frame(name)
+        spent += program.operations([*frame_code.pose.nodes, *frame_code.jacobian.nodes])
         if spent <= MOST_OPERATIONS:
-            made[name] = one
+            made[name] = frame_code
     return (
         tuple(made[name] for name in scene.motions if name in made),
         tuple(name for name in scene.motions if name not in made),
@@ -247,7 +247,7 @@ class _Placed:
 
         A turn by the angle x about the unit vector e at r: x_q (e x (origin - r), e);  an offset d: (d_q, 0).
         """
-        found: dict[str, list[Node]] = {}
+        columns: dict[str, list[Node]] = {}
         number = end
         while number >= 0:
             frame = self.system.frames[number]
@@ -257,11 +257,11 @@ class _Placed:
                 d = [a - b for a, b in zip(origin, at, strict=True)]
                 swept = [e[1] * d[2] - e[2] * d[1], e[2] * d[0] - e[0] * d[2], e[0] * d[1] - e[1] * d[0], *e]
                 for name, slope in frame.angle_derivatives.items():
-                    self._add(found, name, [slope * x for x in swept])
+                    self._add(columns, name, [slope * x for x in swept])
             for name, moved in frame.offset_derivatives.items():
-                self._add(found, name, [axis.dot(moved) for axis in before] + [self.program.zero] * 3)
+                self._add(columns, name, [axis.dot(moved) for axis in before] + [self.program.zero] * 3)
             number = frame.parent
-        return found
+        return columns
 
     @staticmethod
     def _add(found: dict[str, list[Node]], name: str, column: list[Node]) -> None:

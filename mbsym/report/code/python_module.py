@@ -317,22 +317,22 @@ def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Funct
     """Of those problems that are asked for and have formulas."""
     from mbsym.analysis import PROBLEMS
 
-    found = []
+    functions = []
     for number in (number for number in problems if number >= FIRST):
         stage, name = analysis.stage(number), PROBLEMS[number].attribute
         if stage.failure is not None:
-            found.append(FormulaFunction(number, name, missing=stage.failure.reason))
+            functions.append(FormulaFunction(number, name, missing=stage.failure.reason))
             continue
         told = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
         if not told:
             continue
         sums = getattr(section_of(PROBLEMS[number]), "functions", None)
         try:
-            found.append(_function(number, name, told, writer))
-            found += [_of_sums(number, one, writer) for one in (sums(stage.value) if sums else ())]
+            functions.append(_function(number, name, told, writer))
+            functions += [_of_sums(number, one, writer) for one in (sums(stage.value) if sums else ())]
         except Failure as reason:
-            found.append(FormulaFunction(number, name, missing=str(reason)))
-    return found
+            functions.append(FormulaFunction(number, name, missing=str(reason)))
+    return functions
 
 
 def _function(number: int, name: str, told: Sequence[Told], writer: Functions) -> FormulaFunction:
@@ -345,14 +345,14 @@ def _of_sums(number: int, told: Sums, writer: Functions) -> FormulaFunction:
     if not told.phase:
         return replace(_written(number, told.name, [*series.items()], writer, told.small), told="series, summed")
     rate = _written(number, told.name, [(told.phase, series.pop(told.phase))], writer, told.small)
-    found = _written(number, told.name, [*series.items()], writer, told.small)
-    phase = dict(found.unpacked).pop(told.phase, told.phase)
-    unpacked = dict(rate.unpacked) | {x: called for x, called in found.unpacked if x != told.phase}
+    function = _written(number, told.name, [*series.items()], writer, told.small)
+    phase = dict(function.unpacked).pop(told.phase, told.phase)
+    unpacked = dict(rate.unpacked) | {x: called for x, called in function.unpacked if x != told.phase}
     return replace(
-        found,
+        function,
         unpacked=tuple(unpacked.items()),
-        assignments=(*rate.assignments, (phase, f"({rate.results[0][1]})*t"), *found.assignments),
-        results=((told.phase, phase), *found.results),
+        assignments=(*rate.assignments, (phase, f"({rate.results[0][1]})*t"), *function.assignments),
+        results=((told.phase, phase), *function.results),
         told="series, summed, at the time t",
         of_time=True,
     )

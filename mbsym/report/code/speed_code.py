@@ -69,21 +69,21 @@ def speed_code(analysis: Analysis, writer: Functions) -> SpeedCode | None:
         return None
     form = analysis.form
     try:
-        found = speed_program(form)
-        start = form.state_in_coordinates(found.program)
-        accelerations, moved = _solved(analysis, form, found)
+        program = speed_program(form)
+        start = form.state_in_coordinates(program.program)
+        accelerations, moved = _solved(analysis, form, program)
     except Failure:
         return None
     n = len(form.speeds)
     upper = tuple((i, j) for i in range(n) for j in range(i, n))
-    nodes = [*(found.mass_matrix[i][j] for i, j in upper), *found.forcing, *found.rates]
+    nodes = [*(program.mass_matrix[i][j] for i, j in upper), *program.forcing, *program.rates]
     state = [*(x.name for x in form.positions), *(u.name for u in form.speeds)]
-    inputs = [found.program.input(name) for name in state]
+    inputs = [program.program.input(name) for name in state]
     restored = [x + moved[name] if name in moved else x for name, x in zip(state, inputs, strict=True)]
-    derived = [*found.rates, *accelerations]
+    derived = [*program.rates, *accelerations]
 
     def used(outputs: Sequence[Node]) -> Used:
-        live = {found.program.instructions[number].payload for number in found.program.live(outputs)}
+        live = {program.program.instructions[number].payload for number in program.program.live(outputs)}
         return tuple((place, writer.names[name]) for place, name in enumerate(state) if name in live)
 
     return SpeedCode(
@@ -91,10 +91,10 @@ def speed_code(analysis: Analysis, writer: Functions) -> SpeedCode | None:
         speeds=tuple(u.name for u in form.speeds),
         unpacked=tuple(writer.names[name] for name in state),
         upper=upper,
-        function=writer.function(found.program, nodes),
-        from_coordinates=writer.function(found.program, start),
-        accelerated=writer.function(found.program, derived),
+        function=writer.function(program.program, nodes),
+        from_coordinates=writer.function(program.program, start),
+        accelerated=writer.function(program.program, derived),
         accelerated_used=used(derived),
-        restored=writer.function(found.program, restored) if moved else None,
+        restored=writer.function(program.program, restored) if moved else None,
         restored_used=used(restored),
     )

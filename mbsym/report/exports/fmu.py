@@ -247,23 +247,23 @@ def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Varia
 
 def _numbers(model: Export) -> dict[str, Fraction]:
     """The parameters that have numbers, relations used."""
-    given = {item.name: item.value for item in model.system.parameters if item.value is not None}
-    given |= {item.name: item.value for item in model.system.relations}
-    found: dict[str, Fraction] = {}
+    expressions = {item.name: item.value for item in model.system.parameters if item.value is not None}
+    expressions |= {item.name: item.value for item in model.system.relations}
+    numbers: dict[str, Fraction] = {}
     for item in model.ordered:
-        value = given.get(item.name)
-        if item.text and value is not None and names(value) <= found.keys() | {"pi"}:
-            found[item.name] = exact(value, found)
-    return found
+        value = expressions.get(item.name)
+        if item.text and value is not None and names(value) <= numbers.keys() | {"pi"}:
+            numbers[item.name] = exact(value, numbers)
+    return numbers
 
 
 def _starts(model: Export, numbers: Mapping[str, Fraction]) -> Iterator[tuple[str, str]]:
     """(name, number) of q(0) and q'(0); NaN for what the description does not give."""
-    given = {item.coordinate: item for item in model.system.begun}
+    values = {item.coordinate: item for item in model.system.begun}
     for name in model.system.coordinates:
-        yield name, _start(given[name].position if name in given else None, numbers, "NaN")
+        yield name, _start(values[name].position if name in values else None, numbers, "NaN")
     for name, rate in zip(model.system.coordinates, model.system.velocities, strict=True):
-        yield rate, _start(given[name].velocity if name in given else None, numbers, "0.0")
+        yield rate, _start(values[name].velocity if name in values else None, numbers, "0.0")
 
 
 def _start(value: Expression | None, numbers: Mapping[str, Fraction], otherwise: str) -> str:

@@ -111,13 +111,13 @@ def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str
     """
     if not any(one.name == "multipliers" for one in shown):
         return set(), []
-    found, tied = analysis.constraints, _tied(analysis)
+    constraints, tied = analysis.constraints, _tied(analysis)
     assert tied is not None
-    loose = {velocity_name(name) for name in found.dependent}
-    independent = [k for k, i in enumerate(tied.rows, 1) if i in found.independent]
+    loose = {velocity_name(name) for name in constraints.dependent}
+    independent = [k for k, i in enumerate(tied.rows, 1) if i in constraints.independent]
     closing = [f"constraint_velocity_{k}" for k in independent]
-    if found.position_rank == len(closing):
-        loose |= {*found.dependent}
+    if constraints.position_rank == len(closing):
+        loose |= {*constraints.dependent}
         closing += [f"constraint_position_{k}" for k in independent]
     return loose, closing
 

@@ -102,12 +102,12 @@ def _page_of(drawn: Sequence[Curve], axis: Any, figure: Figure) -> Figure:
 
 
 def _over_time(axis: Any, drawn: Sequence[Curve], place: int) -> None:
-    for colour, one in zip(COLOURS, drawn, strict=False):
-        axis.plot(*thinned(one.found.times, one.found.states[place]), color=colour, label=one.told or None)
+    for colour, curve in zip(COLOURS, drawn, strict=False):
+        axis.plot(*thinned(curve.found.times, curve.found.states[place]), color=colour, label=curve.told or None)
 
 
 def _longest(drawn: Sequence[Curve]) -> Any:
-    return max((one.found.times for one in drawn), key=lambda times: times[-1])
+    return max((curve.found.times for curve in drawn), key=lambda times: times[-1])
 
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:
@@ -185,13 +185,13 @@ def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
 def _labels(states: Sequence[str]) -> dict[str, tuple[str, str]]:
     """Each variable and its rate as mathematical text."""
     names = LatexNames(["t", *states])
-    found = {}
+    labels = {}
     for name in states:
         symbol = names[name]
         plain = "$\\mathrm{" + name.replace("_", r"\_") + "}$"
         odd = "mathtt" in symbol.stem
-        found[name] = (plain, f"d{plain}/d$t$") if odd else (f"${symbol}$", f"${symbol.accented('dot')}$")
-    return found
+        labels[name] = (plain, f"d{plain}/d$t$") if odd else (f"${symbol}$", f"${symbol.accented('dot')}$")
+    return labels
 
 
 def _label(axis: Any, label: str) -> None:
@@ -242,8 +242,8 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
                     np.array([-1, -0.5, 0, 0.5, 1]) * np.pi,
                     ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"],
                 )
-            for colour, one, (q, v) in zip(COLOURS, drawn, both, strict=False):
-                axis.plot(q, v, color=colour, linewidth=0.9, rasterized=len(q) > MOST_POINTS, label=one.told or None)
+            for colour, curve, (q, v) in zip(COLOURS, drawn, both, strict=False):
+                axis.plot(q, v, color=colour, linewidth=0.9, rasterized=len(q) > MOST_POINTS, label=curve.told or None)
                 axis.plot(q[:1], v[:1], "o", color=RED if len(drawn) == 1 else colour, markersize=4)
             axis.set_xlabel(label, fontsize=12)
             _label(axis, velocities[name])
@@ -254,12 +254,12 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
 
 def _curve(drawn: Curve, i: int) -> tuple[Any, Any]:
     """q and q' of one coordinate, between the samples too where the curve turns; a variable and its rate."""
-    found, rates = drawn.found, drawn.rates
-    if isinstance(found.system, InStates):
-        return np.asarray(found.states[i], dtype=float), rates[i]
-    state = np.asarray(found.states[[i, i + len(found.states) // 2]], dtype=float)
+    trajectory, rates = drawn.found, drawn.rates
+    if isinstance(trajectory.system, InStates):
+        return np.asarray(trajectory.states[i], dtype=float), rates[i]
+    state = np.asarray(trajectory.states[[i, i + len(trajectory.states) // 2]], dtype=float)
     size = np.ptp(state, axis=1)
-    if rates is None or len(found.times) > MOST_POINTS or not np.all(size > 0):
+    if rates is None or len(trajectory.times) > MOST_POINTS or not np.all(size > 0):
         return state[0], state[1]
     with np.errstate(all="ignore"):
         direction = np.arctan2(rates[i] / size[1], state[1] / size[0])
@@ -267,7 +267,7 @@ def _curve(drawn: Curve, i: int) -> tuple[Any, Any]:
         chord = np.hypot(*(np.diff(state, axis=1) / size[:, None]))
         wanted = np.minimum(np.ceil(turn / CORNER), np.ceil(chord / CLOSE))
     pieces = np.clip(np.nan_to_num(wanted, nan=1.0), 1, MOST_PIECES).astype(int)
-    _, (q, v) = between(found.times, state, rates[i : i + 1], pieces)
+    _, (q, v) = between(trajectory.times, state, rates[i : i + 1], pieces)
     return q, v
 
 

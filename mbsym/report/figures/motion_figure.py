@@ -88,10 +88,10 @@ def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] =
     view, say = _View(found), spoken(found.system)
     flat = view(found.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
-    for one in shapes:
-        whole = view(one.places[:, : len(found.times)])
-        low = np.minimum(low, np.min(whole, axis=1) - one.reach)
-        high = np.maximum(high, np.max(whole, axis=1) + one.reach)
+    for shape in shapes:
+        whole = view(shape.places[:, : len(found.times)])
+        low = np.minimum(low, np.min(whole, axis=1) - shape.reach)
+        high = np.maximum(high, np.max(whole, axis=1) + shape.reach)
     if found.tips:
         for centre, radius in _spheres(found, flat):  # the whole sphere on which the tips move
             low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
@@ -206,7 +206,7 @@ def _outlines(
     every = -(-len(shown) // OUTLINED)
     for k in shown[::-1][::every]:
         colour, zorder = _TIME(time(found.times[k])), 3 + k / len(found.times)
-        lines = [view(line).T for one in shapes for line in one.at(k)]
+        lines = [view(line).T for shape in shapes for line in shape.at(k)]
         axis.add_collection(LineCollection(lines, colors=[colour], linewidths=0.8, zorder=zorder))
 
 

@@ -85,7 +85,7 @@ def tensor(value: Sequence[Sequence[Expression]], names: LatexNames, widest: flo
     """A tensor of inertia; a wide one row by row."""
     if all(value[i][j] == ZERO for i in range(3) for j in range(3) if i != j):
         return "\\operatorname{diag}(" + ",\\; ".join(expression(value[k][k], names) for k in range(3)) + ")"
-    rows = [[expression(x, names) for x in one] for one in value]
+    rows = [[expression(x, names) for x in expressions] for expressions in value]
     if sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True)) <= widest:
         return latex_matrix(rows)
     return "(" + ";\\; \\penalty0 ".join(",\\; ".join(one) for one in rows) + ")"

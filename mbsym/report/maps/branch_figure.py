@@ -84,10 +84,10 @@ def _coordinate(axes: Axes, system: System, found: Branches, name: str, used: di
     for critical in found.criticals:
         there = found.critical(critical)
         p = float_of(critical.sample)
-        for one in (there.meetings or ()) if there.balance is not False else ():
-            values = {x.name: x for x in one.values}
-            event = one.named.event
-            if event is Event.REGULAR or one.coordinates_of or name not in values:
+        for meeting in (there.meetings or ()) if there.balance is not False else ():
+            values = {x.name: x for x in meeting.values}
+            event = meeting.named.event
+            if event is Event.REGULAR or meeting.coordinates_of or name not in values:
                 continue
             style = {"linestyle": "none", "marker": _MARKS[event], "markersize": 4, "color": DARK, "zorder": 3}
             style |= {"markerfacecolor": "white", "markeredgewidth": 0.8}
@@ -131,10 +131,10 @@ def _unbroken(piece: Piece, k: int, angle: bool) -> Iterator[tuple[list[float], 
 
 
 def _counts(axes: Axes, found: Branches, language: Language) -> None:
-    counts = [(one, one.counted) for one in found.intervals if one.counted is not None]
-    for one, counted in counts:
-        low, high = map(float_of, found.ends(one))
-        style = "-" if one.certainty is Certainty.PROVED else (0, (1, 1.5))
+    counts = [(interval, interval.counted) for interval in found.intervals if interval.counted is not None]
+    for cell, counted in counts:
+        low, high = map(float_of, found.ends(cell))
+        style = "-" if cell.certainty is Certainty.PROVED else (0, (1, 1.5))
         axes.plot([low, high], [counted.count] * 2, color=DARK, linewidth=1.2, linestyle=style)
         axes.fill_between([low, high], 0, counted.stable, color=STABLE, alpha=0.35, linewidth=0)
     axes.set_ylim(0, max((counted.count for _, counted in counts), default=1) * 1.15 + 0.5)
@@ -144,8 +144,8 @@ def _counts(axes: Axes, found: Branches, language: Language) -> None:
 
 def _lines(axes: Axes, found: Branches, used: dict[str, Any]) -> None:
     """Where there are infinitely many equilibria at one value: a vertical line."""
-    for one in found.criticals:
-        if found.critical(one).continuum:
+    for critical in found.criticals:
+        if found.critical(critical).continuum:
             style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": (0, (1, 2))}
             used.setdefault(EVENTS[Event.CONTINUUM], Line2D([], [], **style))
-            axes.axvline(float_of(one.sample), zorder=1, **style)
+            axes.axvline(float_of(critical.sample), zorder=1, **style)

@@ -106,8 +106,8 @@ def panels(found: Map) -> list[tuple[Picture | None, Map]]:
     """The map, or the slices that stand for the pictures of a stack."""
     if not isinstance(found, Stack):
         return [(None, found)]
-    shown = [(one, found.layers[one.shown].plane) for one in found.pictures]
-    return [(one, plane) for one, plane in shown if plane is not None]
+    shown = [(picture, found.layers[picture.shown].plane) for picture in found.pictures]
+    return [(picture, plane) for picture, plane in shown if plane is not None]
 
 
 def look(found: Map, cell: Cell) -> Look:
@@ -134,10 +134,10 @@ def lettered(found: Map) -> dict[str, str]:
 
 def marks(plane: Map) -> set[int]:
     """The curves, by number, of which an arc is drawn; of a line the points."""
-    shown = [one for one in plane.borders if plane.drawn(one)]
+    shown = [border for border in plane.borders if plane.drawn(border)]
     if isinstance(plane.ground, Line):
-        return {one.number for one in shown}
-    return {k for one in shown for k in plane.place(one).factors}
+        return {cell.number for cell in shown}
+    return {k for cell in shown for k in plane.place(cell).factors}
 
 
 def mark_name(found: Map, plane: Map, k: int) -> str:
@@ -260,8 +260,8 @@ class _Drawing:
     @cached_property
     def lines(self) -> dict[int, Sequence[XY]]:
         """The drawn arcs, by number."""
-        drawn = [one for one in self.found.arcs if self.found.drawn(one)]
-        return {one.number: polyline(self.found.arrangement, self.found.place(one), TOLERANCE) for one in drawn}
+        drawn = [arc for arc in self.found.arcs if self.found.drawn(arc)]
+        return {cell.number: polyline(self.found.arrangement, self.found.place(cell), TOLERANCE) for cell in drawn}
 
     def _fill(self) -> None:
         """All regions of one look at once."""
@@ -313,7 +313,7 @@ class _Drawing:
             arc = self.found.arcs[k]
             style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": _DASHES}
             if self.found.separates(arc):
-                open_side = any(one is not None and one.lack is not None for one in self.found.beside(arc))
+                open_side = any(cell is not None and cell.lack is not None for cell in self.found.beside(arc))
                 style = {"color": EDGE if open_side else DARK, "linewidth": 0.7 if open_side else 0.9}
             xs, ys = zip(*line, strict=True)
             self.axes.plot(xs, ys, solid_capstyle="round", zorder=2, **style)
@@ -364,7 +364,7 @@ class _Drawing:
         taken = self.taken
         taken += [self._unit(one.sample.floats()) for one in self.found.corners if len(self.found.place(one).arcs) > 2]
         for k, letter in self.told.items():
-            on = [self.lines[one.number] for one in marked(self.found, k)[0] if one.number in self.lines]
+            on = [self.lines[cell.number] for cell in marked(self.found, k)[0] if cell.number in self.lines]
             spots = [self._unit(p) for line in on for p in _along(line)]
             inside = [p for p in spots if min(*p, 1 - p[0], 1 - p[1]) > 0.04] or spots
             spot = max(inside, key=lambda p: min((math.dist(p, other) for other in taken), default=1.0))
@@ -419,15 +419,15 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
     named_letters: set[str] = set()
     dashed = numbered = False
     for found, told in shown:
-        for one, (area, _) in zip(found.regions, found.areas, strict=True):
-            words = language.say(cell_words(found, one))
-            if isinstance(found, BoxMap) and one.lack is Lack.UNPROVED:
+        for region, (area, _) in zip(found.regions, found.areas, strict=True):
+            words = language.say(cell_words(found, region))
+            if isinstance(found, BoxMap) and region.lack is Lack.UNPROVED:
                 words = f"{language.say('white: nothing is proved')} ({language.say(percent(found))})"
             (before, *_), _ = by_words.get(words, ((0.0,), NONE))
             order: tuple[float, ...] = (before - area,)
             if found.of is Of.EQUILIBRIA:
-                order = (1,) if one.counted is None else (-one.counted.count, -one.counted.stable)
-            by_words[words] = order, look(found, one)
+                order = (1,) if region.counted is None else (-region.counted.count, -region.counted.stable)
+            by_words[words] = order, look(found, region)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
@@ -436,8 +436,8 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
                     words = f"{float_of(found.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)
         if isinstance(found.ground, Arrangement) and found.of is Of.STABILITY:
-            numbered |= any(cell_text(found, one) for one in found.regions)
-        dashed |= any(found.drawn(one) and found.singles_out(one) for one in found.arcs)
+            numbered |= any(cell_text(found, cell) for cell in found.regions)
+        dashed |= any(found.drawn(arc) and found.singles_out(arc) for arc in found.arcs)
     entries: list[tuple[Any, str]] = []
     for words, (_, seen) in sorted(by_words.items(), key=lambda item: (item[1][1] == WHITE, item[1][0])):
         edge = hatch_of(seen) if seen.hatch or not seen.light else EDGE

@@ -41,8 +41,8 @@ def map_json(system: System, found: Map) -> str:
             demands=[doc.Demand.from_result(x.condition, relation=x.relation) for x in found.admissibility.demands],
             curves=_curves(found.boundaries),
             **_places(None if isinstance(found, BoxMap | Stack) else found),
-            pictures=[_picture(found, one) for one in found.pictures] if isinstance(found, Stack) else UNSET,
-            slices=[_layer(found, one) for one in found.layers] if isinstance(found, Stack) else UNSET,
+            pictures=[_picture(found, picture) for picture in found.pictures] if isinstance(found, Stack) else UNSET,
+            slices=[_layer(found, layer) for layer in found.layers] if isinstance(found, Stack) else UNSET,
             subdivision=_boxes(found) if isinstance(found, BoxMap) else UNSET,
         )
     )
@@ -61,38 +61,38 @@ def _places(found: Map | None) -> dict[str, Any]:
     return {
         "regions": [
             doc.Region.from_result(
-                one,
+                region,
                 signs=there.signs,
                 arcs=[] if line else there.arcs,
                 ends=there.ends if line else UNSET,
                 area=area,
                 area_error=error,
             )
-            for one, (area, error) in zip(found.regions, found.areas, strict=True)
-            for there in [found.place(one)]
+            for region, (area, error) in zip(found.regions, found.areas, strict=True)
+            for there in [found.place(region)]
         ],
         "arcs": [
             doc.Arc.from_result(
-                one,
-                soft_or_hard=one.soft,
+                arc,
+                soft_or_hard=arc.soft,
                 curves=there.factors,
                 regions=there.regions,
                 corners=there.corners,
-                separates=found.separates(one),
+                separates=found.separates(arc),
             )
-            for one in found.arcs
-            for there in [found.place(one)]
+            for arc in found.arcs
+            for there in [found.place(arc)]
         ],
         "corners": [
             doc.Corner.from_result(
-                one,
-                soft_or_hard=one.soft,
+                corner,
+                soft_or_hard=corner.soft,
                 curves=there.factors,
                 arcs=[] if line else there.arcs,
                 kind="zero" if line else str(there.kind),
             )
-            for one in found.corners
-            for there in [found.place(one)]
+            for corner in found.corners
+            for there in [found.place(corner)]
         ],
     }
 
@@ -111,15 +111,15 @@ def _boxes(found: BoxMap) -> doc.Subdivision:
     return doc.Subdivision.from_result(found, statements=statements, boxes=boxes)
 
 
-def _picture(found: Stack, one: Picture) -> doc.Picture:
-    low, closed_low, high, closed_high = found.ends(one)
-    return doc.Picture.from_result(one, low=low, low_belongs=closed_low, high=high, high_belongs=closed_high)
+def _picture(found: Stack, picture: Picture) -> doc.Picture:
+    low, closed_low, high, closed_high = found.ends(picture)
+    return doc.Picture.from_result(picture, low=low, low_belongs=closed_low, high=high, high_belongs=closed_high)
 
 
-def _layer(found: Stack, one: Layer) -> doc.Slice:
-    plane = one.plane
+def _layer(found: Stack, layer: Layer) -> doc.Slice:
+    plane = layer.plane
     return doc.Slice.from_result(
-        one,
+        layer,
         further_curves=[] if plane is None else _curves(plane.boundaries, len(found.boundaries.factors)),
         interrupted=plane is not None and plane.interrupted,
         **_places(plane),
@@ -131,20 +131,20 @@ def _equilibria(head: Mapping[str, Any], found: EquilibriaMap) -> branches.Equil
         found,
         **head,
         curves=[(k, p, [x.origin for x in conditions]) for k, p, conditions in _curves(found.boundaries)],
-        regions=[_numbered(one, area) for one, (area, _) in zip(found.regions, found.areas, strict=True)],
+        regions=[_numbered(region, area) for region, (area, _) in zip(found.regions, found.areas, strict=True)],
     )
 
 
-def _numbered(one: Cell, area: float) -> branches.Region:
-    known = branches.PROVED if one.certainty is Certainty.PROVED else branches.SAMPLE
-    said = one.said if isinstance(one.said, Counted) else Counted(())
+def _numbered(cell: Cell, area: float) -> branches.Region:
+    known = branches.PROVED if cell.certainty is Certainty.PROVED else branches.SAMPLE
+    said = cell.said if isinstance(cell.said, Counted) else Counted(())
     return branches.Region.from_result(
         said,
-        number=one.number,
-        sample=(one.sample.x, one.sample.y),
-        standing=one.lack or known,
-        count=None if one.counted is None else said.count,
-        stable=None if one.counted is None else said.stable,
+        number=cell.number,
+        sample=(cell.sample.x, cell.sample.y),
+        standing=cell.lack or known,
+        count=None if cell.counted is None else said.count,
+        stable=None if cell.counted is None else said.stable,
         area=area,
     )
 
@@ -154,15 +154,15 @@ def _branches(head: Mapping[str, Any], found: Branches) -> branches.Branches:
         found,
         **head,
         parameter=found.axes[0],
-        intervals=[_interval(found, one) for one in found.intervals],
-        critical_values=[_critical(found, one) for one in found.criticals],
+        intervals=[_interval(found, interval) for interval in found.intervals],
+        critical_values=[_critical(found, critical) for critical in found.criticals],
     )
 
 
-def _interval(found: Branches, one: Cell) -> branches.Interval:
-    low, high = found.ends(one)
-    constant = one.certainty is Certainty.PROVED
-    return branches.Interval.from_result(one.counted, low=low, high=high, sample=one.sample, constant=constant)
+def _interval(found: Branches, cell: Cell) -> branches.Interval:
+    low, high = found.ends(cell)
+    constant = cell.certainty is Certainty.PROVED
+    return branches.Interval.from_result(cell.counted, low=low, high=high, sample=cell.sample, constant=constant)
 
 
 def _critical(found: Branches, at: Cell) -> branches.CriticalValue:

@@ -179,8 +179,8 @@ class Locating:
 
     def _new_judge(self, z: Any) -> tuple[Judge, bool]:
         assert self.found.section is not None
-        cut, kept = at_level(self.found.section, self.found.admissibility, z)
-        return Judge(cut, kept), bool(kept.broken)
+        cut, admissibility = at_level(self.found.section, self.found.admissibility, z)
+        return Judge(cut, admissibility), bool(admissibility.broken)
 
 
 def place_text(found: Map, cell: Cell) -> str:
@@ -210,5 +210,5 @@ def _region(found: Stack, layer: Layer, point: Sequence[Any]) -> str:
     signs = tuple(sign(p(*point)) for p in found.boundaries.factors)
     if 0 in signs:
         return ", on a curve"
-    fitting = [one for one in layer.plane.regions if layer.plane.place(one).signs[: len(signs)] == signs]
+    fitting = [region for region in layer.plane.regions if layer.plane.place(region).signs[: len(signs)] == signs]
     return f", region {fitting[0].number}" if len(fitting) == 1 else ""

@@ -51,7 +51,7 @@ def map_tex(system: System, found: Map, language: Language) -> str:
     caption = caption_of(system, _HEADS[found.of], found.values, language, _plane(found, names))
     if isinstance(found, BoxMap):
         caption += f" {language.say('Every coloured box is proved as a whole')}"
-        if any(one.lack is Lack.UNPROVED for one in found.regions):
+        if any(region.lack is Lack.UNPROVED for region in found.regions):
             caption += f"; {language.say('white: nothing is proved')} ({escaped(language.say(percent(found)))})"
         caption += "."
     if found.interrupted:
@@ -70,10 +70,10 @@ def _branches(system: System, found: Branches, language: Language) -> str:
     if found.interrupted:
         caption += f" {language.say(INTERRUPTED)}."
     numbers = []
-    for one, last in found.spans():
-        low, high, counted = number_tex(found.ends(one)[0]), number_tex(found.ends(last)[1]), one.counted
+    for cell, last in found.spans():
+        low, high, counted = number_tex(found.ends(cell)[0]), number_tex(found.ends(last)[1]), cell.counted
         assert counted is not None
-        doubt = "" if one.certainty is Certainty.PROVED else f" ({language.say('not proved to be constant')})"
+        doubt = "" if cell.certainty is Certainty.PROVED else f" ({language.say('not proved to be constant')})"
         stable = f"{language.say('of them stable')} {counted.stable}"
         stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")

@@ -89,8 +89,8 @@ _RATIONAL = re.compile(r"-?\d{1,99}/\d{1,99}")
 
 def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition:
     """The condition that says most about a curve; one that parameters have to keep where it is a border of these."""
-    kept = (Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.MASS, Origin.UNDEFINED)
-    order = [*kept, *_TELLING] if outside else _TELLING
+    origins = (Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.MASS, Origin.UNDEFINED)
+    order = [*origins, *_TELLING] if outside else _TELLING
     return min(conditions, key=lambda one: order.index(one.origin))
 
 
@@ -111,7 +111,7 @@ def border_words(found: Map, k: int, named: Callable[[str], str] = str) -> Messa
     Where drawn borders bound what is not judged it is what parameters have to keep.
     """
     borders, conditions = marked(found, k)
-    sides = [x for one in borders if found.drawn(one) for x in found.beside(one) if x is not None]
+    sides = [x for border in borders if found.drawn(border) for x in found.beside(border) if x is not None]
     condition = telling(conditions, outside=any(x.lack is not None for x in sides))
     return joined((condition_words(condition, found, named), *onset_words(borders)), ", ")
 
@@ -120,7 +120,7 @@ def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
     """The borders that have this letter, and the conditions that are equalities there."""
     if isinstance(found.ground, Line):
         return [found.corners[k]], found.conditions(found.corners[k])
-    return [one for one in found.arcs if k in found.place(one).factors], found.boundaries.conditions[k]
+    return [arc for arc in found.arcs if k in found.place(arc).factors], found.boundaries.conditions[k]
 
 
 def onset_words(borders: Sequence[Cell]) -> list[Message]:
@@ -129,12 +129,12 @@ def onset_words(borders: Sequence[Cell]) -> list[Message]:
     Nothing where one of them is open, or is decided at its point only.
     """
     seen: set[Onset] = set()
-    for one in borders:
-        if one.soft is not None and one.soft.onset is not Onset.NEITHER:
-            stretches = one.soft.stretches
-            if one.shape is Shape.ARC and stretches is None:
+    for border in borders:
+        if border.soft is not None and border.soft.onset is not Onset.NEITHER:
+            stretches = border.soft.stretches
+            if border.shape is Shape.ARC and stretches is None:
                 return []
-            seen |= {one.soft.onset, *(x.onset for x in stretches or ())}
+            seen |= {border.soft.onset, *(x.onset for x in stretches or ())}
     if not seen or Onset.OPEN in seen:
         return []
     only = next(iter(seen)) if len(seen) == 1 else None
@@ -236,21 +236,21 @@ _DIFFER = "the verdicts at the samples on both sides differ"
 def event_words(events: Iterable[Event]) -> Message:
     """``2 x fold, pitchfork``."""
     listed = list(events)
-    told = []
+    messages = []
     for event in dict.fromkeys(listed):
         words, count = Message(EVENTS[event]), listed.count(event)
-        told.append(joined((f"{count} x", words)) if count > 1 else words)
-    return joined(told, ", ")
+        messages.append(joined((f"{count} x", words)) if count > 1 else words)
+    return joined(messages, ", ")
 
 
 def critical_words(found: Branches, at: Cell) -> str:
     """What happens at a critical value; "" for nothing that is shown."""
-    one = found.critical(at)
-    if one.balance is False:
+    critical = found.critical(at)
+    if critical.balance is False:
         return Message(EVENTS[Event.DEGENERATE])
-    parts = [event_words(one.events)] if one.events else []
-    if found.leaves(at) and not one.continuum:
-        parts.append(Message(_RANK_LOST if one.rank_lost else _BORDER))
+    parts = [event_words(critical.events)] if critical.events else []
+    if found.leaves(at) and not critical.continuum:
+        parts.append(Message(_RANK_LOST if critical.rank_lost else _BORDER))
     if found.verdict_changes(at) and not parts and not found.count_changes(at):
         parts.append(Message(_CHANGE if found.certain(at) else _DIFFER))
     if not parts and found.happens(at):
@@ -258,10 +258,10 @@ def critical_words(found: Branches, at: Cell) -> str:
     return joined(parts, ", ") if parts else ""
 
 
-def remark_words(one: Remark) -> Message:
+def remark_words(remark: Remark) -> Message:
     """A sentence of the terminal on what is not proved."""
-    told = Message(_DOUBTS[one.doubt])
-    return Message("[[told]] ([[about]])", told=told, about=worded(one.about)) if one.about else told
+    told = Message(_DOUBTS[remark.doubt])
+    return Message("[[told]] ([[about]])", told=told, about=worded(remark.about)) if remark.about else told
 
 
 def stable_words(verdicts: Iterable[Verdict | None]) -> str:

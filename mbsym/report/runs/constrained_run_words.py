@@ -47,7 +47,7 @@ def rows_line(known: Constraints) -> Message:
     free = (
         "free velocities: at most [[free]] of [[all]]" if known.more_is_held else "free velocities: [[free]] of [[all]]"
     )
-    told = [
+    messages = [
         Message("independent constraint rows: [[rows]]", rows=len(known.kept)),
         Message(free, free=known.freedom, all=known.size),
     ]
@@ -56,8 +56,8 @@ def rows_line(known: Constraints) -> Message:
             "these follow from the others (seen at positions near the start, not proved) and drift with them: "
             "[[names]]; forces of single constraints are not unique"
         )
-        told.append(Message(text, names="; ".join(name.label for name in known.redundant)))
-    return joined(told, "; ")
+        messages.append(Message(text, names="; ".join(name.label for name in known.redundant)))
+    return joined(messages, "; ")
 
 
 def start_lines(closed: Closed, system: System) -> Iterator[Message]:

@@ -77,7 +77,7 @@ def ensemble_json(
         status="partial" if found.interrupted else "whole",
         inputs=laws_json(scenario) if scenario.inputs else UNSET,
         members=found.count,
-        varied=[_variation(one) for one in variations],
+        varied=[_variation(variation) for variation in variations],
         seed=None if isinstance(variations[0], Grid) else seed,
         sampling="grid" if isinstance(variations[0], Grid) else sampling,
         time=(0.0, float(found.times[-1]), len(found.times)),

@@ -23,10 +23,10 @@ def events_json(run: Simulation) -> dict[str, Any]:
     """``events``, ``stopped`` and ``section``; nothing where nothing was watched for."""
     if run.happened is None:
         return {}
-    found = run.happened.occurrences
+    occurrences = run.happened.occurrences
     content: dict[str, Any] = {
-        "events": [_event(found, place, event) for place, event in enumerate(found.events)],
-        "stopped": _stopped(run, found.ended),
+        "events": [_event(occurrences, place, event) for place, event in enumerate(occurrences.events)],
+        "stopped": _stopped(run, occurrences.ended),
     }
     section = run.happened.section
     if section is not None:
@@ -66,43 +66,43 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(title, text) of what happened; ``warning`` where something cannot be told."""
     if run.happened is None:
         return
-    found, unit = run.happened.occurrences, pretty(time_unit(run.system))
+    occurrences, unit = run.happened.occurrences, pretty(time_unit(run.system))
     since: list[Message] = []
     if run.request.earlier is not None:
         begun = with_unit(f"{run.request.earlier.time:.9g}", unit)
         since = [Message("watched from t = [[time]] on", time=begun)]
-    for place, event in enumerate(found.events):
-        own = found.which == place
-        times, touches = found.times[own], int((found.turns[own] == 0).sum())
-        told = [Message("never"), *since]
+    for place, event in enumerate(occurrences.events):
+        own = occurrences.which == place
+        times, touches = occurrences.times[own], int((occurrences.turns[own] == 0).sum())
+        messages = [Message("never"), *since]
         if len(times):
             first = with_unit(f"{times[0]:.9g}", unit)
-            told = [Message("[[count]] times, first at t = [[time]]", count=len(times), time=first), *since]
+            messages = [Message("[[count]] times, first at t = [[time]]", count=len(times), time=first), *since]
         if len(times) == 1:
-            told[0] = Message("once, at t = [[time]]", time=first)
+            messages[0] = Message("once, at t = [[time]]", time=first)
         if touches:
             text = "[[count]] of them touch only, as far as this run can tell: two passages or none"
-            told.append(Message(text, count=touches))
+            messages.append(Message(text, count=touches))
         idle = event.action is Action.STOP and (touches or (len(times) and times[0] == run.trajectory.times[0]))
-        if idle and found.ended is None:
-            told.append(Message("touching, or at the start, it stops nothing"))
-        yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(told, "; "))
-    if found.ended is not None:
-        time = with_unit(f"{found.ended.time:.9g}", unit)
+        if idle and occurrences.ended is None:
+            messages.append(Message("touching, or at the start, it stops nothing"))
+        yield "event", Message("[[event]]: [[said]]", event=event.name, said=joined(messages, "; "))
+    if occurrences.ended is not None:
+        time = with_unit(f"{occurrences.ended.time:.9g}", unit)
         text = "at t = [[time]] by [[event]]"
-        if found.ended.time <= (0.0 if run.request.earlier is None else run.request.earlier.time):
+        if occurrences.ended.time <= (0.0 if run.request.earlier is None else run.request.earlier.time):
             text = "at t = [[time]] by [[event]], which holds at the start: nothing was integrated"
-        yield "stopped", Message(text, time=time, event=found.events[found.ended.event].name)
-    for event in found.undecided:
+        yield "stopped", Message(text, time=time, event=occurrences.events[occurrences.ended.event].name)
+    for event in occurrences.undecided:
         text = "[[event]]: the two sides were equal all along within the error of a step: nothing can be told"
         yield "warning", Message(text, event=event.name)
     if run.section is not None:
         points = Message("points: [[count]]", count=len(run.section.times))
         condition, said = run.section.section.condition.text, joined([points, *since], "; ")
         yield "section", Message("[[event]]: [[said]]", event=condition, said=said)
-    if found.beyond:
+    if occurrences.beyond:
         text = "only the first [[most]] events were kept; there were [[more]] more"
-        yield "warning", Message(text, most=MOST, more=found.beyond)
+        yield "warning", Message(text, most=MOST, more=occurrences.beyond)
 
 
 # ``events.csv`` and ``section.csv``: what happened along a run, as plain CSV; numbers read back exactly (``%.17g``).

@@ -55,9 +55,9 @@ def sentences(found: Judged) -> Iterator[tuple[str, str]]:
     yield Message("how"), Message(told, steps=Counted(found.steps, "step"))
 
 
-def _shown(one: Multiplier) -> str:
-    real = one.ball.real.str(DIGITS, radius=False)
-    if one.ball.imag.contains(0):
+def _shown(multiplier: Multiplier) -> str:
+    real = multiplier.ball.real.str(DIGITS, radius=False)
+    if multiplier.ball.imag.contains(0):
         return real
-    imaginary = one.ball.imag.str(DIGITS, radius=False)
+    imaginary = multiplier.ball.imag.str(DIGITS, radius=False)
     return f"{real} {'-' if imaginary.startswith('-') else '+'} {imaginary.lstrip('-')} i"

@@ -64,12 +64,12 @@ def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
     yield Message("motion"), _judged(found)
     for place, (value, doubt) in enumerate(zip(found.values, found.uncertainty, strict=True)):
         if isfinite(doubt):
-            told = Message(
+            message = Message(
                 "[[value]] +- [[doubt]] (95 %, statistics of this run only)", value=f"{value:.6g}", doubt=f"{doubt:.2g}"
             )
         else:
-            told = Message("[[value]], uncertainty not estimated", value=f"{value:.6g}")
-        yield f"lambda {place + 1}", told
+            message = Message("[[value]], uncertainty not estimated", value=f"{value:.6g}")
+        yield f"lambda {place + 1}", message
     yield Message("time"), f"{found.time:g}"
     if isfinite(found.sum_error):
         yield (

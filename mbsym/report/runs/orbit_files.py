@@ -67,8 +67,8 @@ def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
     listed = ", ".join(_shown(mu) for mu in orbit.multipliers)
     told = "[[values]] (to about [[error]])"
     yield Message("multipliers"), Message(told, values=listed, error=f"{orbit.uncertainty:.0e}")
-    for one in orbit.reasons:
-        yield Message("one is 1"), one.reason
+    for reason in orbit.reasons:
+        yield Message("one is 1"), reason.reason
 
 
 def _judged(orbit: Orbit) -> Message:

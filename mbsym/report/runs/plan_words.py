@@ -141,18 +141,18 @@ def item_words(item: Item, plan: Plan) -> Message:
     if item.kind in (Kind.MASSES, Kind.RESTING, Kind.PARTS, Kind.WELDED):
         chosen = joined([", ".join(item.what), chosen])
     why = Message("[[chosen]]: [[why]]", chosen=chosen, why=item.why)
-    return joined([why, *(refused_words(one, item.unit) for one in item.refused)], "; ")
+    return joined([why, *(refused_words(refused, item.unit) for refused in item.refused)], "; ")
 
 
-def refused_words(one: Refused, unit: str) -> Message:
+def refused_words(refused: Refused, unit: str) -> Message:
     """``rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
-    parts = [Message("error [[error]]", error=f"{one.error:.1e}")] if one.error is not None else []
-    parts += [worded(one.why)] if one.why else []
-    if one.cost is not None and unit == OPERATIONS:
-        parts.append(Message("[[count]] operations", count=round(one.cost)))
-    elif one.cost is not None:
-        parts.append(Message("about [[cost]]", cost=duration(one.cost)))  # by counted work
-    return joined([worded(one.word), *([joined(parts, ", ")] if parts else [])], ": ")
+    parts = [Message("error [[error]]", error=f"{refused.error:.1e}")] if refused.error is not None else []
+    parts += [worded(refused.why)] if refused.why else []
+    if refused.cost is not None and unit == OPERATIONS:
+        parts.append(Message("[[count]] operations", count=round(refused.cost)))
+    elif refused.cost is not None:
+        parts.append(Message("about [[cost]]", cost=duration(refused.cost)))  # by counted work
+    return joined([worded(refused.word), *([joined(parts, ", ")] if parts else [])], ": ")
 
 
 def alternative_words(other: Alternative, plan: Plan) -> Message:
@@ -188,8 +188,8 @@ def repeating_options(request: Request) -> list[str]:
     found += ["--step-limit", str(request.step_limit)] if request.step_limit != Setting.step_limit else []
     found += ["--invariants"] if request.invariants else []
     watched = request.events
-    found += [word for one in watched.events for word in ("--event", _written(one))]
-    found += [word for one in watched.stops for word in ("--stop", _written(one))]
+    found += [word for event in watched.events for word in ("--event", _written(event))]
+    found += [word for stop in watched.stops for word in ("--stop", _written(stop))]
     if watched.section is not None:
         axes = ", ".join(axis.text for axis in watched.section.axes)
         found += ["--section", _written(watched.section.condition), "--axes", axes]

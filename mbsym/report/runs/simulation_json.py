@@ -33,17 +33,17 @@ PACKAGES = ("mbsym", "numpy", "scipy", "llvmlite", "python-flint", "heyoka")
 
 def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | None = None) -> str:
     """The file's text; ``files`` are those that belong to it, and the hash is that of the table of rows."""
-    system, found, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
+    system, trajectory, chosen, scenario = run.system, run.trajectory, run.chosen, run.scenario
     state = [float(x) for x in scenario.state]
     traits, earlier = chosen.method.traits, run.request.earlier
     names = [*system.coordinates, *system.velocities]
     content = doc.Simulation(
         system=system.name,
         description_sha256=meaning(run.given.system if run.given is not None else system),
-        status="whole" if found.whole else "partial",
-        ended=_ended(found),
+        status="whole" if trajectory.whole else "partial",
+        ended=_ended(trajectory),
         time=doc.TimeSpan(from_=0.0, to=float(chosen.times[-1]), samples=len(chosen.times)),
-        reached=doc.Reached(time=float(found.times[-1]), samples=found.samples, state=_last(found)),
+        reached=doc.Reached(time=float(trajectory.times[-1]), samples=trajectory.samples, state=_last(trajectory)),
         continued=None if earlier is None else doc.Continued(from_=earlier.time, samples=len(earlier.times)),
         method=doc.MethodUsed(
             name=traits.name.lower(),
@@ -52,15 +52,15 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
             may_change=may_change(run.request),
         ),
         arithmetic=run.arithmetic,
-        tolerance=found.setting.tolerance,
-        step=found.setting.step,
-        longest_step=found.setting.longest,
-        between_steps=between_steps_json(found.passed),
-        step_limit=found.setting.step_limit,
+        tolerance=trajectory.setting.tolerance,
+        step=trajectory.setting.step,
+        longest_step=trajectory.setting.longest,
+        between_steps=between_steps_json(trajectory.passed),
+        step_limit=trajectory.setting.step_limit,
         parameters={name: float(value) for name, value in scenario.parameters.items()},
         inputs=laws_json(scenario) if scenario.inputs else UNSET,
         initial=dict(zip(names, state, strict=True)),
-        work=doc.Work.from_result(found.work),
+        work=doc.Work.from_result(trajectory.work),
         files=list(files),
         table_sha256=table_sha256,
         versions=versions(),
@@ -78,7 +78,7 @@ def simulation_json(run: Simulation, files: Sequence[str], table_sha256: str | N
         parts=[doc.SystemPart.from_result(part) for part in chosen.parts],
         model=doc.Model.from_result(run.request.model),
         plan=None if run.plan is None else plan_json(run.plan, run.request),
-        method_changes=[doc.MethodChange.from_result(one) for one in found.work.changes] or UNSET,
+        method_changes=[doc.MethodChange.from_result(change) for change in trajectory.work.changes] or UNSET,
         constraints=constraints_json(run),
         variables=states_json(run),
         certificate=UNSET if run.certificate is None else certificate_json(run.certificate, names),
@@ -90,7 +90,7 @@ def _units(run: Simulation) -> dict[str, str]:
     """The units of everything that has a name; nothing for a description without."""
     energy = energy_unit(run.system)
     energies = [("energy", energy)] if run.dynamics.natural else [("energy", energy), ("generalized_energy", energy)]
-    return units_by_name(run.system, [*energies, *((kept.column, kept.unit) for kept in run.invariants)])
+    return units_by_name(run.system, [*energies, *((invariant.column, invariant.unit) for invariant in run.invariants)])
 
 
 def _resting(found: Reduced | None) -> doc.Resting | None:

@@ -70,7 +70,7 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
         error = 0.0
         if errors and found.standing is Standing.CHANGING and len(run.times):
             states = np.vstack([run.trajectory.times, run.trajectory.states])
-            error = swayed(run.dynamics.energies, place, states, [one.largest for one in errors])
+            error = swayed(run.dynamics.energies, place, states, [difference.largest for difference in errors])
         line = conservation_line(found, error)
         if found.standing is not Standing.CHANGING or not given:
             return line
@@ -92,12 +92,12 @@ def invariant_line(found: Conservation) -> Message:
 def setting_words(setting: Setting, scalar: str) -> Message:
     """``tolerance 1e-12 per step, steps up to 0.005, extended``."""
     if setting.step is not None:
-        told = [Message("step [[step]]", step=f"{setting.step:g}")]
+        messages = [Message("step [[step]]", step=f"{setting.step:g}")]
     else:
-        told = [Message("tolerance [[tolerance]] per step", tolerance=f"{setting.tolerance:g}")]
+        messages = [Message("tolerance [[tolerance]] per step", tolerance=f"{setting.tolerance:g}")]
     if setting.longest is not None:
-        told.append(Message("steps up to [[step]]", step=f"{setting.longest:.3g}"))
-    return joined([*told, Message(scalar)], ", ")
+        messages.append(Message("steps up to [[step]]", step=f"{setting.longest:.3g}"))
+    return joined([*messages, Message(scalar)], ", ")
 
 
 def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[Message]:
@@ -144,9 +144,9 @@ MOST_CHANGES = 6
 
 def change_lines(changes: Sequence[Change], unit: str | None) -> Iterator[Message]:
     """Where the run changed its method on the way, and why."""
-    for one in changes[:MOST_CHANGES]:
-        time = with_unit(f"{one.time:.9g}", unit)
-        yield Message("from t = [[time]] on [[method]] ([[why]])", time=time, method=one.method, why=one.why)
+    for change in changes[:MOST_CHANGES]:
+        time = with_unit(f"{change.time:.9g}", unit)
+        yield Message("from t = [[time]] on [[method]] ([[why]])", time=time, method=change.method, why=change.why)
     if len(changes) > MOST_CHANGES:
         last, more = changes[-1], len(changes) - MOST_CHANGES
         time = with_unit(f"{last.time:.9g}", unit)
@@ -176,8 +176,8 @@ def quality(run: Simulation) -> tuple[list[Message], list[Message], bool]:
     Whoever reads one line of a run that is wrong, or that nobody could judge, shall read that: it stands before what is
     proved of the equations.
     """
-    told = list(error_lines(run.error))
-    return list(warnings(run.conservation, run.error)), told, isinstance(run.error, NoEstimate)
+    messages = list(error_lines(run.error))
+    return list(warnings(run.conservation, run.error)), messages, isinstance(run.error, NoEstimate)
 
 
 def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:
@@ -193,16 +193,16 @@ def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstima
     )
 
 
-def inputs_line(given: Scenario) -> Message:
+def inputs_line(scenario: Scenario) -> Message:
     """``F = sin(3*t); w = 0 (held, as on the unperturbed motion)``: what every input is in a run."""
-    laws = {one: Message("[[name]] = [[law]]", name=one.name, law=text(one.law)) for one in given.inputs}
+    laws = {one: Message("[[name]] = [[law]]", name=one.name, law=text(one.law)) for one in scenario.inputs}
     held = "[[law]] (held, as on the unperturbed motion)"
     return joined([law if one.asked else Message(held, law=law) for one, law in laws.items()], "; ")
 
 
-def laws_json(given: Scenario) -> dict[str, str]:
+def laws_json(scenario: Scenario) -> dict[str, str]:
     """What every input is in a run, as formulas."""
-    return {one.name: text(one.law) for one in given.inputs}
+    return {one.name: text(one.law) for one in scenario.inputs}
 
 
 # What is said of switches and narrow features on the way of a run: for the terminal and for ``simulation.json``.
@@ -246,11 +246,11 @@ def passed_over(run: Simulation, file: str) -> Iterator[Message]:
 
 
 def _told(run: Simulation, one: Narrow, file: str) -> Message:
-    found = None if one.place is None else source_of(run.dynamics, one.place)
-    what = Message("a load") if found is None else text(found)
-    if found is not None and found.span is not None:
+    expression = None if one.place is None else source_of(run.dynamics, one.place)
+    what = Message("a load") if expression is None else text(expression)
+    if expression is not None and expression.span is not None:
         where = "[[what]] (line [[line]], column [[column]])"
-        what = Message(where, what=what, line=found.span.line, column=found.span.column)
+        what = Message(where, what=what, line=expression.span.line, column=expression.span.column)
     words = "[[what]] changes within [[width]] at t = [[time]], and a step of [[step]] passed it: [[command]]"
     width, time, step = f"{one.width:.2g}", f"{one.time:.6g}", f"{one.step:.2g}"
     return Message(words, what=what, width=width, time=time, step=step, command=_command(run, file, one.width / 4))

@@ -47,9 +47,9 @@ def result_lines(run: Simulation, file: str) -> Iterator[tuple[str, str]]:
 
     ``file``: the name of the description, for commands to be pasted.
     """
-    found, request, unit = run.trajectory, run.request, pretty(time_unit(run.system))
-    doubts, told, unknown = quality(run)
-    errors = [("" if place else "error", text) for place, text in enumerate(told)]
+    trajectory, request, unit = run.trajectory, run.request, pretty(time_unit(run.system))
+    doubts, messages, unknown = quality(run)
+    errors = [("" if place else "error", text) for place, text in enumerate(messages)]
     yield from (("warning", text) for text in doubts)
     if unknown:
         yield from errors
@@ -69,10 +69,10 @@ def result_lines(run: Simulation, file: str) -> Iterator[tuple[str, str]]:
     for place, (which, what) in enumerate(energies):
         alone = len(energies) == 1
         yield "" if place else "energy", what if alone else Message("[[which]]: [[what]]", which=which, what=what)
-    for kept in run.invariants:
-        yield "invariant", invariant_line(kept.conservation)
+    for invariant in run.invariants:
+        yield "invariant", invariant_line(invariant.conservation)
     if run.certificate is not None:
-        for place, text in enumerate(certificate_lines(run.certificate, run.system, len(found.times))):
+        for place, text in enumerate(certificate_lines(run.certificate, run.system, len(trajectory.times))):
             yield "" if place else "certified", text
     yield from (("warning", text) for text in passed_over(run, file))
     yield from (("warning", text) for text in _doubtful(run, unit))
@@ -88,20 +88,20 @@ def _beside(run: Simulation, how: bool) -> Iterator[tuple[str, str]]:
 
 
 def _time_line(run: Simulation, unit: str | None) -> Message:
-    found, end, count = run.trajectory, with_unit(f"{run.request.time:g}", unit), len(run.chosen.times)
-    reached = with_unit(f"{found.times[-1]:.9g}", unit)
+    trajectory, end, count = run.trajectory, with_unit(f"{run.request.time:g}", unit), len(run.chosen.times)
+    reached = with_unit(f"{trajectory.times[-1]:.9g}", unit)
     if run.happened is not None and run.happened.ended is not None:
         text = "0 to [[time]], [[count]] samples, of which [[kept]] up to t = [[reached]], where it was stopped"
-        return Message(text, time=end, count=count, kept=found.samples, reached=reached)
-    if not found.whole:
+        return Message(text, time=end, count=count, kept=trajectory.samples, reached=reached)
+    if not trajectory.whole:
         return Message("0 to [[time]], [[count]] samples, reached [[reached]]", time=end, count=count, reached=reached)
     return Message("0 to [[time]], [[count]] samples", time=end, count=count)
 
 
 def _doubtful(run: Simulation, unit: str | None) -> Iterator[Message]:
-    found, chosen = run.trajectory, run.chosen
-    ratio, at = least_pivot(run.dynamics, found) if found.least_pivot is None else found.least_pivot
-    if found.breakdown is None and ratio < NEARLY_SINGULAR:
+    trajectory, chosen = run.trajectory, run.chosen
+    ratio, at = least_pivot(run.dynamics, trajectory) if trajectory.least_pivot is None else trajectory.least_pivot
+    if trajectory.breakdown is None and ratio < NEARLY_SINGULAR:
         if run.closed is None:
             text = "at t = [[time]] the mass matrix was nearly singular (a pivot fell to [[pivot]])"
         else:
@@ -136,12 +136,12 @@ def method_lines(run: Simulation) -> Iterator[tuple[str, str]]:
     yield from _beside(run, how=True)
     if (switches := switch_line(run.trajectory.passed)) is not None:
         yield "switches", switches
-    told = [Message("steps: [[count]]", count=work.steps)]
-    told += [Message("rejected: [[count]]", count=work.rejected)] if work.rejected else []
-    told.append(Message("evaluations: [[count]]", count=work.evaluations))
-    told += [Message("Jacobians: [[count]]", count=work.jacobians)] if work.jacobians else []
-    told.append(Message("[[seconds]] s", seconds=f"{run.trajectory.seconds:.3g}"))
-    yield "work", joined(told, ", ")
+    messages = [Message("steps: [[count]]", count=work.steps)]
+    messages += [Message("rejected: [[count]]", count=work.rejected)] if work.rejected else []
+    messages.append(Message("evaluations: [[count]]", count=work.evaluations))
+    messages += [Message("Jacobians: [[count]]", count=work.jacobians)] if work.jacobians else []
+    messages.append(Message("[[seconds]] s", seconds=f"{run.trajectory.seconds:.3g}"))
+    yield "work", joined(messages, ", ")
 
 
 def _between(times: Any, step: float) -> bool:

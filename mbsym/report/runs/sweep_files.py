@@ -99,12 +99,12 @@ def sweep_json(
         measure=measure,
         points=points.count,
         table=table,
-        varied=[_variation(one) for one in points.variations],
+        varied=[_variation(variation) for variation in points.variations],
         sampling=None if points.grids else points.sampling,
         seed=None if points.grids else points.seed,
         settings=dict(settings),
         columns=[doc.Column.from_result(column) for column in columns],
-        shares=[_share(one) for one in totals.shares(random)] if judged else [],
+        shares=[_share(share) for share in totals.shares(random)] if judged else [],
         stable=_share(totals.stable(random)) if judged else None,
         singly=totals.singly if judged else None,
         ranges=[
@@ -123,11 +123,11 @@ def _variation(one: Variation) -> doc.Swept:
     return doc.Swept.from_result(one, first=one.first, second=one.second)
 
 
-def _share(one: Share) -> doc.Share:
-    found = None
-    if one.interval is not None:
-        found = doc.Interval(low=one.interval[0], high=one.interval[1], confidence=LEVEL)
-    return doc.Share.from_result(one, interval=found)
+def _share(share: Share) -> doc.Share:
+    interval = None
+    if share.interval is not None:
+        interval = doc.Interval(low=share.interval[0], high=share.interval[1], confidence=LEVEL)
+    return doc.Share.from_result(share, interval=interval)
 
 
 # What a sweep says, in sentences for the terminal.
@@ -143,8 +143,8 @@ def sentences(
     """(title, text)."""
     random = not points.grids and points.sampling == "random"
     if any(column.name == VERDICT.name for column in columns):
-        for one in totals.shares(random):
-            yield Message(one.word), _sweep_words_share(one)
+        for share in totals.shares(random):
+            yield Message(share.word), _sweep_words_share(share)
         if random:
             told = "[[share]]; stable means proved to be, and nothing weaker"
             yield Message("P(stable)"), Message(told, share=_sweep_words_share(totals.stable(random)))
@@ -172,24 +172,24 @@ def sentences(
 
 def _how(points: Points) -> str:
     if points.grids:
-        return f"({' x '.join(str(one.count) for one in points.grids)})"
+        return f"({' x '.join(str(grid.count) for grid in points.grids)})"
     told = "drawn at random, seed [[seed]]" if points.sampling == "random" else "of Sobol's sequence, seed [[seed]]"
     return Message(told, seed=points.seed)
 
 
-def _sweep_words_share(one: Share) -> str:
-    told = Message(
+def _sweep_words_share(share: Share) -> str:
+    message = Message(
         "[[count]] of [[total]] ([[share]])",
-        count=f"{one.count:,}",
-        total=f"{one.total:,}",
-        share=f"{one.count / max(1, one.total):.4%}",
+        count=f"{share.count:,}",
+        total=f"{share.total:,}",
+        share=f"{share.count / max(1, share.total):.4%}",
     )
-    if one.interval is None:
-        return told
-    low, high = (f"{end:.5f}" for end in one.interval)
+    if share.interval is None:
+        return message
+    low, high = (f"{end:.5f}" for end in share.interval)
     return Message(
         "[[share]]; probability [[low]] to [[high]] ([[level]] confidence)",
-        share=told,
+        share=message,
         low=low,
         high=high,
         level=f"{LEVEL:.0%}",

@@ -127,8 +127,8 @@ _VECTORS = (
 def bodies_parts(blocks: Iterable[BodyMotions], system: System | None = None) -> Iterator[str]:
     """The file's text in parts, of rows that come block by block, with the units of ``system``."""
     begun = False
-    for found in blocks:
-        text = parts(*_table(found, system))
+    for block in blocks:
+        text = parts(*_table(block, system))
         if begun:
             next(text)  # the line of names
         yield from text

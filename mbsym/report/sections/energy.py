@@ -39,10 +39,10 @@ def data(found: Energy, system: System, write: Write) -> doc.Energy:
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("energy", Said("Problem 2. Kinetic energy and force function"))
-    system, found, told = results.system, results.found.get(2), results.told.get(2)
+    system, found, compact = results.system, results.found.get(2), results.told.get(2)
     yield from results.missing(2)
     closed: tuple[Block, ...] = () if found is None else tuple(_closed(found, results))
-    if told is not None:
+    if compact is not None:
         yield paragraph(
             Said(
                 "$T = \\frac12 \\sum A_{ij}\\, \\dot q_i \\dot q_j + \\sum A_i\\, \\dot q_i + A_0$ "
@@ -50,8 +50,8 @@ def content(results: Results) -> Iterator[Block]:
             )
         )
         yield from results.intermediates(2)
-        yield Display(Relation(Symbol("T"), "=", told.system.kinetic_energy), "T")
-        yield Display(Relation(Symbol("U"), "=", told.system.force_function), "U")
+        yield Display(Relation(Symbol("T"), "=", compact.system.kinetic_energy), "T")
+        yield Display(Relation(Symbol("U"), "=", compact.system.force_function), "U")
         if closed:
             yield Folded(Said("The same, written out"), closed)
     else:

@@ -81,11 +81,11 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
     names = [] if tied is None else [tied.names[i].label for i in tied.independent]
     return [
         doc.Reaction.from_result(
-            one,
+            reaction,
             write,
-            per_multiplier=[(name, *both) for name, both in zip(names, one.per_multiplier, strict=True)],
+            per_multiplier=[(name, *both) for name, both in zip(names, reaction.per_multiplier, strict=True)],
         )
-        for one in found
+        for reaction in found
     ]
 
 
@@ -103,24 +103,24 @@ _WITH_MULTIPLIERS = (
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("equations", Said("Problem 3. Equations of motion"))
-    system, found, told = results.system, results.found.get(3), results.told.get(3)
+    system, found, compact = results.system, results.found.get(3), results.told.get(3)
     equations = Said(_WITH_MULTIPLIERS if system.constraints else _LAGRANGE)
     yield from results.missing(3)
     if found is not None and found.in_speeds:
         yield from _of_kane(found)
-    elif told is not None:
+    elif compact is not None:
         yield paragraph(equations)
         yield from results.intermediates(3)
-        yield Matrices(Symbol("M"), told.system.mass_matrix, True, "M", packed=True)
-        yield from equalities(numbered(Symbol("f"), told.system.forcing), "f")
+        yield Matrices(Symbol("M"), compact.system.mass_matrix, True, "M", packed=True)
+        yield from equalities(numbered(Symbol("f"), compact.system.forcing), "f")
         if found is not None:
             yield Folded(Said("The same, written out"), tuple(_closed(found)))
     elif found is not None:
         written = short_equations(found, system)
         if written:
             yield paragraph(Said("The equations of motion:"))
-        for k, one in enumerate(written, start=1):
-            yield Display(one, f"equation:{k}")
+        for k, relation in enumerate(written, start=1):
+            yield Display(relation, f"equation:{k}")
         yield paragraph(equations)
         yield from _closed(found)
     else:

@@ -41,8 +41,8 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(7)
     if 7 not in results.found:
         return
-    found: tuple[Integral, ...] = results.found[7]
-    for number, item in enumerate(found, start=1):
+    integrals: tuple[Integral, ...] = results.found[7]
+    for number, item in enumerate(integrals, start=1):
         yield paragraph(title(item), " (", worded(item.status), "):")
         written = Display(Relation(item.formula, "=", CONSTANT), f"integral:{number}")
         if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
@@ -55,5 +55,5 @@ def content(results: Results) -> Iterator[Block]:
             yield Folded(Said("The same, written out"), (written,))
         else:
             yield written
-    if not found:
+    if not integrals:
         yield paragraph(Said("None in closed form of the kinds that are looked for."))

@@ -39,14 +39,14 @@ def content(results: Results) -> Iterator[Block]:
     yield from results.missing(10)
     if 10 not in results.found:
         return
-    found: InvariantSets = results.found[10]
-    yield ragged(*opening(found))
-    for family in told_families(found):
-        yield ragged(Phrase((family_title(family, found), ":")), *of_family(family))
-        for k, one in enumerate(family.sets, start=1):
-            yield ragged(*of_set(one, k, ring_of(found)))
-    if found.generic:
-        yield ragged(*closing(found))
+    sets: InvariantSets = results.found[10]
+    yield ragged(*opening(sets))
+    for family in told_families(sets):
+        yield ragged(Phrase((family_title(family, sets), ":")), *of_family(family))
+        for k, stationary_set in enumerate(family.sets, start=1):
+            yield ragged(*of_set(stationary_set, k, ring_of(sets)))
+    if sets.generic:
+        yield ragged(*closing(sets))
 
 
 def formulas(found: InvariantSets, system: System) -> Iterator[tuple[str, Formula]]:
@@ -56,8 +56,8 @@ def formulas(found: InvariantSets, system: System) -> Iterator[tuple[str, Formul
     for k, formula in enumerate(found.relations, start=1):
         yield f"relation {k}, zero", formula
     for f, family in enumerate(found.families, start=1):
-        for k, one in enumerate(family.sets, start=1):
-            yield from ((f"family {f}, set {k}: {key}", formula) for key, formula in _formulas_of_set(one))
+        for k, stationary_set in enumerate(family.sets, start=1):
+            yield from ((f"family {f}, set {k}: {key}", formula) for key, formula in _formulas_of_set(stationary_set))
 
 
 def _formulas_of_set(one: StationarySet) -> Iterator[tuple[str, Formula]]:

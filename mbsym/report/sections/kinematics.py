@@ -36,10 +36,10 @@ def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("kinematics", Said("Problem 1. Kinematics"))
-    found, told = results.found.get(1), results.told.get(1)
+    found, compact = results.found.get(1), results.told.get(1)
     closed = {} if found is None else {body.name: body for body in found.bodies}
     yield from results.missing(1)
-    if told is None:
+    if compact is None:
         for k, body in enumerate(closed.values(), start=1):
             yield Subheading((f"{k}. {body.name}",))
             yield _rotation(k, body, results)
@@ -48,7 +48,7 @@ def content(results: Results) -> Iterator[Block]:
     for k, body in enumerate(closed.values(), start=1):
         yield _rotation(k, body, results)
     yield from results.intermediates(1)
-    for k, (name, motion) in enumerate(told.system.kinematics.items(), start=1):
+    for k, (name, motion) in enumerate(compact.system.kinematics.items(), start=1):
         yield Subheading((f"{k}. {name}",))
         yield from _velocities(k, motion)
         if name in closed and _terms(closed[name]) > _terms(motion):

@@ -34,7 +34,7 @@ def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
 def _judged(found: Judged) -> doc.NormalFormAtValues:
     actions = [(i + 1, j + 1, value) for (i, j), value in found.quadratic]
     return doc.NormalFormAtValues.from_result(
-        found, enclosure, actions=actions, resonances=[one.vector for one in found.resonances]
+        found, enclosure, actions=actions, resonances=[resonance.vector for resonance in found.resonances]
     )
 
 

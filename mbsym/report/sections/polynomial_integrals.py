@@ -39,14 +39,14 @@ def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialInt
         found,
         weights=zip(found.field.variables, found.grading.weights, strict=True),
         integrals=[
-            integrals.Integral.from_result(one, formula=formula)
-            for one, formula in zip(found.generators, result.formulas, strict=True)
+            integrals.Integral.from_result(generator, formula=formula)
+            for generator, formula in zip(found.generators, result.formulas, strict=True)
         ],
         on_levels=[
             integrals.ZeroLevel.from_result(
-                one, integrals=[(weight, f) for (weight, _), f in zip(one.integrals, formulas, strict=True)]
+                level, integrals=[(weight, f) for (weight, _), f in zip(level.integrals, formulas, strict=True)]
             )
-            for one, formulas in zip(result.levels, result.on_levels, strict=True)
+            for level, formulas in zip(result.levels, result.on_levels, strict=True)
         ],
         symmetries=result.symmetries,
     )
@@ -77,18 +77,18 @@ def listed(found: PolynomialIntegrals, variables: Sequence[Inline], formulas: Se
         say(OPENING, degree=str(found.degree), weights=weighted(variables, found.grading.weights)),
         Said(UNIFORM if found.grading.homogeneous else NOT_UNIFORM),
     )
-    for one, formula in zip(found.generators, formulas, strict=True):
-        yield ragged(say(LISTED, weight=str(one.weight), name=worded(title(one))))
+    for generator, formula in zip(found.generators, formulas, strict=True):
+        yield ragged(say(LISTED, weight=str(generator.weight), name=worded(title(generator))))
         yield _constant(formula)
 
 
 def of_symmetries(found: Symmetries) -> Iterator[Block]:
     """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
     yield ragged(Said(symmetry_words.OPENING))
-    for one in found.symmetries:
-        yield ragged(symmetry_words.gives(one, symmetry_words.field(one)))
-        if not one.name:
-            yield _constant(one.integral)
+    for symmetry in found.symmetries:
+        yield ragged(symmetry_words.gives(symmetry, symmetry_words.field(symmetry)))
+        if not symmetry.name:
+            yield _constant(symmetry.integral)
     yield from map(ragged, symmetry_words.sentences(found))
 
 
@@ -98,8 +98,8 @@ def _constant(formula: Formula) -> Display:
 
 def formulas(found: Polynomials, system: System) -> Iterator[tuple[str, Formula]]:
     """What each formula is, and the formula: those that model.py has."""
-    for k, (one, formula) in enumerate(zip(found.found.generators, found.formulas, strict=True), start=1):
-        yield f"{k}. {title(one)}, weight {one.weight}", formula
+    for k, (generator, formula) in enumerate(zip(found.found.generators, found.formulas, strict=True), start=1):
+        yield f"{k}. {title(generator)}, weight {generator.weight}", formula
     k = len(found.formulas)
     for level, formulas in zip(found.levels, found.on_levels, strict=True):
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):

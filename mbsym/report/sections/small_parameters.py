@@ -44,30 +44,30 @@ def data(found: SmallParameters, system: System, write: Write) -> doc.SmallParam
         no_slow_manifold=found.no_slow,
         measured=None if slow is None else measured_data(flow_measured(found, system)),
         oscillation=None if wave is None else oscillation_data(wave, oscillation_measured(found, system)),
-        averaged=[_averaging(one, write) for one in averages(found, system)],
+        averaged=[_averaging(average, write) for average in averages(found, system)],
     )
 
 
 def _averaging(judged: JudgedAverage, write: Write) -> doc.Averaged:
-    one, found = judged.one, judged.one.found
-    if found is None:
-        return doc.Averaged(phase=", ".join(one.phases), reason=one.failure)
+    averaging, averaged = judged.one, judged.one.found
+    if averaged is None:
+        return doc.Averaged(phase=", ".join(averaging.phases), reason=averaging.failure)
     taken: dict[str, Any] = {
-        "phase": ", ".join(one.phases),
-        "rate": ", ".join(found.rates),
-        "small": list(found.small),
-        "orders": {**dict.fromkeys(found.rates, -1), **dict(found.orders)},
+        "phase": ", ".join(averaging.phases),
+        "rate": ", ".join(averaged.rates),
+        "small": list(averaged.small),
+        "orders": {**dict.fromkeys(averaged.rates, -1), **dict(averaged.orders)},
         "measured": measured_data(judged.measured),
     }
     if judged.withdrawn:
         return doc.Averaged(**taken, reason="withdrawn: the measured distance does not shrink as it should")
-    assert one.analysis is not None
-    verdict = one.analysis.optional("stability")
+    assert averaging.analysis is not None
+    verdict = averaging.analysis.optional("stability")
     word = None if verdict is None or verdict.numerical is None else verdict.numerical.word.value
     return doc.Averaged(
         **taken,
-        vibrational=write(found.vibrational),
-        potential=write(found.potential),
+        vibrational=write(averaged.vibrational),
+        potential=write(averaged.potential),
         averaged_motion_at_values=word,
     )
 
@@ -89,8 +89,8 @@ def told(found: SmallParameters, system: System) -> Iterator[Paragraph | Display
         yield from of_wave(found.oscillation, oscillation_measured(found, system))
     elif found.small:
         yield from map(ragged, oscillation_words.of_no_oscillation(found.small, found.no_oscillation))
-    for one in averages(found, system):
-        yield from map(ragged, of_averaging(one))
+    for average in averages(found, system):
+        yield from map(ragged, of_averaging(average))
 
 
 def of_slow(found: Expansion, measured: Measured | str) -> Iterator[Paragraph | Display]:
@@ -119,8 +119,8 @@ def of_wave(found: Oscillating, measured: MeasuredOrders | str) -> Iterator[Para
 def formulas(found: SmallParameters, system: System) -> Iterator[tuple[str, Formula]]:
     """What each formula is, and the formula: those that model.py has."""
     if found.slow is not None:
-        for one in coefficients(found.slow):
-            yield f"{one.variable}{chr(39) * one.rate}, order {one.order}", one.formula
+        for coefficient in coefficients(found.slow):
+            yield f"{coefficient.variable}{chr(39) * coefficient.rate}, order {coefficient.order}", coefficient.formula
     if found.oscillation is not None:
         for one in oscillation_words.coefficients(found.oscillation):
             yield f"periodic solution: {one.variable}{chr(39) * one.rate}, order {one.order}", one.formula

@@ -44,10 +44,10 @@ def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisatio
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    found: Stabilisation | None = results.found.get(8)
+    stabilisation: Stabilisation | None = results.found.get(8)
     yield Heading("stabilisation", Said("Problem 8. Stabilisation"))
     yield from results.missing(8)
-    if found is None:
+    if stabilisation is None:
         return
     yield paragraph(
         Said(
@@ -55,23 +55,23 @@ def content(results: Results) -> Iterator[Block]:
             "over to the equations of motion."
         )
     )
-    yield from map(ragged, sentences(found))
-    if found.feedback is None:
+    yield from map(ragged, sentences(stabilisation))
+    if stabilisation.feedback is None:
         return
-    states = found.feedback.states
-    if found.feedback.of_part:
+    states = stabilisation.feedback.states
+    if stabilisation.feedback.of_part:
         places = named([name for name in states if not is_velocity(name)])
-        yield paragraph(say(OF_PART, why=worded(found.feedback.of_part), names=places))
-    yield paragraph(Said(FEEDBACK if found.feedback.characteristic else ENCLOSED))
-    if found.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
+        yield paragraph(say(OF_PART, why=worded(stabilisation.feedback.of_part), names=places))
+    yield paragraph(Said(FEEDBACK if stabilisation.feedback.characteristic else ENCLOSED))
+    if stabilisation.feedback.of_part or 2 * sum(map(is_velocity, states)) < len(states):
         yield paragraph(Said(STATES, {"names": speeds(states)}))
-    yield Display(Relation(Symbol("k"), "=", _rows(found.feedback.gains)), "feedback")
-    if found.feedback.characteristic:
-        told = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
-        yield paragraph(told, " ", joined(map(exact, found.feedback.characteristic), ", "), ".")
-    if found.feedback.lyapunov is not None:
+    yield Display(Relation(Symbol("k"), "=", _rows(stabilisation.feedback.gains)), "feedback")
+    if stabilisation.feedback.characteristic:
+        said = Said("Characteristic polynomial of the closed loop, coefficients from the constant one on:")
+        yield paragraph(said, " ", joined(map(exact, stabilisation.feedback.characteristic), ", "), ".")
+    if stabilisation.feedback.lyapunov is not None:
         yield paragraph(Said(LYAPUNOV))
-        yield Display(Relation(Symbol("P"), "=", _rows(found.feedback.lyapunov)), "lyapunov")
+        yield Display(Relation(Symbol("P"), "=", _rows(stabilisation.feedback.lyapunov)), "lyapunov")
 
 
 def _rows(numbers: Sequence[Sequence[Fraction]]) -> Rows:

@@ -93,8 +93,8 @@ def verdict_data(found: Verdict) -> dict[str, Any]:
 
 
 def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsystem:
-    told = label_meanings(part.ring, part.theory.requirements)
-    listed = list(statements(part.ring, part.theory.requirements, told=told))
+    labels = label_meanings(part.ring, part.theory.requirements)
+    listed = list(statements(part.ring, part.theory.requirements, told=labels))
     shown = Shown()
     for item in listed:
         shown.show(item)
@@ -103,7 +103,7 @@ def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsyste
         variable=variable,
         **verdict_data(part.theory.verdict),
         conditions=[_condition_of(item) for item in listed],
-        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered)],
+        cases=[_case(case, shown) for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered)],
     )
 
 
@@ -126,8 +126,10 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
     """Conditions that the list already holds, or holds reversed, are named by their labels there."""
 
     def named(item: Statement) -> doc.Listed | doc.Statement:
-        found = shown.reference(item)
-        return _statement(item) if found is None else doc.Listed(listed=found.under, relation=found.relation)
+        reference = shown.reference(item)
+        return (
+            _statement(item) if reference is None else doc.Listed(listed=reference.under, relation=reference.relation)
+        )
 
     return doc.Case.from_result(
         case,
@@ -141,15 +143,15 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    found: Stability | None = results.found.get(6)
+    stability: Stability | None = results.found.get(6)
     yield Heading("stability", Said("Problem 6. Stability"))
     yield from results.missing(6)
-    if found is None:
+    if stability is None:
         return
     presumed = results.presumed
-    for number, part in enumerate(found.subsystems, start=1):
-        yield from _told(part, number, len(found.subsystems) > 1, results)
-    if len(found.subsystems) > 1:
+    for number, part in enumerate(stability.subsystems, start=1):
+        yield from _told(part, number, len(stability.subsystems) > 1, results)
+    if len(stability.subsystems) > 1:
         yield paragraph(
             Said(
                 "Each of these verdicts is about coordinates of one subsystem while the others keep to the unperturbed "
@@ -159,19 +161,19 @@ def content(results: Results) -> Iterator[Block]:
             Said("For the whole system"),
             *presumed,
             ": ",
-            *verdict(found.verdict),
+            *verdict(stability.verdict),
             ".",
         )
-    if found.numerical is not None:
+    if stability.numerical is not None:
         yield paragraph(
             Said("At the given values of the parameters"),
-            worded(decided(found)),
+            worded(decided(stability)),
             ": ",
-            *verdict(found.numerical),
+            *verdict(stability.numerical),
             ". ",
-            worded(found.numerical.explanation),
+            worded(stability.numerical.explanation),
         )
-        for spectrum in found.spectra:
+        for spectrum in stability.spectra:
             roots = [part for root in numbers(spectrum) for part in (", ", *_root(root))][1:]
             unit = rate_unit(results.system)
             yield paragraph(
@@ -184,7 +186,7 @@ def content(results: Results) -> Iterator[Block]:
     elif lacking := _without_numbers(results):
         text = "At the given values of the parameters nothing is said of stability: $[[names]]$ have none."
         yield paragraph(say(text, names=named(lacking)))
-    theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(found))]
+    theorems = [(name, keys_of(name)) for name in dict.fromkeys(theorems_named(stability))]
     cited = tuple((worded(name), keys) for name, keys in theorems if keys)
     if cited:
         yield Cited(Said("On the theorems"), cited)
@@ -211,15 +213,17 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
         for k, (powers, multiplicity) in enumerate(factors(part), start=1):
             factor = Polynomial(tuple(powers), variable, multiplicity)
             yield Display(Relation(k, ":", factor), f"factor:{number}:{k}")
-    seen, told = _Keyed(number), label_meanings(part.ring, theory.requirements)
-    wanted = list(statements(part.ring, theory.requirements, True, told))
+    seen, labels = _Keyed(number), label_meanings(part.ring, theory.requirements)
+    wanted_statements = list(statements(part.ring, theory.requirements, True, labels))
     if theory.verdict.stable:  # this method leaves open what is decided otherwise
-        wanted = [replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted]
-    if wanted:
+        wanted_statements = [
+            replace(x, place=Place.NECESSARY) if x.place is Place.METHOD else x for x in wanted_statements
+        ]
+    if wanted_statements:
         yield paragraph(Said("Conditions"), " (", worded(theory.wanted), "):")
-        yield from _conditions(wanted, seen)
+        yield from _conditions(wanted_statements, seen)
     first = True
-    for case in cases(part.ring, theory.cases, told, theory.uncovered):
+    for case in cases(part.ring, theory.cases, labels, theory.uncovered):
         if case.conditional:
             yield from _case_told(case, first, seen)
             first = False
@@ -238,7 +242,7 @@ def _conserved(results: Results) -> bool:
 
 def _verdict_told(found: Verdict) -> tuple[Inline, ...]:
     if found.word is Word.DEPENDS:
-        others = [sentence(one) for one in found.reasons if one.code is not Because.SEE_CASES]
+        others = [sentence(reason) for reason in found.reasons if reason.code is not Because.SEE_CASES]
         said = (" ", worded(sentences_of(others))) if others else ()
         return *concluded(found.word, ()), "; ", Said("see the cases."), *said
     return *verdict(found), ". ", worded(found.explanation)
@@ -273,9 +277,9 @@ class _Keyed(Shown):
 
 def condition_keys(part: SubsystemStability, number: int) -> Iterator[tuple[Statement, str]]:
     """The conditions of a subsystem that are shown by formulas, each with the key of its own."""
-    seen, told = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
-    known = list(statements(part.ring, part.theory.requirements, True, told))
-    for case in cases(part.ring, part.theory.cases, told, part.theory.uncovered):
+    seen, labels = _Keyed(number), label_meanings(part.ring, part.theory.requirements)
+    known = list(statements(part.ring, part.theory.requirements, True, labels))
+    for case in cases(part.ring, part.theory.cases, labels, part.theory.uncovered):
         if case.conditional:
             known += [*case.all_of, *case.any_of]
     for item in known:

@@ -191,30 +191,30 @@ def _equations(found: dict[int, Any], system: System) -> Iterator[Inline]:
 
 def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
     items = unperturbed_motion(system)
-    told: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
+    inlines: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
     if found.satisfied:
-        yield Phrase((*told, Said("satisfies the equations of motion identically")))
+        yield Phrase((*inlines, Said("satisfies the equations of motion identically")))
     elif found.impossible:
-        yield Phrase((*told, Graded(Said("does not satisfy the equations of motion"), "bad")))
+        yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad")))
     elif len(found.conditions) <= MOST_CONDITIONS and all(map(is_short, found.conditions)):
-        wanted = joined((Relation(one, "=", 0) for one in found.conditions), ", ")
-        yield Phrase((*told, exists_if(found), " ", wanted))
+        phrase = joined((Relation(condition, "=", 0) for condition in found.conditions), ", ")
+        yield Phrase((*inlines, exists_if(found), " ", phrase))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
         conditions = say(text, count=str(len(found.conditions)))
-        yield Phrase((*told, conditions, " (", Elsewhere("motion", 4), ")"))
+        yield Phrase((*inlines, conditions, " (", Elsewhere("motion", 4), ")"))
 
 
 def _integrals(found: Sequence[Integral]) -> Iterator[Inline]:
     """The name of each, how surely it is one, and what it is where that is short, else how long it is."""
     long = [one for one in found if not is_short(one.formula)]
-    for one in found:
-        named_surely = Phrase((title(one), " (", worded(one.status), ")"))
-        if one not in long:
-            yield Phrase((named_surely, ": ", Relation(one.formula, "=", CONSTANT)))
+    for integral in found:
+        named_surely = Phrase((title(integral), " (", worded(integral.status), ")"))
+        if integral not in long:
+            yield Phrase((named_surely, ": ", Relation(integral.formula, "=", CONSTANT)))
             continue
-        terms = Counted(one.formula.terms, "term")
-        place = (" (", Elsewhere("integrals", 7), ")") if one is long[-1] else ()
+        terms = Counted(integral.formula.terms, "term")
+        place = (" (", Elsewhere("integrals", 7), ")") if integral is long[-1] else ()
         yield Phrase((say("[[integral]], [[terms]]", integral=named_surely, terms=terms), *place))
 
 
@@ -310,15 +310,15 @@ def _part(part: SubsystemStability, number: int, key: str) -> Iterator[Inline]:
     """The verdict on a subsystem, or which verdict follows where: the first case that applies is the one."""
     theory = part.theory
     known = cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered)
-    known = [one for one in known if one.conditional]
+    known = [statement for statement in known if statement.conditional]
     word = theory.verdict.word
-    if all(one.word is word is Word.UNDECIDED for one in known):
+    if all(statement.word is word is Word.UNDECIDED for statement in known):
         known = []
     if word not in (Word.DEPENDS, Word.UNDECIDED) or key or not known:
         yield Phrase(verdict(theory.verdict, key))
     if word.asymptotic or word is Word.UNSTABLE:
         return
-    if word is Word.UNSTABLE_BUT_BORDERS and any(one.word is not Word.UNSTABLE for one in known):
+    if word is Word.UNSTABLE_BUT_BORDERS and any(statement.word is not Word.UNSTABLE for statement in known):
         return  # the conditions of the others hold nowhere inside
     keys = list(condition_keys(part, number))
     seen: list[Formula] = []
@@ -341,14 +341,14 @@ def _conditions(case: CaseStatement, seen: list[Formula], keys: Keys) -> tuple[l
 
     ``seen``: polynomials that stood before, as they stood.  Beside a long one coefficients are told by their letters.
     """
-    wanted = [*case.all_of, *case.any_of]
-    if len(wanted) > MOST_CONDITIONS or not all(
-        one.formula is not None and (is_short(one.formula) or "," not in one.bare) for one in wanted
+    statements = [*case.all_of, *case.any_of]
+    if len(statements) > MOST_CONDITIONS or not all(
+        one.formula is not None and (is_short(one.formula) or "," not in one.bare) for one in statements
     ):
         return [], []
-    long = not all(one.formula is not None and is_short(one.formula) for one in wanted)
-    either = [_condition(one, long, seen, keys) for one in case.any_of]
-    return [_condition(one, long, seen, keys) for one in case.all_of], either
+    long = not all(statement.formula is not None and is_short(statement.formula) for statement in statements)
+    either = [_condition(statement, long, seen, keys) for statement in case.any_of]
+    return [_condition(statement, long, seen, keys) for statement in case.all_of], either
 
 
 def _counted(case: CaseStatement) -> Inline:
@@ -374,9 +374,9 @@ def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition
     if len(either) > 1 and not every and [one.parts for one, _ in either] == [_reversed(one) for one, _ in before]:
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
-    told = joined((Phrase((one, *number)) for one, number in every), ", ")
-    others = joined((Phrase((one, *number)) for one, number in either), " ", Said("or"), " ")
-    conditions = Phrase((told, *between, others))
+    phrase = joined((Phrase((relation, *number)) for relation, number in every), ", ")
+    others = joined((Phrase((relation, *number)) for relation, number in either), " ", Said("or"), " ")
+    conditions = Phrase((phrase, *between, others))
     # Without a theorem behind it "gyroscopically stabilised only if" would be read as "only if".
     text = "[[verdict]] if [[conditions]]" if case.theorems else "[[verdict]], if [[conditions]]"
     return say(text, verdict=verdict, conditions=conditions)
@@ -407,8 +407,8 @@ def _numbered(left: Formula, relation: Math | str, keys: Keys) -> tuple[Numbered
     return ()
 
 
-def _reversed(one: Relation) -> tuple[Math | str, ...]:
-    return (one.parts[0], "<", 0) if one.parts[1] == ">" else ()
+def _reversed(relation: Relation) -> tuple[Math | str, ...]:
+    return (relation.parts[0], "<", 0) if relation.parts[1] == ">" else ()
 
 
 def _relation(item: Statement, seen: list[Formula]) -> Relation:

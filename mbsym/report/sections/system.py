@@ -100,7 +100,7 @@ def _variables(system: System) -> Iterator[Block]:
             parts += [*(["; "] if k else []), Name(one.name), *_unit(system, one.name), *_meaning(one.meaning)]
         yield paragraph(Said("Inputs, functions of time that are chosen later"), ": ", *parts, ".")
     if system.outputs:
-        outputs = tuple(Relation(Name(one.name), "=", one.value) for one in system.outputs)
+        outputs = tuple(Relation(Name(output.name), "=", output.value) for output in system.outputs)
         yield paragraph(Said("Outputs"), ": ", Listed(outputs), ".")
     for table in system.tables:
         between = "a natural cubic spline" if table.between == "cubic" else "straight lines"

@@ -83,18 +83,18 @@ def modes(analysis: Analysis) -> Modes:
     """
     if analysis.system.speeds:
         analysis = analysis.in_coordinates
-    found = analysis.stability
+    stability = analysis.stability
     withdrawn = analysis.broken(type(analysis).stability.stands_on)
     if withdrawn is not None:
         raise NoClosedForm(withdrawn.reason)
     linear, scene = analysis.judgeable, analysis.parameters_scene
     values = parameter_values(scene, analysis.equilibrium)
-    if values is None or found.numerical is None:
+    if values is None or stability.numerical is None:
         raise NoClosedForm("not all parameters have values, so that no mode has numbers")
-    if not found.spectra:
-        raise NoClosedForm(f"no modes at these values: {found.numerical.explanation or found.numerical.word}")
+    if not stability.spectra:
+        raise NoClosedForm(f"no modes at these values: {stability.numerical.explanation or stability.numerical.word}")
     listed: list[Mode] = []
-    for part in found.spectra:
+    for part in stability.spectra:
         blocks = [_floats(rows) for rows in matrices_at(scene, linear, part.coordinates, values)]
         listed += _modes(part.coordinates, part.roots, blocks)
     ring_values = ring_numbers(scene.ring, values)
@@ -107,7 +107,7 @@ def modes(analysis: Analysis) -> Modes:
     return Modes(
         base={name: value(start) for name, (start, _) in motion.items()},
         turning={name: rate for name, rate in rates.items() if rate},
-        verdict=found.numerical,
+        verdict=stability.numerical,
         modes=tuple(sorted(listed, key=lambda x: (x.imaginary == 0, x.imaginary, x.real))),
         still=_still(linear),
     )
@@ -157,17 +157,17 @@ def _grouped(roots: Sequence[Root]) -> Iterator[tuple[complex, int]]:
     """Midpoints of the upper half with multiplicities; roots that lie together are one."""
     largest = max((abs(complex(x.ball.mid())) for x in roots), default=0.0)
     found: list[tuple[complex, int]] = []
-    for one in roots:
-        parts = (0.0 if part.contains(0) else float(part.mid()) for part in (one.ball.real, one.ball.imag))
+    for root in roots:
+        parts = (0.0 if part.contains(0) else float(part.mid()) for part in (root.ball.real, root.ball.imag))
         value = complex(*parts)
         if value.imag < 0:
             continue
         for k, (other, count) in enumerate(found):
             if abs(value - other) <= SAME * largest:
-                found[k] = other, count + one.multiplicity
+                found[k] = other, count + root.multiplicity
                 break
         else:
-            found.append((value, one.multiplicity))
+            found.append((value, root.multiplicity))
     yield from found
 
 

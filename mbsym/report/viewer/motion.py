@@ -83,27 +83,27 @@ def _drawn(run: Simulation) -> Scenario:
 
 def motion_of(run: Simulation) -> Motion:
     """The frames of a run in coordinates.  Raises Failure where these do not follow from what it was integrated in."""
-    found, system = run.trajectory, _drawn(run).system
+    trajectory, system = run.trajectory, _drawn(run).system
     n = len(system.coordinates)
     each = 2 * n + 4
     most = max(2, min(MOST_FRAMES, MOST_NUMBERS // each))
-    stride = max(1, -(-len(found.times) // most))
-    chosen = np.arange(0, len(found.times), stride)
-    if len(found.times) and chosen[-1] != len(found.times) - 1:
-        chosen = np.append(chosen, len(found.times) - 1)
-    states = np.asarray(found.states[:, chosen], dtype=float)
+    stride = max(1, -(-len(trajectory.times) // most))
+    chosen = np.arange(0, len(trajectory.times), stride)
+    if len(trajectory.times) and chosen[-1] != len(trajectory.times) - 1:
+        chosen = np.append(chosen, len(trajectory.times) - 1)
+    states = np.asarray(trajectory.states[:, chosen], dtype=float)
     if isinstance(run.dynamics, StateDynamics):
         states = _unwound(run.dynamics, states)
     say = Language(system.language).say
     units = {"time": pretty(time_unit(system)), "energy": pretty(energy_unit(system))}
     constrained = [(title, _line(title, text, say)) for title, text in constraint_lines(run)]
     return Motion(
-        times=np.asarray(found.times[chosen], dtype=float),
+        times=np.asarray(trajectory.times[chosen], dtype=float),
         coordinates=dict(zip(system.coordinates, states[:n], strict=True)),
         velocities=dict(zip(map(velocity_name, system.coordinates), states[n:], strict=False)),
-        kinetic=np.asarray(found.kinetic[chosen], dtype=float),
-        energy=np.asarray(found.energy[chosen], dtype=float),
-        drift=np.asarray(found.drift[chosen], dtype=float),
+        kinetic=np.asarray(trajectory.kinetic[chosen], dtype=float),
+        energy=np.asarray(trajectory.energy[chosen], dtype=float),
+        drift=np.asarray(trajectory.drift[chosen], dtype=float),
         drift_of=say(drift_of(run)),
         stride=stride,
         doubts=(*map(say, doubts(run)), *(text for title, text in constrained if title == "warning")),
@@ -143,10 +143,10 @@ def drift_of(run: Simulation) -> Message:
 
 def doubts(run: Simulation) -> Iterator[Message]:
     """Why it may be wrong: warnings, an error that nobody could judge, an end before the time."""
-    warned, told, unknown = quality(run)
+    warned, messages, unknown = quality(run)
     yield from (Message("Warning: [[text]].", text=text) for text in warned)
     if unknown:
-        yield _error(told)
+        yield _error(messages)
     if not run.whole:
         why = Message(run.ended.kind if run.ended is not None else "interrupted")
         end = with_unit(f"{float(run.chosen.times[-1]):.9g}", pretty(time_unit(run.system)))
@@ -155,7 +155,7 @@ def doubts(run: Simulation) -> Iterator[Message]:
 
 def run_sentences(run: Simulation) -> Iterator[Message]:
     """How it was integrated, what it keeps, how wrong it is."""
-    _, told, unknown = quality(run)
+    _, messages, unknown = quality(run)
     setting, unit = replace(run.trajectory.setting, longest=None), pretty(time_unit(run.system))
     until = with_unit(f"{float(run.times[-1]):.9g}", unit)
     method, how = run.chosen.method.traits.title, setting_words(setting, run.arithmetic)
@@ -164,7 +164,7 @@ def run_sentences(run: Simulation) -> Iterator[Message]:
     for which, what in energy_lines(run):
         yield Message("Energy ([[which]]): [[what]].", which=which, what=what)
     if not unknown:
-        yield _error(told)
+        yield _error(messages)
 
 
 def _error(told: Sequence[Message]) -> Message:

@@ -61,7 +61,7 @@ WORDS = (
 )  # fmt: skip
 
 #: What its data say by name: verdicts, and what shapes are.
-NAMED = (*map(str, Word), *(one.name for one in THEOREMS), "sphere", "cylinder", "capsule", "ellipsoid")
+NAMED = (*map(str, Word), *(theorem.name for theorem in THEOREMS), "sphere", "cylinder", "capsule", "ellipsoid")
 
 #: Where the bundles are that `make page` builds.
 BUNDLES = Path(__file__).parents[2] / "serving" / "page"
@@ -271,12 +271,12 @@ def at_rest(system: System, overrides: Mapping[str, Fraction] | None = None) -> 
     for name in missing_values(system, values):
         raise NoValue(name)
     try:
-        found = relative_equilibria(system, values)
+        equilibria = relative_equilibria(system, values)
     except Unavailable as withdrawn:
         return AtRest((), False, (withdrawn.failure.reason,), {})
-    listed = [_resting(x.values, x.free, x.verdict, x.proof, x.coordinates_of) for x in found.equilibria]
-    listed += [_resting(x.sample, x.free, x.verdict, "", x.coordinates_of, True) for x in found.families]
-    return AtRest(tuple(listed), found.complete, found.remarks, dict(found.turning))
+    listed = [_resting(x.values, x.free, x.verdict, x.proof, x.coordinates_of) for x in equilibria.equilibria]
+    listed += [_resting(x.sample, x.free, x.verdict, "", x.coordinates_of, True) for x in equilibria.families]
+    return AtRest(tuple(listed), equilibria.complete, equilibria.remarks, dict(equilibria.turning))
 
 
 def _resting(

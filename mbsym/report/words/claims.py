@@ -93,16 +93,16 @@ def remarks(result: ClaimResult) -> Inline:
 def together(lines: Iterable[ClaimLine]) -> Iterator[list[ClaimLine]]:
     """Neighbours from one place that hold in the same way, and by themselves those that are to be told one by one."""
     for _, group in groupby(lines, lambda line: (line.word == HELD and line.place, line.outcome, line.lines)):
-        found = list(group)
-        if found[0].word == HELD and found[0].place:
-            yield found
+        claim_lines = list(group)
+        if claim_lines[0].word == HELD and claim_lines[0].place:
+            yield claim_lines
         else:
-            yield from ([line] for line in found)
+            yield from ([line] for line in claim_lines)
 
 
 def names_in(claims: Iterable[ClaimResult], system: System) -> tuple[str, ...]:
     """What formulas of claims hold besides the names of the system."""
-    variables = [one.claim.variable for one in claims if one.claim.variable]
+    variables = [claim.claim.variable for claim in claims if claim.claim.variable]
     return (*(item.name for item in system.abbreviations), *variables)
 
 
@@ -116,8 +116,10 @@ def titles(lines: Iterable[ClaimLine]) -> Inline:
             stem, entries = stem.gaps["title"], [f"[{stem.gaps['entry']}]"]
         shown[stem] = _typeset(stem, line.about)
         stems.setdefault(stem, []).extend(entries)
-    told = (Phrase((shown[stem], *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items())
-    return joined(told, "; ")
+    phrases = (
+        Phrase((shown[stem], *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items()
+    )
+    return joined(phrases, "; ")
 
 
 def _typeset(title: str, about: Mapping[str, Inline]) -> Said:

@@ -37,7 +37,7 @@ def sentences(found: Constraints) -> Iterator[Said]:
         yield say(
             "Redundant: [[row]] follows from [[others]] ([[sure]]).",
             row=label(redundant.name),
-            others=[label(one) for one in redundant.from_rows],
+            others=[label(from_row) for from_row in redundant.from_rows],
             sure=worded(redundant.certainty.value),
         )
     if found.demanded.count:
@@ -110,20 +110,20 @@ def reaction_sentences(found: Reaction) -> Iterator[Said]:
         body=found.body,
         components=Listed(_components(found.undetermined)),
     )
-    for one in found.balances:
-        if one.added is None:
+    for balance in found.balances:
+        if balance.added is None:
             yield say(
                 "Forces of [[rows]] may be in balance within the mechanism, whatever their size, and change "
                 "[[components]].",
-                rows=_labels(one.rows),
-                components=Listed(_components(one.components)),
+                rows=_labels(balance.rows),
+                components=Listed(_components(balance.components)),
             )
         else:
-            force, moment = (Listed(tuple(x), brackets=True) for x in one.added)
+            force, moment = (Listed(tuple(x), brackets=True) for x in balance.added)
             yield say(
                 "Forces of [[rows]] may be in balance within the mechanism: they add any multiple of [[force]] to the "
                 "force and of [[moment]] to the moment.",
-                rows=_labels(one.rows),
+                rows=_labels(balance.rows),
                 force=force,
                 moment=moment,
             )

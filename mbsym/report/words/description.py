@@ -170,13 +170,13 @@ _NEWTONIAN_EXACT = (
 
 def _newtonian(value: NewtonianGravity) -> Iterator[Block]:
     constant, nu = value.constant, Symbol("nu")
-    given: dict[str, Inline] = {
+    inlines: dict[str, Inline] = {
         "centre": frame(value.centre),
         "nu": nu if constant == Variable("nu") else content.Relation(nu, "=", constant),
     }
     if value.order == EXACT:
         text = "Newtonian field of a centre at the origin of [[centre]], with $[[nu]]$ and exact distances:"
-        yield paragraph(Said(text, given))
+        yield paragraph(Said(text, inlines))
         yield Display(Notation(_NEWTONIAN_EXACT))
         text = (
             "over the bodies that [[about]] carries, with $r$ the mass centre seen from the attracting centre and "
@@ -190,7 +190,7 @@ def _newtonian(value: NewtonianGravity) -> Iterator[Block]:
         "Newtonian field of a centre at the origin of [[centre]], approximate, with $[[nu]]$, expanded to order "
         "[[order]] about the origin $O$ of [[about]]:"
     )
-    yield paragraph(Said(text, given | {"order": str(order), "about": frame(value.about)}))
+    yield paragraph(Said(text, inlines | {"order": str(order), "about": frame(value.about)}))
     yield Display(Notation(_NEWTONIAN))
     for degree, terms in _NEWTONIAN_MORE.items():
         if degree <= order:

@@ -40,14 +40,14 @@ def lines(found: Along) -> Iterator[str]:
         yield f"without the cyclic coordinates {', '.join(found.cyclic)}{kept}"
     ends = [str(found.low), *(_number(one) for one in found.specials), str(found.high)]
     for k, between in enumerate(found.between):
-        short = [one if "/" in one or len(one) < 9 else f"{float(one):.6g}" for one in ends[k : k + 2]]
+        short = [end if "/" in end or len(end) < 9 else f"{float(end):.6g}" for end in ends[k : k + 2]]
         yield f"{found.name} from {short[0]} to {short[1]}: {_said(between.judged)}"
         if k < len(found.specials):
             special = found.specials[k]
             what = ", ".join(VANISHING[key] for key in special.vanishing)
             yield f"{found.name} = {ends[k + 1]}: {_told(special)}"
             yield f"  {what}; {found.name} is a root of {_polynomial(special.polynomial, found.name)}"
-            yield from (f"  {one}" for one in _numbers(special.judged))
+            yield from (f"  {number}" for number in _numbers(special.judged))
             if special.verdict is not None:
                 continue
             if special.judged.outcome is Outcome.UNDECIDED and special.judged.why in REASONS:
@@ -127,15 +127,15 @@ def as_text(system: System, found: Along) -> str:
         high=str(found.high),
         values=[
             doc.ExceptionalValue.from_result(
-                one.judged,
+                special.judged,
                 enclosure,
-                value=_number(one),
-                enclosure=one.enclosure,
-                root_of=list(map(str, one.polynomial)),
-                vanishing=[VANISHING[key] for key in one.vanishing],
-                **_of_problem_6(one.verdict),
+                value=_number(special),
+                enclosure=special.enclosure,
+                root_of=list(map(str, special.polynomial)),
+                vanishing=[VANISHING[key] for key in special.vanishing],
+                **_of_problem_6(special.verdict),
             )
-            for one in found.specials
+            for special in found.specials
         ],
         between=[doc.Between.from_result(one.judged, enclosure, sample=str(one.sample)) for one in found.between],
     )

@@ -106,11 +106,11 @@ def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...
 
 
 def _judged(found: SmallParameters, system: System) -> Iterator[JudgedAverage]:
-    for one in found.averaged:
+    for averaging in found.averaged:
         told: Measured | str = ""
-        if one.found is not None and one.analysis is not None:
-            told = average_or_why(system, one.analysis.system, one.found)
-        yield JudgedAverage(one, told, contradicts(told))
+        if averaging.found is not None and averaging.analysis is not None:
+            told = average_or_why(system, averaging.analysis.system, averaging.found)
+        yield JudgedAverage(averaging, told, contradicts(told))
 
 
 def average_or_why(system: System, averaged: System, found: Averaged, time: float | None = None) -> Measured | str:

@@ -162,9 +162,9 @@ def coefficients(found: Expansion) -> Iterator[Coefficient]:
                 yield Coefficient(plain, rate + (plain != name), k, formula, rate)
 
 
-def of_series(found: Expansion, one: Series) -> Iterator[tuple[int, Formula]]:
+def of_series(found: Expansion, series: Series) -> Iterator[tuple[int, Formula]]:
     """Exponents and coefficients, in order; 0 where there are none."""
-    listed = one.coefficients or {0: one.coefficient(0)}
+    listed = series.coefficients or {0: series.coefficient(0)}
     for k in sorted(listed):
         yield k, found.formula(listed[k])
 
@@ -193,7 +193,7 @@ def scaled(powers: Iterable[tuple[str, int]], small: str) -> Iterator[Said]:
 def sentences(found: Expansion) -> Iterator[Said]:
     """What was checked, and what is known of the motion on the manifold and towards it."""
     manifold = found.manifold
-    least = [one for one in manifold.residuals if one is not None]
+    least = [residual for residual in manifold.residuals if residual is not None]
     values: Gaps = {"small": Name(manifold.field.small), "order": str(manifold.order)}
     if least:
         yield Said(
@@ -372,21 +372,21 @@ def of_averaging(told: JudgedAverage) -> Iterator[Said]:
     yield from _of_measured_average(told.measured)
 
 
-def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
-    assert one.analysis is not None
-    stage = one.analysis.stage(6)
+def _of_averaged_motion(averaging: Averaging) -> Iterator[Said]:
+    assert averaging.analysis is not None
+    stage = averaging.analysis.stage(6)
     if stage.value is None:
         assert stage.failure is not None
         hint = (" (", worded(stage.failure.hint), ")") if stage.failure.hint else ()
         why = Phrase((worded(stage.failure.reason), *hint))
         yield say("Of the stability of the averaged motion there is no result: [[why]].", why=why)
         return
-    found: Stability = stage.value
-    equilibrium = one.analysis.equilibrium
+    stability: Stability = stage.value
+    equilibrium = averaging.analysis.equilibrium
     if equilibrium.conditions:
-        told = tuple(Relation(x, "=", 0) for x in equilibrium.conditions)
-        yield say("The averaged motion is there where [[conditions]].", conditions=told)
-    for part in found.subsystems:
+        relations = tuple(Relation(x, "=", 0) for x in equilibrium.conditions)
+        yield say("The averaged motion is there where [[conditions]].", conditions=relations)
+    for part in stability.subsystems:
         verdict = part.theory.verdict
         text = "The averaged motion, not the motion itself, by problem 6: [[names]]: [[word]]."
         yield say(text, names=named(part.coordinates), word=worded(verdict.word.value))
@@ -401,8 +401,8 @@ def _of_averaged_motion(one: Averaging) -> Iterator[Said]:
                 yield say("What problem 6 asks of the parameters: [[conditions]].", conditions=written)
             if len(written) < len(items):
                 yield Said("Further conditions are not written out here.")
-    if found.numerical is not None:
-        yield say("At the given values: [[word]].", word=worded(found.numerical.word.value))
+    if stability.numerical is not None:
+        yield say("At the given values: [[word]].", word=worded(stability.numerical.word.value))
 
 
 def _of_measured_average(told: Measured | str) -> Iterator[Said]:
@@ -443,10 +443,10 @@ def of_none(found: SmallParameters) -> Iterator[Said]:
 def _told(found: Expansion, conditions: Sequence[Condition]) -> tuple[Inline, ...]:
     ring = found.transfer.ring
     parts: dict[str, Inline] = {}  # each once
-    for one in conditions:
-        if one.kind == "inequality":
-            parts[f"{one.polynomial} > 0"] = Relation(Formula(ring, one.polynomial), ">", 0)
-        elif one.kind == "unwritten":
+    for condition in conditions:
+        if condition.kind == "inequality":
+            parts[f"{condition.polynomial} > 0"] = Relation(Formula(ring, condition.polynomial), ">", 0)
+        elif condition.kind == "unwritten":
             parts[""] = worded("a condition too long to be written out")
-        parts |= {f"{p} != 0": Relation(Formula(ring, p), "!=", 0) for p in one.nonzero}
+        parts |= {f"{p} != 0": Relation(Formula(ring, p), "!=", 0) for p in condition.nonzero}
     return tuple(parts.values())

@@ -45,15 +45,15 @@ def findings_of(path: str, complaints: Iterable[Complaint]) -> tuple[Finding, ..
     return tuple(
         Finding(
             path,
-            one.code,
-            one.message,
-            one.severity,
-            None if one.span is None else one.span.line,
-            None if one.span is None else one.span.column,
-            1 if one.span is None else max(1, one.span.length),
-            one.hint,
+            complaint.code,
+            complaint.message,
+            complaint.severity,
+            None if complaint.span is None else complaint.span.line,
+            None if complaint.span is None else complaint.span.column,
+            1 if complaint.span is None else max(1, complaint.span.length),
+            complaint.hint,
         )
-        for one in complaints
+        for complaint in complaints
     )
 
 

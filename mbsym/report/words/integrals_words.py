@@ -31,14 +31,14 @@ def weights_text(variables: Sequence[Inline], given: Sequence[int]) -> str:
 def weighted(variables: Sequence[Inline], given: Sequence[int]) -> Phrase:
     """The same as a value: those of each weight together."""
     groups: dict[int, list[Inline]] = {}
-    for one, weight in zip(variables, given, strict=True):
-        groups.setdefault(weight, []).append(one)
+    for variable, weight in zip(variables, given, strict=True):
+        groups.setdefault(weight, []).append(variable)
     return joined((Phrase((joined(items, ", "), f": {weight}")) for weight, items in groups.items()), "; ")
 
 
-def title(one: Generator) -> str:
+def title(generator: Generator) -> str:
     """What an integral is called."""
-    return one.name or Message("further integral")
+    return generator.name or Message("further integral")
 
 
 def case_title(weight: int) -> str:
@@ -88,9 +88,9 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
     yield Said("As functions at least [[count]] of them are independent (proved: rank of the gradients).", values)
     if any(one.name.startswith("product of ") for one in found.generators):
         yield Said(_TRIVIAL, values)
-    for one in found.generators:
-        if not one.independent:
-            yield say(_DEPENDENT[one.certainty], name=worded(title(one)), weight=str(one.weight))
+    for generator in found.generators:
+        if not generator.independent:
+            yield say(_DEPENDENT[generator.certainty], name=worded(title(generator)), weight=str(generator.weight))
     if found.complete:
         yield Said(_EVERY[bool(found.aside)][bool(found.field.parameters)], values)
     yield from _left_out(found)

@@ -67,7 +67,7 @@ def opening(found: InvariantSets) -> Iterator[Said]:
 
 def told_families(found: InvariantSets) -> list[Family]:
     """Those of which there is something to tell; where there is nothing of any of them, that."""
-    return [one for one in found.families if not _is_empty(one)] or list(found.families)
+    return [family for family in found.families if not _is_empty(family)] or list(found.families)
 
 
 def _is_empty(family: Family) -> bool:
@@ -122,9 +122,9 @@ def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]
         yield Said(text, gaps)
     if one.nonzero:
         yield say("There [[nonzero]].", nonzero=compared(one.nonzero, "!="))
-    told = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
-    if told:
-        yield say("Multipliers: [[told]].", told=told)
+    relations = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
+    if relations:
+        yield say("Multipliers: [[told]].", told=relations)
     rates = dict(one.solved)
     motion = [(name, x) for name, x in one.motion if str(x) not in (f"{name}_dot", str(rates.get(f"{name}_dot")))]
     if motion:  # that y' is y', or what an equation of the set says, is told already
@@ -151,13 +151,13 @@ def _values(given: Iterable[tuple[str, Formula]], ring: Ring | None, dots: int =
 
 
 def _all(signs: Iterable[Sign]) -> tuple[Relation, ...]:
-    return tuple(Relation(one.formula, one.relation, 0) for one in signs)
+    return tuple(Relation(sign.formula, sign.relation, 0) for sign in signs)
 
 
-def _variation(one: StationarySet, found: SecondVariation, ring: Ring | None) -> Iterator[Said]:
-    if not one.invariant:
+def _variation(stationary_set: StationarySet, found: SecondVariation, ring: Ring | None) -> Iterator[Said]:
+    if not stationary_set.invariant:
         return
-    steady = one.kind is Kind.STEADY
+    steady = stationary_set.kind is Kind.STEADY
     if found.outcome is Definiteness.STABLE:
         yield Said(
             "Stable (proved: the second variation of $K$ on the level of the integrals is definite)."
@@ -214,10 +214,10 @@ def _first(found: FirstApproximation) -> Iterator[Said]:
     plain = [one for one in found.necessary if not one.unless]
     if plain:
         yield say("Necessary for stability: [[conditions]].", conditions=_all(plain))
-    for one in found.necessary:
-        if one.unless:
-            unless = joined(compared(one.unless), " ", Said("or"), " ")
-            gaps: Gaps = {"condition": _all([one]), "unless": unless}
+    for relation in found.necessary:
+        if relation.unless:
+            unless = joined(compared(relation.unless), " ", Said("or"), " ")
+            gaps: Gaps = {"condition": _all([relation]), "unless": unless}
             yield Said("Necessary for stability: [[condition]], unless [[unless]].", gaps)
     if not found.complete:
         yield Said("Further necessary conditions were not written out.")
@@ -226,13 +226,13 @@ def _first(found: FirstApproximation) -> Iterator[Said]:
 def _even(factor: Sequence[Formula]) -> Polynomial:
     """A polynomial in lambda^2, lowest coefficient first."""
     zero = factor[0] * 0
-    return Polynomial(tuple(x for one in factor for x in (one, zero))[:-1], "lambda")
+    return Polynomial(tuple(x for formula in factor for x in (formula, zero))[:-1], "lambda")
 
 
-def _gap(one: StationarySet) -> Iterator[Said]:
-    if one.gap is Gap.FOUND:
-        yield Said(_GAP_FOR_SOME if one.variation is not None and one.variation.chosen else _GAP)
-    elif one.gap is Gap.NONE_FOUND:
+def _gap(stationary_set: StationarySet) -> Iterator[Said]:
+    if stationary_set.gap is Gap.FOUND:
+        yield Said(_GAP_FOR_SOME if stationary_set.variation is not None and stationary_set.variation.chosen else _GAP)
+    elif stationary_set.gap is Gap.NONE_FOUND:
         yield Said(_NO_GAP)
 
 

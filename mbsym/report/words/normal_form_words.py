@@ -129,9 +129,9 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
     if found.frequencies and whole.conservative:
         text = "Frequencies with the signs of their energies: [[values]] (enclosed)."
         yield say(text, values=tuple(map(_number, found.frequencies)))
-    for one in found.resonances:
+    for resonance in found.resonances:
         text = "A resonance of order [[order]] holds exactly: [[relation]]."
-        yield say(text, order=str(one.order), relation=_relation(one.vector, found.frequencies))
+        yield say(text, order=str(resonance.order), relation=_relation(resonance.vector, found.frequencies))
     if found.quadratic:
         yield say("Normal form of fourth order in the actions: [[form]].", form=_form(found.quadratic))
     for order, value in found.determinants:

@@ -117,22 +117,22 @@ _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym 
 
 def opening(told: Oscillating) -> Iterator[Said]:
     """What is expanded in what."""
-    found = told.found
-    yield from scaled(found.powers, found.small)
+    oscillation = told.found
+    yield from scaled(oscillation.powers, oscillation.small)
     yield Said(_SERIES, _values(told))
 
 
 def coefficients(told: Oscillating) -> Iterator[Coefficient]:
     """Of all variables, then of the rate of the phase; those that are zero are left out."""
-    found = told.found
-    for name, series in zip(found.names, found.series, strict=True):
+    oscillation = told.found
+    for name, series in zip(oscillation.names, oscillation.series, strict=True):
         plain = without_velocity(name) if name in told.velocities else name
-        for order, one in enumerate(series):
-            if not one.is_zero:
-                yield Coefficient(plain, plain != name, order, told.wave(one))
-    for order, x in enumerate((found.tower.one, *found.corrections)):
+        for order, harmonics in enumerate(series):
+            if not harmonics.is_zero:
+                yield Coefficient(plain, plain != name, order, told.wave(harmonics))
+    for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
         if not x.is_zero():
-            yield Coefficient(told.phase, True, order, told.formula(found.frequency * x))
+            yield Coefficient(told.phase, True, order, told.formula(oscillation.frequency * x))
 
 
 def as_function(told: Oscillating) -> Sums:
@@ -142,15 +142,15 @@ def as_function(told: Oscillating) -> Sums:
 
 def collected(told: Oscillating) -> Iterator[Relation]:
     """The same for people: factors that divide several coefficients have letters (``denominators``)."""
-    found = told.found
-    for name, series in zip(found.names, found.series, strict=True):
+    oscillation = told.found
+    for name, series in zip(oscillation.names, oscillation.series, strict=True):
         plain = without_velocity(name) if name in told.velocities else name
-        for order, one in enumerate(series):
-            if not one.is_zero:
-                yield Coefficient(plain, plain != name, order, told.shortest(one)).equation
-    for order, x in enumerate((found.tower.one, *found.corrections)):
+        for order, harmonics in enumerate(series):
+            if not harmonics.is_zero:
+                yield Coefficient(plain, plain != name, order, told.shortest(harmonics)).equation
+    for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
         if not x.is_zero():
-            value = told.shortest(Harmonics.constant(found.tower, found.frequency * x))
+            value = told.shortest(Harmonics.constant(oscillation.tower, oscillation.frequency * x))
             yield Coefficient(told.phase, True, order, value).equation
 
 
@@ -169,9 +169,9 @@ def denominators(told: Oscillating, equations: Iterable[Relation]) -> Definition
 
 def drifting(told: Oscillating) -> Iterator[Relation]:
     """Coefficients of variables that follow by integration: a rate times t, and what is periodic."""
-    for one in told.found.drifts:
-        plain = without_velocity(one.variable) if one.variable in told.velocities else one.variable
-        for order, (rate, wave) in enumerate(zip_longest(one.rates, one.waves)):
+    for drift in told.found.drifts:
+        plain = without_velocity(drift.variable) if drift.variable in told.velocities else drift.variable
+        for order, (rate, wave) in enumerate(zip_longest(drift.rates, drift.waves)):
             parts: list[Math | str] = []
             if rate is not None and not rate.is_zero():
                 parts += [
@@ -181,63 +181,67 @@ def drifting(told: Oscillating) -> Iterator[Relation]:
             if wave is not None and not wave.is_zero:
                 parts += [*(["+"] if parts else []), told.shortest(wave)]
             if parts:
-                yield Relation(Raised(Name(plain, int(plain != one.variable)), order), "=", *parts)
+                yield Relation(Raised(Name(plain, int(plain != drift.variable)), order), "=", *parts)
 
 
 def sentences(told: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
-    found, values = told.found, _values(told)
-    least = [one for one in found.residuals if one is not None]
-    if found.kind is Amplitude.FREE:
-        yield say(_FREE, **values, amplitude=told.formula(found.amplitude), sine=_wave(told, False))
+    oscillation, values = told.found, _values(told)
+    least = [residual for residual in oscillation.residuals if residual is not None]
+    if oscillation.kind is Amplitude.FREE:
+        yield say(_FREE, **values, amplitude=told.formula(oscillation.amplitude), sine=_wave(told, False))
         if least or told.taylor:  # else it is a solution
             yield Said(_FORMAL)
     else:
         yield say(_DETERMINED, **values, value=_wave(told, True))
         if not told.real_amplitude:
-            square = told.formula(found.amplitude * found.amplitude)
+            square = told.formula(oscillation.amplitude * oscillation.amplitude)
             yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
-        if found.other_amplitudes is not None:
-            yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(found.other_amplitudes), "=", 0))
-    if found.exponent is not None:
-        power, x = found.exponent
+        if oscillation.other_amplitudes is not None:
+            yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(oscillation.other_amplitudes), "=", 0))
+    if oscillation.exponent is not None:
+        power, x = oscillation.exponent
         yield say(_EXPONENT[told.attracts], **values, exponent=told.formula(x), power=str(power))
-    if found.constants:
-        names = tuple(told.formula(x) for _, x in found.constants)
-        yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in found.constants))
-    left = values | {"left": str(min(least, default="")), "next": str(found.order + 1)}
+    if oscillation.constants:
+        names = tuple(told.formula(x) for _, x in oscillation.constants)
+        yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in oscillation.constants))
+    left = values | {"left": str(min(least, default="")), "next": str(oscillation.order + 1)}
     if told.taylor:
-        yield say(_TAYLOR, degree=str(found.order + 1))
+        yield say(_TAYLOR, degree=str(oscillation.order + 1))
         yield Said(_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR, left)
     else:
         yield Said(_LEFT if least else _NOTHING, left)
     if not told.real:
-        rooted = any(d > 0 for d in found.frequency.top.degrees()[: -len(found.tower.parameters)])
-        real = Relation(told.formula(found.frequency * found.frequency), ">", 0)
-        nonzero = Relation(told.formula(found.frequency), "!=", 0)
+        rooted = any(d > 0 for d in oscillation.frequency.top.degrees()[: -len(oscillation.tower.parameters)])
+        real = Relation(told.formula(oscillation.frequency * oscillation.frequency), ">", 0)
+        nonzero = Relation(told.formula(oscillation.frequency), "!=", 0)
         yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
     for one in told.resonances:
         zeros = (Relation(numerator(told, x), "=", 0) for x in one.parts)
         gaps: Gaps = {"harmonic": str(one.harmonic), "order": str(one.order), "names": named(one.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
         yield Said(_RESONANCE if one.damping is None else _BOTH, gaps)
-    for group, other in found.others:
+    for group, other in oscillation.others:
         yield say(_OTHERS, names=named(group), square=told.formula(other))
-    for sentence, groups in ((_DAMPED, found.damped), (_ZERO, found.with_zero), (_NOT_KNOWN, found.not_known)):
+    for sentence, groups in (
+        (_DAMPED, oscillation.damped),
+        (_ZERO, oscillation.with_zero),
+        (_NOT_KNOWN, oscillation.not_known),
+    ):
         for group in groups:
             yield Said(sentence, values | {"names": named(group)})
 
 
 def _values(told: Oscillating) -> Gaps:
-    found = told.found
-    names = {"small": Name(found.small), "leading": Name(found.leading), "phase": Name(told.phase)}
-    return {"order": str(found.order), **names}
+    oscillation = told.found
+    names = {"small": Name(oscillation.small), "leading": Name(oscillation.leading), "phase": Name(told.phase)}
+    return {"order": str(oscillation.order), **names}
 
 
 def _wave(told: Oscillating, whole: bool) -> Formula:
     """The amplitude times the cosine of the phase; or its sine."""
-    zero, one = told.found.tower.zero, told.found.tower.one
-    return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, one)}))
+    zero, element = told.found.tower.zero, told.found.tower.one
+    return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, element)}))
 
 
 def numerator(told: Oscillating, value: Element) -> Formula:

@@ -245,11 +245,11 @@ def _provided(locus: Locus | None) -> Iterator[Said]:
 
 
 def _any(formulas: Sequence[Formula]) -> Phrase:
-    return joined((Relation(one, "=", 0) for one in formulas), " ", Said("or"), " ")
+    return joined((Relation(formula, "=", 0) for formula in formulas), " ", Said("or"), " ")
 
 
 def _roots(factors: Sequence[Sequence[Formula]]) -> Phrase:
-    return joined((Phrase(("(", Polynomial(tuple(one), "lambda"), ")")) for one in factors), " ")
+    return joined((Phrase(("(", Polynomial(tuple(factor), "lambda"), ")")) for factor in factors), " ")
 
 
 # --- control ---

@@ -20,22 +20,22 @@ GIVES = "The field [[field]] gives a further integral, no function of those know
 OPEN = "The field [[field]] gives an integral of which it is undecided whether it is a function of those of problem 7:"
 
 
-def field_text(one: Symmetry) -> str:
+def field_text(symmetry: Symmetry) -> str:
     """``x: -y, y: x; time: 1; Gamma = b*y``."""
-    parts = [", ".join(f"{name}: {xi}" for name, xi in one.directions)] if one.directions else []
-    parts += [f"time: {one.time}"] if not one.time.is_zero else []
-    parts += [f"Gamma = {one.gauge}"] if not one.gauge.is_zero else []
+    parts = [", ".join(f"{name}: {xi}" for name, xi in symmetry.directions)] if symmetry.directions else []
+    parts += [f"time: {symmetry.time}"] if not symmetry.time.is_zero else []
+    parts += [f"Gamma = {symmetry.gauge}"] if not symmetry.gauge.is_zero else []
     return "; ".join(parts)
 
 
-def field(one: Symmetry) -> tuple[Inline, ...]:
+def field(symmetry: Symmetry) -> tuple[Inline, ...]:
     """xi_x = -y, xi_y = x, tau = 1, Gamma = b y."""
-    ring = one.integral.ring
+    ring = symmetry.integral.ring
     shown: list[Inline] = [
-        say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in one.directions
+        say("$\\xi_{[[name]]} = [[value]]$", name=Name(x, ring=ring), value=xi) for x, xi in symmetry.directions
     ]
-    shown += [] if one.time.is_zero else [Relation(Symbol("tau"), "=", one.time)]
-    shown += [] if one.gauge.is_zero else [say("$\\Gamma = [[value]]$", value=one.gauge)]
+    shown += [] if symmetry.time.is_zero else [Relation(Symbol("tau"), "=", symmetry.time)]
+    shown += [] if symmetry.gauge.is_zero else [say("$\\Gamma = [[value]]$", value=symmetry.gauge)]
     return tuple(shown)
 
 
@@ -56,7 +56,7 @@ def sentences(found: Symmetries) -> Iterator[Said]:
     else:
         yield Said("Each of them is an identity of the exact ring (proved).")
         for certainty, text in _SUBSTITUTED.items():
-            count = sum(one.substituted is certainty for one in found.symmetries)
+            count = sum(symmetry.substituted is certainty for symmetry in found.symmetries)
             if count:
                 yield say(text, count=str(count))
         yield say(_NO_OTHER[found.symbols], proof=proof) if found.complete else Said(_MAYBE_OTHERS)

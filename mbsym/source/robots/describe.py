@@ -141,19 +141,19 @@ class _Writer:
         links, count = [], 0
         for link in self.robot.links:
             moves = link.name in carrying
-            kept = tuple(
+            joints = tuple(
                 joint
                 for joint in link.joints
                 if moves or joint.led or joint.name in driving or joint.armature != "0"  # the rotor moves by itself
             )
-            self.still += [joint.name for joint in link.joints if joint not in kept]
+            self.still += [joint.name for joint in link.joints if joint not in joints]
             stems = []
-            for joint in kept:
+            for joint in joints:
                 count += joint.led is None
                 stems.append(self._stem(joint, count) if joint.led is None else "")
-            self.refs |= {joint.name: joint.ref for joint in kept}
-            self.leading |= dict(zip((joint.name for joint in kept), stems, strict=True))
-            links.append((replace(link, joints=kept), stems))
+            self.refs |= {joint.name: joint.ref for joint in joints}
+            self.leading |= dict(zip((joint.name for joint in joints), stems, strict=True))
+            links.append((replace(link, joints=joints), stems))
         return links
 
     def _stem(self, joint: Joint, count: int) -> str:

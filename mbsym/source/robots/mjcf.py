@@ -182,9 +182,11 @@ def _six(parts: Iterable[str]) -> tuple[str, str, str, str, str, str]:
 
 def _together(root: Element, tag: str) -> Element:
     """Sections of a tag as one: what a later one says stands."""
-    found = root.all(tag)
-    attributes = {key: value for element in found for key, value in element.attributes.items()}
-    return Element(tag, attributes, found[-1].span if found else root.span, [c for e in found for c in e.children])
+    elements = root.all(tag)
+    attributes = {key: value for element in elements for key, value in element.attributes.items()}
+    return Element(
+        tag, attributes, elements[-1].span if elements else root.span, [c for e in elements for c in e.children]
+    )
 
 
 def _gravity(root: Element, reader: Reader) -> Texts:
@@ -363,18 +365,18 @@ class _Bodies:
 
     def geoms(self, element: Element, childclass: str) -> list[Element]:
         """The geoms of a body or frame; what of them has no place here is noted."""
-        found = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
-        found = [geom for geom in found if checked(geom, self.reader)]
-        for geom in found:
+        elements = [self.defaults.of(geom, childclass) for geom in element.all("geom")]
+        elements = [geom for geom in elements if checked(geom, self.reader)]
+        for geom in elements:
             if not is_solid(geom):
                 self.reader.leave_out(f"geom of the type {geom.get('type', 'sphere')}")
             elif geom.get("contype", "1") != "0" or geom.get("conaffinity", "1") != "0":
                 self.reader.leave_out("contact (<geom>)")
-        return found
+        return elements
 
     def of_geoms(self, geoms: list[Element]) -> tuple[Inertial, ...]:
         """The matter of a body's geoms; complains about what weighs something that is not known here."""
-        reader, found = self.reader, []
+        reader, inertials = self.reader, []
         for geom in geoms:
             if not self.groups[0] <= float(reader.number(geom, "group")) <= self.groups[1]:
                 continue
@@ -386,8 +388,8 @@ class _Bodies:
             elif geom.get("shellinertia") == "true":
                 reader.error("unsupported", "the mass of a shell ('shellinertia') is not read", geom, _SAVED)
             elif (matter := matter_of(geom, self.angles, reader)) is not None:
-                found.append(matter)
-        return tuple(found)
+                inertials.append(matter)
+        return tuple(inertials)
 
     def pose(self, element: Element, place: str | None = "0 0 0") -> tuple[Texts, Turns]:
         """Where it stands, by default at ``place`` (None: the file has to say it), and how it is turned."""

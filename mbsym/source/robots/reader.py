@@ -362,8 +362,8 @@ def include(root: Element, beside: Callable[[str], str | None], complaints: Comp
             seen.add(file)
             own = Complaints()
             found = parsed(text, own)
-            for one in own.items:
-                complaints.error(one.code, f"in {ascii_safe(file)}: {one.message}", child.span)
+            for item in own.items:
+                complaints.error(item.code, f"in {ascii_safe(file)}: {item.message}", child.span)
             if found is not None:
                 for element in found.walk():
                     element.span = child.span

@@ -351,10 +351,10 @@ def _joined(moves: list[Step]) -> Iterator[Step]:
     yield now
 
 
-def _sum(one: Texts, other: Texts) -> Texts:
+def _sum(texts: Texts, other: Texts) -> Texts:
     added = [
         b if a == "0" else a if b == "0" else f"{a} - {b[1:]}" if b.startswith("-") else f"{a} + {b}"
-        for a, b in zip(one, other, strict=True)
+        for a, b in zip(texts, other, strict=True)
     ]
     return added[0], added[1], added[2]
 

@@ -161,13 +161,13 @@ def _joints(root: Element, links: dict[str, Element], reader: Reader) -> dict[st
 
 
 def _end(joint: Element, end: str, links: dict[str, Element], reader: Reader) -> str:
-    found = joint.first(end)
-    if found is None:
+    element = joint.first(end)
+    if element is None:
         reader.error("missing-key", f"this joint has no <{end}>", joint)
         return ""
-    name = reader.name(found, "link")
+    name = reader.name(element, "link")
     if name and name not in links:
-        reader.error("unknown-name", f"there is no link {ascii_safe(name)}", found)
+        reader.error("unknown-name", f"there is no link {ascii_safe(name)}", element)
     return name
 
 

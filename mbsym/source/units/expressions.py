@@ -39,12 +39,12 @@ class Dimensions:
         """An expression must have a dimension.  A number alone may stand for anything, in the units of the rest."""
         if not names(expression):
             return
-        found = self.of(expression)
-        if found is not None and not self.inference.equate(found, wanted):
+        form = self.of(expression)
+        if form is not None and not self.inference.equate(form, wanted):
             message = Message(
                 "[[shown]] is [[told]], and [[what]] is [[told2]]",
                 shown=_shown(expression),
-                told=self.told(found),
+                told=self.told(form),
                 what=what,
                 told2=self.told(wanted),
             )
@@ -52,9 +52,9 @@ class Dimensions:
 
     def alike(self, left: Expression, right: Expression, how: str) -> None:
         """Two expressions must have the same dimension; a number alone goes with anything."""
-        one, other = (self.of(side) if names(side) else None for side in (left, right))
-        if one is not None and other is not None and not self.inference.equate(one, other):
-            self.complain(self._apart(left, one, right, other, how), _place(right) or _place(left), None)
+        form, other = (self.of(side) if names(side) else None for side in (left, right))
+        if form is not None and other is not None and not self.inference.equate(form, other):
+            self.complain(self._apart(left, form, right, other, how), _place(right) or _place(left), None)
 
     def of(self, expression: Expression) -> Form | None:
         """The dimension; None of a zero, which goes with every one."""
@@ -100,20 +100,20 @@ class Dimensions:
 
     def _tabulated(self, name: str, argument: Expression, found: Form) -> None:
         """All arguments of a table have one dimension."""
-        wanted = self.name_form(Message("the argument of [[name]]", name=name))
-        if not self.inference.equate(found, wanted):
+        form = self.name_form(Message("the argument of [[name]]", name=name))
+        if not self.inference.equate(found, form):
             message = Message(
                 "[[shown]] is [[told]], and the argument of [[name]] is [[told2]]",
                 shown=_shown(argument),
                 told=self.told(found),
                 name=name,
-                told2=self.told(wanted),
+                told2=self.told(form),
             )
             self.complain(message, _place(argument), None)
 
     def _product(self, left: Expression, right: Expression, power: int) -> Form | None:
-        one, other = self.of(left), self.of(right)
-        return None if one is None or other is None else one.times(other, power)
+        form, other = self.of(left), self.of(right)
+        return None if form is None or other is None else form.times(other, power)
 
     def _power(self, base: Expression, exponent: Expression) -> Form | None:
         inner, power = self.of(base), rational(exponent)
@@ -124,13 +124,13 @@ class Dimensions:
         return Form()
 
     def _sum(self, whole: Operation, left: Expression, right: Expression) -> Form | None:
-        one, other = self.of(left), self.of(right)
-        if one is None or other is None:
-            return other if one is None else one
-        if self.inference.equate(one, other):
-            return one
+        form, other = self.of(left), self.of(right)
+        if form is None or other is None:
+            return other if form is None else form
+        if self.inference.equate(form, other):
+            return form
         how = "added" if whole.operator == "+" else "subtracted"
-        message = self._apart(left, one, right, other, how)
+        message = self._apart(left, form, right, other, how)
         number = next((side for side in (left, right) if not names(side)), None)
         hint = None if number is None else "give the number a name and a unit under 'parameters'"
         self.complain(message, _place(right) or whole.span, hint)
@@ -138,19 +138,19 @@ class Dimensions:
         return Form(NONE, ((f" {self.fresh}", Fraction(1)),))  # one complaint about it is enough
 
     def _number(self, expression: Expression, rule: str) -> None:
-        found = self.of(expression)
-        if found is not None and not self.inference.equate(found, Form()):
+        form = self.of(expression)
+        if form is not None and not self.inference.equate(form, Form()):
             message = Message(
-                "[[shown]] is [[told]]; [[rule]]", shown=_shown(expression), told=self.told(found), rule=rule
+                "[[shown]] is [[told]]; [[rule]]", shown=_shown(expression), told=self.told(form), rule=rule
             )
             self.complain(message, _place(expression), None)
 
-    def _apart(self, left: Expression, one: Form, right: Expression, other: Form, how: str) -> Message:
+    def _apart(self, left: Expression, form: Form, right: Expression, other: Form, how: str) -> Message:
         """That two expressions have different dimensions, and so cannot be added, compared, ..."""
         return Message(
             "[[shown]] is [[told]], [[shown2]] is [[told2]]: they cannot be [[how]]",
             shown=_shown(left),
-            told=self.told(one),
+            told=self.told(form),
             shown2=_shown(right),
             told2=self.told(other),
             how=how,

@@ -248,12 +248,12 @@ class _Reader:
     def product(self, depth: int) -> Powers:
         if depth > _MOST_NESTED:
             raise Wrong(_FORM)
-        found = self.factor(depth)
+        powers = self.factor(depth)
         while (token := self.next()) not in ("", ")"):
             if token in ("*", "/", "."):
                 self.place += 1
-            found = _times(found, self.factor(depth), -1 if token == "/" else 1)
-        return found
+            powers = _times(powers, self.factor(depth), -1 if token == "/" else 1)
+        return powers
 
     def factor(self, depth: int) -> Powers:
         token = self.next()
@@ -291,8 +291,8 @@ class _Reader:
         return Fraction(token)
 
 
-def _times(one: Powers, other: Powers, power: Fraction | int) -> Powers:
-    made = dict(one)
+def _times(powers: Powers, other: Powers, power: Fraction | int) -> Powers:
+    made = dict(powers)
     for name, exponent in other.items():
         made[name] = made.get(name, Fraction(0)) + exponent * power
     if any(abs(exponent) > MAX_EXPONENT for exponent in made.values()):

@@ -75,16 +75,16 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
 
     inference = Inference({name: Form(found.dimension) for name, found in known.items()})
     _System(system, Dimensions(inference, _form_of(system), complain)).check()
-    names = (*system.coordinates, *system.parameter_names, *(one.name for one in system.prescribed))
-    names = (*names, *system.variables, *system.input_names, *(one.name for one in system.outputs))
-    more = (*(one.name for one in system.notation), *(one.name for one in system.abbreviations))
+    names = (*system.coordinates, *system.parameter_names, *(prescribed.name for prescribed in system.prescribed))
+    names = (*names, *system.variables, *system.input_names, *(output.name for output in system.outputs))
+    more = (*(one.name for one in system.notation), *(abbreviation.name for abbreviation in system.abbreviations))
     follows = ((name, inference.dimension(name)) for name in (*names, *more))
     inferred = tuple((name, found) for name, found in follows if found is not None)
     return Units(declared, inferred, base)
 
 
 def dimensions_of(
-    system: System, complain: Callable[[str, Span | None, str | None], None], given: dict[str, Form]
+    system: System, complain: Callable[[str, Span | None, str | None], None], forms: dict[str, Form]
 ) -> Dimensions:
     """The dimensions that follow from the places of a description and from those that are ``given``.
 
@@ -93,7 +93,7 @@ def dimensions_of(
     known = {
         one.name: Form(found.dimension) for one in system.units.declared if isinstance(found := unit(one.text), Unit)
     }
-    inference = Inference({**known, **given})
+    inference = Inference({**known, **forms})
     _System(system, Dimensions(inference, _form_of(system), lambda *_: None)).check()
     return Dimensions(inference, _form_of(system), complain)
 
@@ -189,9 +189,9 @@ class _System:
             form = wanted if isinstance(wanted, Form) else Form(wanted)
             self.dimensions.expect(expression, form, what)
 
-    def vector(self, vector: Vector | None, wanted: Dimension, what: str) -> None:
+    def vector(self, vector: Vector | None, dimension: Dimension, what: str) -> None:
         for component in vector or ():
-            self.expect(component, wanted, what)
+            self.expect(component, dimension, what)
 
     def of(self, name: str) -> Form:
         return self.dimensions.name_form(name)

@@ -88,8 +88,8 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
     else:
         yield from unless_parameter("--vary", request.varied, system)
         if request.varied in request.values:
-            told = Message("'[[name]]' has an interval and a number", name=request.varied)
-            yield Unfit("--set", "repeated-name", told, "leave one of them out")
+            message = Message("'[[name]]' has an interval and a number", name=request.varied)
+            yield Unfit("--set", "repeated-name", message, "leave one of them out")
         yield from against_sign("--vary", request.vary, system)
     overrides: dict[str, Value] = {}
     for name, value in _exact(request, system):
@@ -133,9 +133,9 @@ def _contradictions(system: System, request: Request, overrides: Mapping[str, Va
     try:
         scenario(system, {name: request.values[name] for name in overrides}, state=False)
     except Incomplete as error:
-        for one in error.lack.contradictions:
-            if one.name in request.values:
-                yield Unfit("--set", one.code, one.text, one.hint, one.name)
+        for contradiction in error.lack.contradictions:
+            if contradiction.name in request.values:
+                yield Unfit("--set", contradiction.code, contradiction.text, contradiction.hint, contradiction.name)
 
 
 def _numbers(system: System, request: Request) -> Mapping[str, Value]:
@@ -166,8 +166,8 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Listed | Branches:
     if request.vary is not None:
         return followed(asked.system, request.vary, cast("Mapping[str, Fraction]", values), watch)
     watch("relative equilibria")
-    found = relative_equilibria(asked.system, values, request.within)
-    return Listed(found, permanent_rotations(asked.system, values))
+    equilibria = relative_equilibria(asked.system, values, request.within)
+    return Listed(equilibria, permanent_rotations(asked.system, values))
 
 
 def answer(asked: Asked, request: Request, found: Listed | Branches) -> Answer:

@@ -42,9 +42,9 @@ def answer(system: System, request: Request, found: Branches) -> Answer:
 
     lines, files = _lines(found), files_of(system, found, request.files, request.language or system.language)
     if found.interrupted:
-        told = Message("interrupted; what was proved before that is written")
-        return Answer(lines, files, (told,), Exit.INTERRUPTED)
-    unbalanced = any(found.critical(one).balance is False for one in found.criticals)
+        message = Message("interrupted; what was proved before that is written")
+        return Answer(lines, files, (message,), Exit.INTERRUPTED)
+    unbalanced = any(found.critical(critical).balance is False for critical in found.criticals)
     return Answer(lines, files, code=Exit.FAILED if unbalanced else Exit.OK)
 
 
@@ -61,8 +61,8 @@ def _lines(found: Branches) -> Iterator[Block]:
     yield aligned(columns, rows(found))
     for one in found.criticals:
         if (polynomial := _minimal(one.sample)) and critical_words(found, one):
-            told = Message("[[value]] is a root of [[polynomial]]", value=value(one.sample), polynomial=polynomial)
-            yield paragraph(told)
+            message = Message("[[value]] is a root of [[polynomial]]", value=value(one.sample), polynomial=polynomial)
+            yield paragraph(message)
     for remark in found.remarks:
         yield paragraph(remark_words(remark))
     lost = sum(not piece.throughout for piece in found.pieces)
@@ -93,11 +93,11 @@ def _critical_row(found: Branches, at: Cell | None) -> list[tuple[str, str, str,
     words = "" if at is None else critical_words(found, at)
     if at is None or not words:
         return []
-    one = found.critical(at)
-    counted = one.meetings is not None and not one.continuum
-    stable = stable_words(x.verdict for x in one.meetings or ())
-    count = str(len(one.meetings or ())) if counted else Message("not counted")
-    count = Message("infinitely many") if one.continuum else count
+    critical = found.critical(at)
+    counted = critical.meetings is not None and not critical.continuum
+    stable = stable_words(x.verdict for x in critical.meetings or ())
+    count = str(len(critical.meetings or ())) if counted else Message("not counted")
+    count = Message("infinitely many") if critical.continuum else count
     return [(value(at.sample), count, stable if counted else "", words)]
 
 

@@ -75,25 +75,25 @@ def _table(system: System, listed: Sequence[RelativeEquilibrium], judged: bool =
     columns += [column(Message("proof"))] if boxes else []
     columns += [column(Message("angles of"))] if others else []
     rows = []
-    for number, one in enumerate(listed, 1):
-        cells: list[Inline] = [str(number), *(_cell(one, name) for name in names)]
+    for number, equilibrium in enumerate(listed, 1):
+        cells: list[Inline] = [str(number), *(_cell(equilibrium, name) for name in names)]
         if judged:
-            word = one.verdict.word
-            cells += [Graded(Message(word), _grade(word)), joined(map(Message, one.verdict.theorems), ", ")]
-        cells += [Message(one.proof)] if boxes else []
-        cells += [one.coordinates_of] if others else []
+            word = equilibrium.verdict.word
+            cells += [Graded(Message(word), _grade(word)), joined(map(Message, equilibrium.verdict.theorems), ", ")]
+        cells += [Message(equilibrium.proof)] if boxes else []
+        cells += [equilibrium.coordinates_of] if others else []
         rows.append(cells)
     return aligned(columns, rows)
 
 
-def _has(one: RelativeEquilibrium, name: str) -> bool:
-    return name in one.free or any(item.name == name for item in one.values)
+def _has(equilibrium: RelativeEquilibrium, name: str) -> bool:
+    return name in equilibrium.free or any(item.name == name for item in equilibrium.values)
 
 
-def _cell(one: RelativeEquilibrium, name: str) -> str:
-    if name in one.free:
+def _cell(equilibrium: RelativeEquilibrium, name: str) -> str:
+    if name in equilibrium.free:
         return Message("any")
-    return next((_text(item) for item in one.values if item.name == name), "")
+    return next((_text(item) for item in equilibrium.values if item.name == name), "")
 
 
 def _text(item: CoordinateValue) -> str:
@@ -119,8 +119,8 @@ def _family(system: System, number: int, family: EquilibriumFamily) -> Iterator[
 def _shortened(polynomial: str) -> str:
     """A polynomial, or its length where nobody would read it."""
     terms = polynomial.count(" + ") + polynomial.count(" - ") + 1
-    told = Message("(a polynomial of [[terms]], which --json prints)", terms=Counted(terms, "term"))
-    return polynomial if len(polynomial) <= _LONGEST else told
+    message = Message("(a polynomial of [[terms]], which --json prints)", terms=Counted(terms, "term"))
+    return polynomial if len(polynomial) <= _LONGEST else message
 
 
 def _permanent(found: PermanentRotations) -> Iterator[Block]:
@@ -162,7 +162,7 @@ def _permanent(found: PermanentRotations) -> Iterator[Block]:
 
 def _summary(found: Equilibria) -> Iterator[Block]:
     count = Counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
-    words = Counter(one.verdict.word for one in found.equilibria)
+    words = Counter(equilibrium.verdict.word for equilibrium in found.equilibria)
     kinds = joined((joined((str(n), Message(word))) for word, n in words.items()), "; ")
     counts = [count, *([Counted(len(found.families), "family", "families")] if found.families else [])]
     yield paragraph(Strong(joined(counts, ", ")), *([": ", kinds] if words else []))
@@ -178,7 +178,7 @@ def _summary(found: Equilibria) -> Iterator[Block]:
         yield paragraph(Graded(Message("the list may be incomplete"), "open"))
     for remark in found.remarks:
         yield paragraph(Graded(remark, "open"))
-    twice = sorted({one.described for one in found.equilibria if one.described > 1})
+    twice = sorted({equilibrium.described for equilibrium in found.equilibria if equilibrium.described > 1})
     if twice:
         text = "counted as configurations: the coordinates describe one in [[ways]] ways"
         yield paragraph(Message(text, ways="/".join(map(str, twice))))

@@ -108,17 +108,17 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     there = setting(analysis, request.values, driven=True)
     if wrong := tuple(_unfit(there, request)):
         raise NotFit(wrong)
-    found, axis = integrals_of(there, request.degree, request.weights), request.vary
-    along = None if axis is None else along_of(found, there.kinds, there.known, axis.low, axis.high)
-    positive = [one.name for one in asked.system.parameters if one.sign == "positive"]
+    integrals, axis = integrals_of(there, request.degree, request.weights), request.vary
+    along = None if axis is None else along_of(integrals, there.kinds, there.known, axis.low, axis.high)
+    positive = [parameter.name for parameter in asked.system.parameters if parameter.sign == "positive"]
     special = None
     if request.cases:
         budget = BUDGET if request.budget is None else request.budget
-        special = cases_of(found, there.kinds, there.known, positive, budget)
+        special = cases_of(integrals, there.kinds, there.known, positive, budget)
         special = special and allowed(analysis, there, request.values, special)
-    invariant = invariant_relations(there, found, positive) if request.relations else None
-    at = special_relations(there, found, axis.low, axis.high) if request.relations and axis is not None else None
-    return Found(there, found, along, special, invariant, at)
+    invariant = invariant_relations(there, integrals, positive) if request.relations else None
+    at = special_relations(there, integrals, axis.low, axis.high) if request.relations and axis is not None else None
+    return Found(there, integrals, along, special, invariant, at)
 
 
 def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
@@ -126,14 +126,14 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
     for name in request.weights:
         if name not in there.field.variables:
             known = ", ".join(there.field.variables)
-            told = Message("the field has no variable [[name]]", name=name)
-            yield Unfit("--weight", "unknown-name", told, Message("there are [[names]]", names=known))
+            message = Message("the field has no variable [[name]]", name=name)
+            yield Unfit("--weight", "unknown-name", message, Message("there are [[names]]", names=known))
     axis = request.vary
     if axis is None:
         return
     if axis.name not in there.field.parameters:
-        told = Message("the equations do not depend on [[name]]", name=axis.name)
-        yield Unfit("--vary", "not-there", told, "take another parameter")
+        message = Message("the equations do not depend on [[name]]", name=axis.name)
+        yield Unfit("--vary", "not-there", message, "take another parameter")
     lacking = [name for name in there.field.parameters if name != axis.name]
     if lacking:
         example = " ".join(f"--set {name}=1" for name in lacking[:3]) + (" ..." if len(lacking) > 3 else "")
@@ -152,7 +152,7 @@ def _lines(found: Found) -> Iterator[Line | Block]:
     from mbsym.report.words.integrals_words import sentences
 
     there, integrals = found.there, found.integrals
-    formulas = [there.formula(one.polynomial) for one in integrals.generators]
+    formulas = [there.formula(generator.polynomial) for generator in integrals.generators]
     yield from listed(integrals, integrals.field.variables, formulas)
     yield from map(ragged, sentences(integrals))
     for head, texts in _sections(found):

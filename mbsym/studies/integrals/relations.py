@@ -36,12 +36,12 @@ def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
     def write(p: Any) -> str:
         return str(there.formula(p))
 
-    for one in found.relations:
-        yield f"{write(one.polynomial)} = 0"
-        if one.conditions:
-            yield f"  where {equations_text(one.conditions, write)}"
-        if one.nonzero:
-            yield f"  provided {', '.join(f'{write(p)} != 0' for p in one.nonzero)}"
+    for relation in found.relations:
+        yield f"{write(relation.polynomial)} = 0"
+        if relation.conditions:
+            yield f"  where {equations_text(relation.conditions, write)}"
+        if relation.nonzero:
+            yield f"  provided {', '.join(f'{write(p)} != 0' for p in relation.nonzero)}"
     if not found.relations:
         yield "none was found" if not found.complete else "there are none (proved)"
     elif found.complete:
@@ -78,10 +78,10 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
         yield f"weights are {weights_text(there.field.variables, found.weights)} here"
     almost = ", for almost all values of the parameters" if there.field.parameters else ""
     length = "; unit vectors of any length" if there.vectors else ""
-    for one in found.polynomials:
-        yield f"weight {one.weight}: {there.formula(one.polynomial)} = 0"
-        yield f"  K = {there.quotient(one.cofactor, there.field.denominator)}"
-        if not one.defined:
+    for polynomial in found.polynomials:
+        yield f"weight {polynomial.weight}: {there.formula(polynomial.polynomial)} = 0"
+        yield f"  K = {there.quotient(polynomial.cofactor, there.field.denominator)}"
+        if not polynomial.defined:
             yield "  no relation of motions: it is zero nowhere, or the equations are not defined there"
     for count in found.counts:
         if not count.complete:
@@ -104,11 +104,11 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
 def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlong) -> Iterator[str]:
     """Each value of the parameter with its f and K, and what is known of other values."""
     name, interval = found.name, f"of {found.name} from {found.low} to {found.high}"
-    for one in found.values:
-        yield f"{name} = {one.value}"
-        for f in one.polynomials:
+    for special in found.values:
+        yield f"{name} = {special.value}"
+        for f in special.polynomials:
             yield f"  weight {f.weight}: {there.formula(f.polynomial)} = 0"
-            yield f"    K = {there.quotient_over(one.field, f.cofactor)}"
+            yield f"    K = {there.quotient_over(special.field, f.cofactor)}"
             if not f.defined:
                 yield "    no relation of motions: it is zero nowhere, or the equations are not defined there"
     if found.general.obstacle in UNLOOKED:

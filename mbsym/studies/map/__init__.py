@@ -85,7 +85,7 @@ class Request:
     @property
     def axes(self) -> tuple[Axis, ...]:
         """Those that are given; one that could not be read is left out."""
-        return tuple(one for one in (self.x, self.y, self.z) if one is not None)
+        return tuple(axis for axis in (self.x, self.y, self.z) if axis is not None)
 
     @cached_property
     def located(self) -> tuple[Points | None, tuple[Unfit, ...]]:
@@ -109,7 +109,7 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
         return None, (Unfit("--locate", "unreadable", f"{name}: {error.strerror or error}"),)
     except UnicodeDecodeError:
         return None, (Unfit("--locate", "unreadable", Message("[[file]] is no text in UTF-8", file=name)),)
-    found, wrong = read_points(text, axes)
+    points, wrong = read_points(text, axes)
     hint = Message("the columns [[names]] hold rational or decimal numbers", names=", ".join(axes))
     told = [Unfit(f"--locate {name}:{one.line}", "bad-point", one.message, hint) for one in wrong[:MOST_TOLD]]
     if len(wrong) > MOST_TOLD:
@@ -118,7 +118,7 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
                 f"--locate {name}", "bad-point", Message("[[count]] more lines are wrong", count=len(wrong) - MOST_TOLD)
             )
         )
-    return found, tuple(told)
+    return points, tuple(told)
 
 
 def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:

@@ -40,14 +40,14 @@ def answer(system: System, request: Request, found: Map) -> Answer:
     if doubts:
         return Answer(lines, files, doubts[:MOST_TOLD], Exit.FAILED)
     if found.interrupted:
-        missed = [one for one in found.layers if one.lack is Lack.NOT_REACHED] if isinstance(found, Stack) else []
-        told = Message("interrupted; what was proved before that is written")
+        missed = [layer for layer in found.layers if layer.lack is Lack.NOT_REACHED] if isinstance(found, Stack) else []
+        message = Message("interrupted; what was proved before that is written")
         if missed:
             text = "interrupted; [[missed]] not reached, what was proved before that is written"
-            told = Message(text, missed=Counted(len(missed), "slice"))
+            message = Message(text, missed=Counted(len(missed), "slice"))
         if isinstance(found, BoxMap):
-            told = joined((told, Message("other boxes are white")), "; ")
-        return Answer(lines, files, (told,), Exit.INTERRUPTED)
+            message = joined((message, Message("other boxes are white")), "; ")
+        return Answer(lines, files, (message,), Exit.INTERRUPTED)
     return Answer(lines, files)
 
 
@@ -55,24 +55,24 @@ def _doubts(found: Map) -> Iterator[str]:
     """What the map's own check does not confirm."""
     from mbsym.report.maps.figure import number
 
-    withdrawn = [one.number for one in found.regions if one.lack is Lack.WITHDRAWN]
+    withdrawn = [region.number for region in found.regions if region.lack is Lack.WITHDRAWN]
     if isinstance(found, EquilibriaMap) and withdrawn:
         text = "withdrawn, as another point has another number: regions [[regions]]"
         yield Message(text, regions=", ".join(map(str, withdrawn)))
     if not isinstance(found, Stack):
         yield from _findings(found, "")
         return
-    for one in found.layers:
-        at = f"{found.axis.name} = {number(one.z)}"
-        if not one.confirmed:
+    for layer in found.layers:
+        at = f"{found.axis.name} = {number(layer.z)}"
+        if not layer.confirmed:
             text = (
                 "at [[at]] the map's own check fails: the slice at [[second]], between the same critical "
                 "values, does not "
                 "correspond to it"
             )
-            yield Message(text, at=at, second=number(one.second))
-        if one.plane is not None:
-            yield from _findings(one.plane, at)
+            yield Message(text, at=at, second=number(layer.second))
+        if layer.plane is not None:
+            yield from _findings(layer.plane, at)
 
 
 def _findings(found: Map, at: str) -> Iterator[str]:
@@ -85,8 +85,8 @@ def _findings(found: Map, at: str) -> Iterator[str]:
         elif one.corner is not None:
             what = Message("corner [[number]]", number=one.corner)
         text = "withdrawn, as the map's own check fails in [[what]]: [[mistake]]"
-        told = Message(text, what=what, mistake=one.mistake)
-        yield joined((f"{at}:", told)) if at else told
+        message = Message(text, what=what, mistake=one.mistake)
+        yield joined((f"{at}:", message)) if at else message
 
 
 def files_of(
@@ -165,15 +165,15 @@ def _picture(found: Stack, picture: Picture) -> tuple[str, str, str]:
     if shown.plane is not None:
         return told, number(shown.z), _seen(shown.plane)
     assert shown.lack is not None
-    broken = ", ".join(dict.fromkeys(one.condition.about for one in shown.broken))
+    broken = ", ".join(dict.fromkeys(demand.condition.about for demand in shown.broken))
     return told, "", joined((Message(LACKS[shown.lack]), *([broken] if broken else [])), ": ")
 
 
 def _seen(plane: Map) -> str:
     """What is said, each with what part of the slice it has, the largest first."""
     rows: dict[Message, float] = {}
-    for one, (area, _) in zip(plane.regions, plane.areas, strict=True):
-        words = cell_words(plane, one)
+    for region, (area, _) in zip(plane.regions, plane.areas, strict=True):
+        words = cell_words(plane, region)
         rows[words] = rows.get(words, 0.0) + area
     largest = sorted(rows.items(), key=lambda item: -item[1])
     return joined((joined((words, f"{100 * area / plane.whole:.3g}%")) for words, area in largest), ", ")
@@ -197,7 +197,7 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
         text = "not expressible in the axes, so not looked at: [[conditions]]"
         told.append(Message(text, conditions=", ".join(found.admissibility.left_out)))
     planes = found.planes if isinstance(found, Stack) else [found]
-    large = sum(one.lack is Lack.TOO_LARGE for plane in planes for one in plane.cells)
+    large = sum(cell.lack is Lack.TOO_LARGE for plane in planes for cell in plane.cells)
     if large:
         text = "no verdict at [[points]] between regions: too large to be decided"
         told.append(Message(text, points=Counted(large, "exact point")))
@@ -208,7 +208,7 @@ def remarks(found: Map, system: System | None = None) -> list[str]:
 
 def _of_cells(found: Map) -> list[str]:
     if len(found.axes) == 1:
-        corners = [one for one in found.corners if found.drawn(one)]
+        corners = [corner for corner in found.corners if found.drawn(corner)]
         told: list[str] = [
             Message("at [[point]]: [[why]]", point=_exactly(x.sample), why=_why(found, x)) for x in corners
         ]
@@ -227,12 +227,12 @@ def _of_cells(found: Map) -> list[str]:
             "corners": Counted(corners_, "corner"),
         }
         told = [Message(text, **gaps)]
-    kept = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
-    if all(one.origin in kept for conditions in found.boundaries.conditions for one in conditions):
+    origins = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
+    if all(condition.origin in origins for conditions in found.boundaries.conditions for condition in conditions):
         told.append(Message("no condition of stability depends on the axes"))
-    if not any(one.judged is not None for one in found.regions):
+    if not any(region.judged is not None for region in found.regions):
         told.append(Message("no verdict anywhere: map.json says at every point what is not kept there"))
-    vanishing = dict.fromkeys(condition_words(one, found) for one in found.boundaries.vanishing)
+    vanishing = dict.fromkeys(condition_words(condition, found) for condition in found.boundaries.vanishing)
     return told + [Message("an equality everywhere: [[condition]]", condition=words) for words in vanishing]
 
 
@@ -261,14 +261,14 @@ def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
     if found.unfinished:
         told = [Message("not proved between samples: [[what]]", what=joined(found.unfinished, "; "))]
     told.append(Message("on the curves and where they meet: not counted"))
-    if any(one.counted is not None and one.counted.throughout for one in found.regions):
+    if any(region.counted is not None and region.counted.throughout for region in found.regions):
         text = "'stable' without 'at the sample': at least so many in the whole region, by the signs of K"
         told.append(Message(text))
     if system is not None and system.assumptions:
         text = "the assumptions of the description, and triangle inequalities of inertias, are not looked at"
         told.append(Message(text))
-    asked = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
-    if asked:
+    counteds = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
+    if counteds:
         text = (
             "check at another point of [[regions]]: Newton's method from many points finds no more than "
             "the list there; "
@@ -279,17 +279,17 @@ def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
                 "check at another point of [[regions]]: the exact numbers agree, and Newton's method from many points "
                 "finds no more than the list there; as many as at the sample in [[same]]"
             )
-        same = Counted(sum(one.confirmed == one.count for one in asked), "region")
-        told.append(Message(text, regions=Counted(len(asked), "region"), same=same))
-    if any(one.lack is Lack.INCOMPLETE for one in found.regions):
+        same = Counted(sum(counted.confirmed == counted.count for counted in counteds), "region")
+        told.append(Message(text, regions=Counted(len(counteds), "region"), same=same))
+    if any(region.lack is Lack.INCOMPLETE for region in found.regions):
         told.append(Message("where the list is not complete nothing is counted"))
     return told
 
 
 def _of_stack(found: Stack) -> list[str]:
     name = found.axis.name
-    critical = [one for one in found.layers if one.critical]
-    unseen = [one for one in critical if one.lack is not None and not one.broken]
+    critical = [layer for layer in found.layers if layer.critical]
+    unseen = [layer for layer in critical if layer.lack is not None and not layer.broken]
     text = "the curves are arranged in one way at all values of [[name]], and regions keep their verdicts"
     told: list[str] = [Message(text, name=name)]
     if critical:
@@ -300,10 +300,10 @@ def _of_stack(found: Stack) -> list[str]:
         )
         told = [Message(text, values=Counted(len(critical), "value"), name=name)]
     if unseen:
-        irrational = sum(not isinstance(one.z, fmpq) for one in unseen)
+        irrational = sum(not isinstance(layer.z, fmpq) for layer in unseen)
         text = "at [[count]] of these values nothing was looked at ([[irrational]] are irrational)"
         told.append(Message(text, count=len(unseen), irrational=irrational))
-    if any(one.unseen and len(one.layers) > 1 for one in found.pictures):
+    if any(picture.unseen and len(picture.layers) > 1 for picture in found.pictures):
         told.append(
             Message(("* but for single values of [[name]] that were not looked at: map.json lists them"), name=name)
         )
@@ -314,15 +314,15 @@ def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the nonlinear system shows at single points where the first approximation and the energy show nothing."""
     decided: dict[str, list[str]] = {}
     for plane in planes:
-        for one in plane.cells:
-            if one.nonlinear is not None:
-                point: tuple[Any, ...] = (one.sample,)
-                if isinstance(one.sample, Point):
-                    point = (one.sample.x, one.sample.y)
+        for cell in plane.cells:
+            if cell.nonlinear is not None:
+                point: tuple[Any, ...] = (cell.sample,)
+                if isinstance(cell.sample, Point):
+                    point = (cell.sample.x, cell.sample.y)
                 if isinstance(found, Stack):  # the slice's own value; without a rational one nothing is asked
                     point = (*point, plane.values[found.axis.name])
                 at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(found.axes, point, strict=True))
-                decided.setdefault(one.nonlinear.word.value, []).append(at)
+                decided.setdefault(cell.nonlinear.word.value, []).append(at)
     for word, places in decided.items():
         where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
         text = "[[verdict]] by the nonlinear system, at the exact point alone: [[points]]"
@@ -331,8 +331,8 @@ def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
 
 def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the map's own check tried, where it confirms all."""
-    checks = [one.check for one in planes if one.check is not None]
-    points = sum(one.points for one in checks)
+    checks = [plane.check for plane in planes if plane.check is not None]
+    points = sum(check.points for check in checks)
     if not found.sound or not points:
         return
     if isinstance(found, BoxMap):
@@ -341,7 +341,7 @@ def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
         return
     more = Counted(points, "more point")
     if isinstance(found, Stack):
-        seconds = sum(one.second is not None and one.confirmed for one in found.layers)
+        seconds = sum(layer.second is not None and layer.confirmed for layer in found.layers)
         if seconds and any(x.critical for x in found.layers):
             text = (
                 "check: [[points]] in regions agree; a second slice between each two of the values, "
@@ -352,14 +352,14 @@ def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
         elif seconds:
             yield Message("check: [[points]] in regions agree; a second slice corresponds to the first", points=more)
         return
-    arcs, enclosed = sum(one.arcs for one in checks), sum(one.enclosed for one in checks)
-    told = Message("check: [[points]] in regions agree", points=more)
+    arcs, enclosed = sum(check.arcs for check in checks), sum(check.enclosed for check in checks)
+    message = Message("check: [[points]] in regions agree", points=more)
     if arcs:
-        told = Message("check: [[points]] in regions and [[arcs]] agree", points=more, arcs=Counted(arcs, "arc"))
+        message = Message("check: [[points]] in regions and [[arcs]] agree", points=more, arcs=Counted(arcs, "arc"))
     by_balls = Message("eigenvalues in balls exclude none of the counts, and decide none")
     if enclosed:
         by_balls = Message("at [[count]] of them eigenvalues in balls confirm the counts", count=enclosed)
-    yield joined((told, by_balls), "; ")
+    yield joined((message, by_balls), "; ")
 
 
 #: So many points are told; map.json has all.
@@ -381,10 +381,10 @@ def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
     """How stability is lost at imaginary pairs in all slices, counted; map.json has each arc."""
     arcs = [one for plane in planes for one in plane.arcs if one.soft is not None]
     for onset, words in ONSETS.items():
-        alike = sum(_onset(one) is onset for one in arcs)
+        alike = sum(_onset(arc) is onset for arc in arcs)
         if alike:
             yield Message("imaginary pair, [[arcs]] of slices: [[onset]]", arcs=Counted(alike, "arc"), onset=words)
-    changing = sum(_onset(one) is None for one in arcs)
+    changing = sum(_onset(arc) is None for arc in arcs)
     if changing:
         text = "imaginary pair, [[arcs]] of slices: soft in parts, hard in others"
         yield Message(text, arcs=Counted(changing, "arc"))
@@ -392,34 +392,34 @@ def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
 
 def borders(found: Map) -> Iterator[str]:
     """Where a pair of roots is imaginary and the others are to the left: how stability is lost."""
-    soft = [one for one in found.borders if one.soft is not None]
+    soft = [border for border in found.borders if border.soft is not None]
     for onset, words in ONSETS.items():
         alike = [_place(found, one) for one in soft if _onset(one) is onset]
         if alike:
             yield Message("imaginary pair, [[places]]: [[onset]]", places=joined(alike, ", "), onset=words)
-    for one in soft:
-        stretches = one.soft.stretches or () if one.soft is not None else ()
+    for cell in soft:
+        stretches = cell.soft.stretches or () if cell.soft is not None else ()
         if len(stretches) > 1:
             name = found.axes[stretches[0].axis].name
             ends = [(x.onset, f"{float_of(x.start):.6g}", f"{float_of(x.end):.6g}") for x in stretches]
             text = "[[onset]] for [[name]] from [[start]] to [[end]]"
             parts = [Message(text, onset=Message(o), name=name, start=start, end=end) for o, start, end in ends]
-            told = joined(parts, "; ")
-            yield Message("imaginary pair, [[places]]: [[onset]]", places=_place(found, one), onset=told)
+            message = joined(parts, "; ")
+            yield Message("imaginary pair, [[places]]: [[onset]]", places=_place(found, cell), onset=message)
 
 
-def _onset(one: Cell) -> Onset | None:
+def _onset(cell: Cell) -> Onset | None:
     """That of the whole place; None where it is different along an arc."""
-    if one.soft is None or len(one.soft.stretches or ()) > 1:
+    if cell.soft is None or len(cell.soft.stretches or ()) > 1:
         return None
-    return one.soft.onset
+    return cell.soft.onset
 
 
-def _place(found: Map, one: Cell) -> Message:
+def _place(found: Map, cell: Cell) -> Message:
     if len(found.axes) == 1:
-        return Message("at [[point]]", point=f"{float_of(one.sample):.10g}")
-    partial = one.soft is not None and one.soft.stretches is None
-    return Message("arc [[number]] (at its point in map.json)" if partial else "arc [[number]]", number=one.number)
+        return Message("at [[point]]", point=f"{float_of(cell.sample):.10g}")
+    partial = cell.soft is not None and cell.soft.stretches is None
+    return Message("arc [[number]] (at its point in map.json)" if partial else "arc [[number]]", number=cell.number)
 
 
 def _exactly(x: Any) -> str:
@@ -430,11 +430,11 @@ def _exactly(x: Any) -> str:
     return Message(text, digits=f"{float(x):.10g}", degree=int(x.polynomial.degree()))
 
 
-def _why(found: Map, one: Cell) -> Message:
+def _why(found: Map, cell: Cell) -> Message:
     """The condition that is an equality there, and what is said of the point."""
-    of = [found.boundaries.conditions[k] for k in found.place(one).factors]
+    of = [found.boundaries.conditions[k] for k in found.place(cell).factors]
     words = joined(dict.fromkeys(condition_words(telling(x), found) for x in of), "; ")
-    border = one.judged.border if one.judged is not None else None
+    border = cell.judged.border if cell.judged is not None else None
     return words if border is None else joined((words, Message(border)), ": ")
 
 

@@ -243,14 +243,14 @@ def _places(run: Simulation, kinds: Sequence[str]) -> dict[str, bytes]:
     from mbsym.numerics.states import StateDynamics, in_coordinates
     from mbsym.report.figures.motion_figure import motion_figures
 
-    trajectory, dynamics, given = run.trajectory, run.dynamics, run.given
+    trajectory, dynamics, scenario = run.trajectory, run.dynamics, run.given
     assert isinstance(dynamics, StateDynamics)
     every = -(-len(trajectory.times) // min(MOST_DRAWN, MOST_PLACES // (3 * len(run.system.bodies))))
     rows = in_coordinates(dynamics, trajectory.states[:, ::every])
-    if rows is None or given is None or len(trajectory.times) < 2:
+    if rows is None or scenario is None or len(trajectory.times) < 2:
         return {}
     try:
-        plain = replace(given, system=dynamics.plain)
+        plain = replace(scenario, system=dynamics.plain)
         places = positions(plain, trajectory.times[::every], np.vstack([rows, np.zeros_like(rows)]))
     except Failure:
         return {}

@@ -109,8 +109,8 @@ def _several(texts: str | Iterable[str]) -> tuple[str, ...]:
 
 def settled(asked: Asked, request: Command) -> Settled:
     """What the options say, held against each other, before anything is compiled."""
-    given, typed, wrong = asked.scenario, asked.typed, Reasons()
-    system = asked.system if given is None else given.system
+    scenario, typed, wrong = asked.scenario, asked.typed, Reasons()
+    system = asked.system if scenario is None else scenario.system
     seen = integrated(system, request.variables or simulation.request.DECLARED)
     _check_names(typed, wrong)
     wanted = basic(request, seen, wrong)
@@ -123,7 +123,7 @@ def settled(asked: Asked, request: Command) -> Settled:
         times = {"step": f"{request.step:g}", "time": f"{request.time:g}"}
         wrong.complain("--step", "bad-number", Message(longer, **times))
     if request.method is not None:
-        _check_method(system, {} if given is None else given.parameters, wanted, typed, wrong)
+        _check_method(system, {} if scenario is None else scenario.parameters, wanted, typed, wrong)
     if "variables" in typed and request.variables is not None and not system.speeds:
         hint = "coordinates and their velocities are integrated; leave --variables out"
         wrong.complain("--variables", "idle-option", "the description declares no speeds", hint)
@@ -132,12 +132,12 @@ def settled(asked: Asked, request: Command) -> Settled:
         wanted = _fixed(wanted, request.fixed, system, wrong)
     if request.path is not None:
         wanted = _continued(wanted, request.path, system, wrong)
-        wanted = _going_on(wanted, _begun_at(given, wanted), typed, wrong)
+        wanted = _going_on(wanted, _begun_at(scenario, wanted), typed, wrong)
     _check_held(wanted, system, bool({"vary", "sensitivity"} & set(typed)), wrong)
     if request.vary or "vary" in typed:
-        _check_varied(request, wanted, given, typed, wrong)
-    if "sensitivity" in typed and given is not None:
-        _sensitive(request.sensitivity, given, wrong)
+        _check_varied(request, wanted, scenario, typed, wrong)
+    if "sensitivity" in typed and scenario is not None:
+        _sensitive(request.sensitivity, scenario, wrong)
     _check_constrained(system, wanted, wrong)
     _check_states(seen, wanted, request.formats, wrong)
     if request.accuracy is None:
@@ -189,12 +189,12 @@ def _fixed(request: Run, names: Sequence[str], system: System, wrong: Reasons) -
 
 
 def _check_varied(
-    request: Command, wanted: Run, given: Scenario | None, typed: Mapping[str, Any], wrong: Reasons
+    request: Command, run: Run, scenario: Scenario | None, typed: Mapping[str, Any], wrong: Reasons
 ) -> None:
     """Complains of what an ensemble does not know, and of what cannot vary."""
     from mbsym.numerics.ensembles.variation import Grid, complaints_of
 
-    _check_members(wanted, request.formats, wrong)
+    _check_members(run, request.formats, wrong)
     variations = variations_of(request)
     if variations and all(isinstance(variation, Grid) for variation in variations):
         for option in (f"--{name}" for name in ("sampling", "seed") if name in typed):
@@ -202,14 +202,14 @@ def _check_varied(
             drawn = Message(words, option=option, name=variations[0].name)
             wrong.complain(option, "conflicting-options", drawn, "draw it: name=uniform(low, high)")
     unread = request.vary is None or request.seed is None or request.sampling is None
-    if given is None or unread or ("members" in typed and request.members is None):
+    if scenario is None or unread or ("members" in typed and request.members is None):
         return
-    for name, message, hint in complaints_of(given.system, variations, request.members):
+    for name, message, hint in complaints_of(scenario.system, variations, request.members):
         wrong.complain(f"--vary {name}", "bad-variation", message, hint or None)
 
 
 def variations_of(request: Command) -> tuple[Variation, ...]:
-    return tuple(one.variation for one in request.vary or ())
+    return tuple(varied.variation for varied in request.vary or ())
 
 
 def _check_rows(system: System, end: float | None, every: float | None, samples: int | None, wrong: Reasons) -> None:
@@ -256,8 +256,8 @@ def _check_method(
 
     name = request.method
     has_step, has_tolerance = "step" in typed, "tolerance" in typed
-    given = METHODS.get(name)
-    if has_step and has_tolerance and not (given is not None and given.traits.fixed):
+    method = METHODS.get(name)
+    if has_step and has_tolerance and not (method is not None and method.traits.fixed):
         hint = "a method takes one or the other"
         wrong.complain("--step", "conflicting-options", "--step and --tolerance exclude each other", hint)
     fixed = ", ".join(key for key, other in METHODS.items() if other.traits.fixed)
@@ -369,7 +369,7 @@ def _check_states(system: System, request: Run, formats: Sequence[str], wrong: R
         wrong.complain("--method", "unsuitable-method", Message(text, method=request.method), these)
 
 
-def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
+def _sensitive(named: tuple[str, ...], scenario: Scenario, wrong: Reasons) -> None:
     """Complains of what the motion cannot be differentiated by."""
     if not named:
         wrong.complain(
@@ -378,7 +378,7 @@ def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
             "there is no name in it",
             Message("for example [[example]]", example="theta,m1"),
         )
-    system = given.system
+    system = scenario.system
     known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
     following = {relation.name for relation in system.relations}
     for name in named:
@@ -392,19 +392,19 @@ def _sensitive(named: tuple[str, ...], given: Scenario, wrong: Reasons) -> None:
         elif name in following:
             message = Message("[[name]] follows from other parameters", name=name)
             wrong.complain("--sensitivity", "bad-variation", message, "name those of which its relation is made")
-    if _jumps(given):
+    if _jumps(scenario):
         jumps = "the rates hold sign, abs or step, and derivatives of the motion would miss what their switches do"
         way = "compare runs: --vary with two or three values close together"
         wrong.complain("--sensitivity", "not-smooth", jumps, way)
 
 
-def _jumps(given: Scenario) -> bool:
+def _jumps(scenario: Scenario) -> bool:
     """Whether the rates have switches; False where there are no rates, which is told later."""
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.dynamics import Dynamics
 
     try:
-        return bool(Dynamics(given).switches.outputs)
+        return bool(Dynamics(scenario).switches.outputs)
     except Failure:
         return False
 
@@ -426,20 +426,20 @@ def _continued(request: Run, path: Path, system: System, wrong: Reasons) -> Run:
     return replace(request, earlier=earlier)
 
 
-def _begun_at(given: Scenario | None, request: Run) -> Scenario | None:
+def _begun_at(scenario: Scenario | None, request: Run) -> Scenario | None:
     """With the initial state that a run takes; what was given where there is an answer to that question only later."""
-    if given is None or not given.system.constraints or request.earlier is None:
-        return given
+    if scenario is None or not scenario.system.constraints or request.earlier is None:
+        return scenario
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.closing import closed
 
     try:
-        return closed(given, request.fixed).scenario
+        return closed(scenario, request.fixed).scenario
     except Failure:
-        return given
+        return scenario
 
 
-def _going_on(request: Run, given: Scenario | None, typed: Mapping[str, Any], wrong: Reasons) -> Run:
+def _going_on(request: Run, scenario: Scenario | None, typed: Mapping[str, Any], wrong: Reasons) -> Run:
     """The request, integrated as the earlier run was but for what was ``typed``; what does not fit is complained about.
 
     The model and the arithmetic stay: rows of two models, or of a state that was rounded on the way, are no run.
@@ -462,11 +462,11 @@ def _going_on(request: Run, given: Scenario | None, typed: Mapping[str, Any], wr
     elif earlier.arithmetic not in METHODS[request.method].traits.scalars:
         words = "--method [[method]] does not go with --continue: that run was one in [[arithmetic]]"
         message = Message(words, method=request.method, arithmetic=earlier.arithmetic)
-        able = ", ".join(name for name, one in METHODS.items() if earlier.arithmetic in one.traits.scalars)
+        able = ", ".join(name for name, method in METHODS.items() if earlier.arithmetic in method.traits.scalars)
         wrong.complain(
             "--method", "conflicting-options", message, Message("these compute in it: [[names]]", names=able)
         )
-    _check_values(request, given, wrong)
+    _check_values(request, scenario, wrong)
     return request
 
 
@@ -481,13 +481,13 @@ def _as_before(request: Run, earlier: Earlier, typed: Mapping[str, Any], wrong: 
     return replace(request, method=earlier.method, tolerance=tolerance, step=earlier.step)
 
 
-def _check_values(request: Run, given: Scenario | None, wrong: Reasons) -> None:
+def _check_values(request: Run, scenario: Scenario | None, wrong: Reasons) -> None:
     """Complains about values that are not those of the run that is gone on from."""
     from mbsym.report.runs.earlier_run import changed
 
-    if request.earlier is None or given is None:
+    if request.earlier is None or scenario is None:
         return
-    different = list(changed(request.earlier, given))
+    different = list(changed(request.earlier, scenario))
     if different:
         message = Message("that run had other values: [[values]]", values=joined(different, "; "))
         wrong.complain("--continue", "unfit-run", message, "repeat the --set of that run, or leave out --continue")
@@ -555,13 +555,13 @@ def derived(asked: Asked, request: Command, watch: Watch) -> Result:
 def _derived(asked: Asked, request: Command, watch: Watch) -> Result:
     from mbsym.algebra.failures import Failure
 
-    given, settling = asked.motion, settled(asked, request)
+    scenario, settling = asked.motion, settled(asked, request)
     wanted = settling.request
     if settling.goal is not None and request.plan:
         from mbsym.simulation.accurate import plan_for
 
         watch(PLANNING)
-        return Planned(*plan_for(given, wanted, *settling.goal))
+        return Planned(*plan_for(scenario, wanted, *settling.goal))
     if request.vary:
         return _many(asked, request, wanted, watch)
     at, stage = _watched(wanted.time, watch)
@@ -569,17 +569,17 @@ def _derived(asked: Asked, request: Command, watch: Watch) -> Result:
     if settling.goal is not None:
         from mbsym.simulation.accurate import simulate_accurately
 
-        run = simulate_accurately(given, stored, *settling.goal, at, stage)
+        run = simulate_accurately(scenario, stored, *settling.goal, at, stage)
     else:
-        run = simulation.simulate(given, stored, at, stage)
+        run = simulation.simulate(scenario, stored, at, stage)
     result = Motion(run)
     if request.sensitivity and run.whole:
         from mbsym.simulation.motions import sensitivities
 
         watch("how it answers to changes")
         try:
-            values = simulation.read_values(given.system, request.values)
-            result = Motion(run, sensitivities(given, wanted, request.sensitivity, values))
+            values = simulation.read_values(scenario.system, request.values)
+            result = Motion(run, sensitivities(scenario, wanted, request.sensitivity, values))
         except (Failure, KeyboardInterrupt) as error:  # what was integrated is written all the same
             result = Motion(run, stopped=error)
     watch("drawing")
@@ -612,16 +612,16 @@ def _watched(time: float, watch: Watch) -> tuple[Callable[[float], None], Stage]
     return lambda t: watch(doing[-1], t, time), stage
 
 
-def _many(asked: Asked, request: Command, wanted: Run, watch: Watch) -> Many:
+def _many(asked: Asked, request: Command, run: Run, watch: Watch) -> Many:
     """Curves of a few members are runs of their own; none where one of these has no scenario."""
     from mbsym.expressions.tree import number
     from mbsym.numerics.scenario import Incomplete, scenario
     from mbsym.simulation.ensembles import Spread, simulate_many
 
     given, variations = asked.motion, variations_of(request)
-    spread = Spread(wanted, variations, request.members, request.seed, request.sampling)
+    spread = Spread(run, variations, request.members, request.seed, request.sampling)
     values = simulation.read_values(given.system, request.values)
-    ensemble = simulate_many(given, spread, values, watch=lambda t: watch("", t, wanted.time))
+    ensemble = simulate_many(given, spread, values, watch=lambda t: watch("", t, run.time))
     few: dict[Member, simulation.Simulation] = {}
     drawn = set(request.formats) - {"csv"} and not ensemble.interrupted
     for member in _few(variations) if drawn else ():
@@ -633,8 +633,8 @@ def _many(asked: Asked, request: Command, wanted: Run, watch: Watch) -> Many:
             return Many(ensemble)
         few[member] = simulation.simulate(
             begun,
-            replace(wanted, estimate=False),
-            lambda t, name=name: watch(name, t, wanted.time),  # type: ignore[misc]
+            replace(run, estimate=False),
+            lambda t, name=name: watch(name, t, run.time),  # type: ignore[misc]
         )
     watch("drawing")
     return Many(ensemble, few)
@@ -644,7 +644,7 @@ def _few(variations: Sequence[Variation]) -> tuple[Member, ...]:
     """The members by what varies, where they are grids of no more than can be drawn beside each other."""
     from mbsym.numerics.ensembles.variation import Grid
 
-    grids = [one for one in variations if isinstance(one, Grid)]
-    if len(grids) < len(variations) or prod(one.count for one in grids) > MOST_BESIDE:
+    grids = [variation for variation in variations if isinstance(variation, Grid)]
+    if len(grids) < len(variations) or prod(grid.count for grid in grids) > MOST_BESIDE:
         return ()
-    return tuple(product(*([(one.name, float(value)) for value in one.values] for one in grids)))
+    return tuple(product(*([(grid.name, float(value)) for value in grid.values] for grid in grids)))

@@ -83,8 +83,8 @@ def ensemble(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
-    asked = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
-    return simulate_many(scenario(system, read, declared=True), asked, read, threads)
+    spread = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
+    return simulate_many(scenario(system, read, declared=True), spread, read, threads)
 
 
 def sensitivities(
