@@ -156,7 +156,10 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         return _section(analysis, axes, settings, None, found)
     except Unfit as unfit:
         constant = None
-        if len(axes) <= MOST_BESIDE and {complaint.fault for complaint in unfit.complaints} == {Fault.IRRATIONAL}:
+        varied = {*(axis.name for axis in axes), *settings}  # of these the description's value is not the one here
+        described = not any(analysis.ring.generators[k].name in varied for k in found)
+        faults = {complaint.fault for complaint in unfit.complaints}
+        if described and len(axes) <= MOST_BESIDE and faults == {Fault.IRRATIONAL}:
             constant = constant_of(analysis.system, analysis.ring, found)
         if constant is None:
             raise
