@@ -164,5 +164,5 @@ def test_an_angle_that_varies_has_not_the_value_of_the_description(given: str, t
     proved = [cell for cell in box_map(analysis, axes, {}).cells if cell.judged is not None]
     assert {cell.judged.verdict.word for cell in proved} == {Word.STABLE, Word.UNSTABLE}
     for cell in proved:
-        a, c = map(float, cell.sample)
+        a, c = (float(Fraction(int(v.p), int(v.q))) for v in (cell.sample.x, cell.sample.y))
         assert (cell.judged.verdict.word is Word.STABLE) == (cos(a) + c > 3 / 2)
