@@ -158,8 +158,7 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         constant = None
         varied = {*(axis.name for axis in axes), *settings}  # of these the description's value is not the one here
         described = not any(analysis.ring.generators[k].name in varied for k in found)
-        faults = {complaint.fault for complaint in unfit.complaints}
-        if described and len(axes) <= MOST_BESIDE and faults == {Fault.IRRATIONAL}:
+        if described and len(axes) <= MOST_BESIDE and unfit.irrational:
             constant = constant_of(analysis.system, analysis.ring, found)
         if constant is None:
             raise
@@ -355,6 +354,11 @@ class Unfit(Failure):
     def __init__(self, complaints: Sequence[Complaint]) -> None:
         super().__init__("; ".join(f"{one.name}: {one.fault.value} {one.about}".rstrip() for one in complaints))
         self.complaints = tuple(complaints)
+
+    @property
+    def irrational(self) -> bool:
+        """Whether nothing else is wrong than that matrices are not rational in the axes."""
+        return {complaint.fault for complaint in self.complaints} == {Fault.IRRATIONAL}
 
 
 def numbers_given(

@@ -93,7 +93,7 @@ def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfi
                 yield Unfit("--set", "outside", message, "choose other values, or another interval")
             case Fault.IRRATIONAL:
                 message = Message("the matrices hold what is no rational number there: [[what]]", what=worded(one.name))
-                remedy = "choose values at which roots and angles are rational; 'mbsym run --set' judges any one point"
+                remedy = "choose values at which roots and angles are rational; 'mbsym sweep' judges stability at any"
                 yield Unfit("--set", "irrational", message, remedy)
             case Fault.SINGULAR:
                 message = Message("a division by zero in [[what]]", what=worded(one.name))
