@@ -15,8 +15,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.expressions.message import GAP
 
 ROOT = Path(mbsym.__file__).parent
-#: The layers whose refusals can stand in a report.
-LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "problems")
+#: The layers whose refusals can stand in a report, or on a page.
+LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "picture", "problems", "report/viewer")
 #: What is said before a reason, by the function that says it, and which argument that is.
 BEFORE = {"refused": 0, "failed": 1}
 #: Where among the arguments of a complaint about an option the message stands; a hint follows.
@@ -44,7 +44,7 @@ class Module(ast.NodeVisitor):
     def __init__(self, name: str, tree: ast.Module, refusals: frozenset[str]) -> None:
         self.name = name
         self.refusals = refusals
-        self.layered = self.name.split("/")[0] in LAYERS
+        self.layered = self.name.startswith(tuple(f"{layer}/" for layer in LAYERS))
         # Files of robots say nothing of their language.
         self.of_descriptions = self.name.startswith(("source/", "expressions/")) and "/robots/" not in self.name
         self.texts: list[Asked] = []

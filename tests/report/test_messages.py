@@ -102,7 +102,7 @@ def test_no_message_is_left_of_what_is_said_no_longer() -> None:
 def told() -> list[said.Module]:
     """All modules, with every kind of refusal imported."""
     for one in pkgutil.walk_packages(mbsym.__path__, "mbsym."):
-        if one.name.split(".")[1] in said.LAYERS:
+        if one.name.replace(".", "/").startswith(tuple(f"mbsym/{layer}" for layer in said.LAYERS)):
             importlib.import_module(one.name)
     return list(said.modules())
 
