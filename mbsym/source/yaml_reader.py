@@ -15,6 +15,7 @@ import yaml
 from mbsym.expressions.message import Message
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.safe import hides
+from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.placed import MAX_DEPTH, Entry, Mapping, Node, Scalar, Sequence
 
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -110,12 +111,18 @@ def _key_without_colon(text: str, error: yaml.MarkedYAMLError) -> Scalar | None:
     return Scalar(whole, Span(line + 1, 1)).part(column, len(whole))
 
 
+#: Keys of more than a word; other keys, and names, are one.
+_KNOWN = [key for keys in (SYSTEM, BODY, LOADS, CONSTRAINTS) for key in keys if " " in key]
+
+
 def _hint(error: yaml.MarkedYAMLError, key: Scalar | None) -> str | None:
     problem = error.problem or ""
     if key is not None:
-        name, _, value = key.text.rpartition(" ")
+        first = key.text.partition(" ")[0]
+        name = max((one for one in _KNOWN if key.text.startswith(f"{one} ")), key=len, default=first)
+        value = key.text[len(name) :].strip()
         text = "a key ends with a colon and a blank: write [[name]]: [[value]]"
-        return Message(text, name=name, value=value) if name else Message("a key ends with a colon and a blank")
+        return Message(text, name=name, value=value) if value else Message("a key ends with a colon and a blank")
     if "expected '-' indicator" in problem:
         return Message(
             "items of a list begin with '- ', one below the other; their other lines begin below the first key"

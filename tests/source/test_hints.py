@@ -52,6 +52,9 @@ WRONG = [
     ("about", "    inertia about: mass"),
     ("about", "    inertia about: joints"),
     ("about", ""),
+    ("mass", "    mass 2*m + 1"),
+    ("centre", "    mass centre [0, -l, 0]"),
+    ("about", "    inertia about mass centre"),
     ("mass", "    mass: 2 m"),
     ("mass", "    mass: 2m"),
     ("mass", "    mass: 0,5"),
@@ -187,6 +190,8 @@ def followed(text: str, complaint: Complaint) -> str:
     if beside := re.match(r"'(inertia about: joint)'", hint):
         lines.insert(span.line, "    " + beside.group(1))
         return "\n".join(lines)
+    if colon := re.match(r"a key ends with a colon and a blank: write (.+)", hint):
+        return replaced(colon.group(1))
     if code == "missing-key" and (key := re.match(r"write (\w+: \S+)", hint)):
         lines.insert(span.line, "    " + key.group(1))
         return "\n".join(lines)
