@@ -94,8 +94,8 @@ def _judged(found: Exponents) -> Message:
             return Message("the motion is a rest, and neighbouring motions leave it exponentially over this time")
         case Parting.POSITIVE if found.planar:
             return Message(
-                "neighbouring motions part exponentially over this time; two variables and no time in the equations: "
-                "none of their motions is chaotic"
+                "neighbouring motions part exponentially over this time; states of two dimensions and no time in the "
+                "equations: none of their motions is chaotic"
             )
         case Parting.POSITIVE:
             return Message(
@@ -115,7 +115,8 @@ def _judged(found: Exponents) -> Message:
         return Message(
             "the largest exponent is not distinguishable from zero, which takes three times its "
             "uncertainty and three times "
-            "log(T)/T = [[bound]]; two variables and no time in the equations: none of their motions is chaotic",
+            "log(T)/T = [[bound]]; states of two dimensions and no time in the equations: none of their motions is "
+            "chaotic",
             bound=bound,
         )
     if found.falling:
