@@ -210,4 +210,6 @@ def test_a_parameter_under_a_cosine_has_no_map() -> None:
         "loads: [force function: -(cos(a) + c - 3/2)*x**2/2 - x**4]\nmotion: {}\n"
     ).system
     with pytest.raises(NoClosedForm, match="a stands in"):
-        equilibria_map(system, (Axis("a", Fraction(0), Fraction(2)), Axis("c", Fraction(0), Fraction(2))), {}, unwatched)
+        equilibria_map(
+            system, (Axis("a", Fraction(0), Fraction(2)), Axis("c", Fraction(0), Fraction(2))), {}, unwatched
+        )
