@@ -203,7 +203,7 @@ def test_every_word_is_translated() -> None:
 
 
 def test_a_parameter_under_a_cosine_has_no_map() -> None:
-    """x (cos(a) + c - 3/2) + 4 x^3 = 0: one rest or three by the sign of the bracket, which no polynomial in a tells."""
+    """x (cos(a) + c - 3/2) + 4 x^3 = 0: one rest or three by the sign of the bracket, no polynomial in a."""
     system = mbsym.loads(
         "mbsym: 1\nname: fork\nparameters: {a: real, c: real}\n"
         "bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]\n"
