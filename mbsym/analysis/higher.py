@@ -109,7 +109,7 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
     """A verdict that is on a border for all parameters, decided by the first term of V(x) of the one coordinate.
 
     Where its sign is not known, the condition is told.  With damping of first order, x' = -V'(x)/d on the centre
-    manifold, else by the energy.
+    manifold, else by the energy.  On a leaf of velocity constraints what decays there is stable: others keep apart.
     """
     if not installed("mbsym.problems.normal_forms"):
         return verdict
@@ -144,10 +144,8 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
         {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}, Reason(Because.HIGHER_MINIMUM, (order,))
     )
     if damped:
-        leaving, staying = (
-            Verdict(Word.UNSTABLE, by_manifold, (higher,)),
-            Verdict(Word.ASYMPTOTIC, by_manifold, (higher,)),
-        )
+        decaying = Word.STABLE if on_a_leaf(analysis) else Word.ASYMPTOTIC
+        leaving, staying = (Verdict(word, by_manifold, (higher,)) for word in (Word.UNSTABLE, decaying))
     leaves = damped or law is EnergyLaw.CONSERVED
     word = signs.sign(value)
     if order % 2:

@@ -292,3 +292,29 @@ def test_a_wheel_with_a_damper_comes_to_rest() -> None:
     damped = ROLLS.replace("OTHER", "c: {sign: positive, value: 1}")
     stability = described(damped + "motion: {x: 0, phi: 0}\n").stability
     assert stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
+
+
+@pytest.mark.parametrize(
+    ("potential", "word"),
+    [("k*(x + y)**4", Word.STABLE), ("k*x**4", Word.STABLE), ("k*x**4 + k*y**3", Word.UNSTABLE)],
+)
+@pytest.mark.parametrize("values", ["", "values: {m: 1, k: 1, d: 1}"])
+def test_what_decays_by_terms_of_higher_order_decays_on_its_leaf_alone(potential: str, word: Word, values: str) -> None:
+    # y = x + c is kept: of V = k (x + y)^4 the particle comes to rest at x = -c/2, never to come back to x = y = 0.
+    text = f"""
+mbsym: 1
+name: Slides along a line that a disturbance changes
+parameters: {{m: positive, k: positive, d: positive}}
+bodies:
+  - {{name: p, attached to: 0, coordinates: [x, y], connection point: [x, y, 0], mass: m}}
+constraints:
+  - velocity: y_dot = x_dot
+loads:
+  - potential: {potential}
+  - damper: {{coordinate: x, coefficient: d}}
+motion: {{x: 0, y: 0}}
+{values}
+"""
+    stability = described(text).stability
+    assert stability.verdict.word is word
+    assert stability.numerical is None or stability.numerical.word is word
