@@ -318,3 +318,26 @@ motion: {{x: 0, y: 0}}
     stability = described(text).stability
     assert stability.verdict.word is word
     assert stability.numerical is None or stability.numerical.word is word
+
+
+@pytest.mark.parametrize("given", ["velocity: 5*z_dot = 3*x_dot + 4*y_dot", "relation: 5*z = 3*x + 4*y - 5"])
+@pytest.mark.parametrize(("sign", "words"), [("-", {Word.STABLE, Word.ASYMPTOTIC}), ("+", {Word.UNSTABLE})])
+@pytest.mark.parametrize("friction", ["", "  - rayleigh: (x_dot**2 + y_dot**2)/2"])
+def test_a_turn_that_leads_off_the_leaf_is_no_symmetry(given: str, sign: str, words: set[Word], friction: str) -> None:
+    # V = (x^2 + y^2 - 1)^2 - s z^2 is the same after a turn in the plane, which z = (3 x + 4 y - 5)/5 does not allow.
+    # On the circle z = cos(a) - 1 = -a^2/2, a from the motion, so V = -s a^4/4 along what K leaves open.
+    text = f"""
+mbsym: 1
+name: Valley round an axis, tilted
+bodies:
+  - {{name: p, attached to: 0, coordinates: [x, y, z], connection point: [x, y, z], mass: 1}}
+constraints:
+  - {given}
+loads:
+  - force function: -(x**2 + y**2 - 1)**2 {sign} z**2/9
+{friction}
+motion: {{x: 3/5, y: 4/5, z: 0}}
+"""
+    verdict = described(text).stability.numerical
+    assert verdict is not None
+    assert verdict.word in words
