@@ -114,7 +114,8 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
     """A verdict that is on a border, decided by the first term of V(x) of the one coordinate.
 
     For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.  With
-    damping of first order, x' = -V'(x)/d on the centre manifold, else by the energy.
+    damping of first order, x' = -V'(x)/d on the centre manifold, else by the energy.  On a leaf of velocity constraints
+    what decays there is stable: others keep apart.
     """
     if not installed("mbsym.problems.normal_forms"):
         return verdict
@@ -156,9 +157,8 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
         {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}, Reason(Because.HIGHER_MINIMUM, (order,))
     )
     if damped:
-        leaving = Verdict(Word.UNSTABLE, by_manifold, (higher,))
-        if not on_a_leaf(analysis):  # what comes back on a leaf does not come back to it from others
-            staying = Verdict(Word.ASYMPTOTIC, by_manifold, (higher,))
+        decaying = Word.STABLE if on_a_leaf(analysis) else Word.ASYMPTOTIC
+        leaving, staying = (Verdict(word, by_manifold, (higher,)) for word in (Word.UNSTABLE, decaying))
     leaves = damped or law is EnergyLaw.CONSERVED
     if order % 2:
         return leaving if leaves and word in ("positive", "negative", "nonzero") else verdict

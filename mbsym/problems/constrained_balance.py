@@ -20,7 +20,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.mechanics.constraints.rows import Row, RowName, said_rows
 from mbsym.mechanics.motion import turning
-from mbsym.problems.displacements import Displacements, among
+from mbsym.problems.displacements import Direction, Displacements, among
 from mbsym.problems.dissipation import Balance, EnergyLaw
 from mbsym.problems.reduction import Reduction
 
@@ -71,7 +71,7 @@ class ConstrainedBalance(Balance):
         return _along(found, coordinates)
 
     def symmetries(self, coordinates: Sequence[str]) -> Displacements:
-        """Those that vary with the position, too, of holonomic systems near a rest: they keep every f of f(q) = 0."""
+        """Those that vary with the position, too, of holonomic systems near a rest: along leaves of the constraints."""
         displacements = among(self.ring, self._fields, self.scene.system.coordinates, self._with_dependent(coordinates))
         return _along(displacements, coordinates)
 
@@ -81,12 +81,12 @@ class ConstrainedBalance(Balance):
         return (*coordinates, *others)
 
     @property
-    def _kept(self) -> tuple[Polynomial, ...] | None:
+    def _allowing(self) -> tuple[Direction, ...] | None:
         if self._rows is None or self.about is None or not self.about.holonomic:
             return None
         if self._resting != {*self.scene.system.coordinates} or not self._homogeneous:
             return None
-        return tuple(row.position for row in self._rows if row.position is not None)
+        return tuple(row.partials for row in self._rows)
 
     @cached_property
     def absent(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ Directions that vary with the position are fields c(q) with, besides,
 
     sum c_i dT/dq_i + c_i' dT/dq'_i = 0,    sum c_i dF_j/dq_i + c_i' dF_j/dq'_i + F_i dc_i/dq_j = 0,
 
-F_j = dU/dq_j + Q_j:
+F_j = dU/dq_j + Q_j, and J c = 0 under integrable constraints:
 then the flow of c takes motions into motions (a particle's x, y turned about an axis, a body turned in space).  Near a
 position at which c is not 0 there are coordinates, made by that flow, of which one changes along c alone: a cyclic one.
 Matrices of the first approximation become P^T A P with the columns c of P at the motion, if c is constant along it.
@@ -177,11 +177,11 @@ def symmetries(
     fields: Sequence[Direction],
     here: Callable[[Polynomial], Polynomial],
     standing: Sequence[str],
-    polynomials: Sequence[Polynomial] = (),
+    rows: Sequence[Sequence[Polynomial]] = (),
 ) -> list[tuple[Direction, Direction, bool]]:
     """(c, its value on the motion, whether p is constant) for the combinations of fields that change no equation.
 
-    They keep the functions ``kept`` of the position, which constraints hold at 0: these do no work along c, either.
+    ``rows`` J of integrable constraints allow them, J c = 0: they lead from a leaf into itself, without work.
     ``here`` puts the motion in; only fields of ``standing`` coordinates are told, and those with independent values
     that are not 0.  Of fields that do not commute it is not said that p is constant: they are no cyclic coordinates of
     one description, so that Routh's reduction is not theirs; energies and families of equilibria ask for less.
@@ -193,7 +193,7 @@ def symmetries(
     tried = [*units, *fields][:MOST_FIELDS]
     if len(kinetic) + sum(map(len, forces)) > MOST_FIELD_TERMS:
         return []
-    lists = [[_lie(ring, coordinates, c, x) for c in tried] for x in (kinetic, *polynomials)]
+    lists = [[_lie(ring, coordinates, c, kinetic) for c in tried], *([_along(ring, c, x) for c in tried] for x in rows)]
     for j, name in enumerate(coordinates):
         lists.append(
             [

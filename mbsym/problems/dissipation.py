@@ -194,15 +194,15 @@ class Balance:
         return among(self.scene.ring, self._fields, self.scene.system.coordinates, coordinates)
 
     @property
-    def _kept(self) -> tuple[Polynomial, ...] | None:
-        """Functions of the position that displacements have to keep; None where they are not known."""
+    def _allowing(self) -> tuple[Direction, ...] | None:
+        """The rows J of constraints, which allow a displacement c where J c = 0; None where they are not known."""
         return None if self.scene.system.constraints else ()
 
     @cached_property
     def _fields(self) -> list[tuple[Direction, Direction, bool]]:
         system, ring = self.scene.system, self.scene.ring
-        kept = self._kept
-        if self.energy is None or self.somewhere or self._forces is None or kept is None:
+        rows = self._allowing
+        if self.energy is None or self.somewhere or self._forces is None or rows is None:
             return []
         try:
             names, moving = system.coordinates, {*turning(self.scene)}
@@ -225,7 +225,7 @@ class Balance:
                     fields,
                     lambda x: ring.substitute(x, self._here),
                     standing,
-                    kept,
+                    rows,
                 )
         except Failure:
             return []

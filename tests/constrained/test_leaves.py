@@ -292,3 +292,52 @@ def test_a_wheel_with_a_damper_comes_to_rest() -> None:
     damped = ROLLS.replace("OTHER", "c: {sign: positive, value: 1}")
     stability = described(damped + "motion: {x: 0, phi: 0}\n").stability
     assert stability.verdict.word is Word.ASYMPTOTIC_BUT_CYCLIC
+
+
+@pytest.mark.parametrize(
+    ("potential", "word"),
+    [("k*(x + y)**4", Word.STABLE), ("k*x**4", Word.STABLE), ("k*x**4 + k*y**3", Word.UNSTABLE)],
+)
+@pytest.mark.parametrize("values", ["", "values: {m: 1, k: 1, d: 1}"])
+def test_what_decays_by_terms_of_higher_order_decays_on_its_leaf_alone(potential: str, word: Word, values: str) -> None:
+    # y = x + c is kept: of V = k (x + y)^4 the particle comes to rest at x = -c/2, never to come back to x = y = 0.
+    text = f"""
+mbsym: 1
+name: Slides along a line that a disturbance changes
+parameters: {{m: positive, k: positive, d: positive}}
+bodies:
+  - {{name: p, attached to: 0, coordinates: [x, y], connection point: [x, y, 0], mass: m}}
+constraints:
+  - velocity: y_dot = x_dot
+loads:
+  - potential: {potential}
+  - damper: {{coordinate: x, coefficient: d}}
+motion: {{x: 0, y: 0}}
+{values}
+"""
+    stability = described(text).stability
+    assert stability.verdict.word is word
+    assert stability.numerical is None or stability.numerical.word is word
+
+
+@pytest.mark.parametrize("given", ["velocity: 5*z_dot = 3*x_dot + 4*y_dot", "relation: 5*z = 3*x + 4*y - 5"])
+@pytest.mark.parametrize(("sign", "words"), [("-", {Word.STABLE, Word.ASYMPTOTIC}), ("+", {Word.UNSTABLE})])
+@pytest.mark.parametrize("friction", ["", "  - rayleigh: (x_dot**2 + y_dot**2)/2"])
+def test_a_turn_that_leads_off_the_leaf_is_no_symmetry(given: str, sign: str, words: set[Word], friction: str) -> None:
+    # V = (x^2 + y^2 - 1)^2 - s z^2 is the same after a turn in the plane, which z = (3 x + 4 y - 5)/5 does not allow.
+    # On the circle z = cos(a) - 1 = -a^2/2, a from the motion, so V = -s a^4/4 along what K leaves open.
+    text = f"""
+mbsym: 1
+name: Valley round an axis, tilted
+bodies:
+  - {{name: p, attached to: 0, coordinates: [x, y, z], connection point: [x, y, z], mass: 1}}
+constraints:
+  - {given}
+loads:
+  - force function: -(x**2 + y**2 - 1)**2 {sign} z**2/9
+{friction}
+motion: {{x: 3/5, y: 4/5, z: 0}}
+"""
+    verdict = described(text).stability.numerical
+    assert verdict is not None
+    assert verdict.word in words
