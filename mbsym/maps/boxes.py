@@ -19,7 +19,7 @@ from flint import ctx, fmpq
 from mbsym.algebra import rationals
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
-from mbsym.algebra.failures import Failure, NoValue, TooLargeError
+from mbsym.algebra.failures import NoValue, TooLargeError
 from mbsym.algebra.plane import Box, Point
 from mbsym.algebra.plane.numbers import Rational, between, sign
 from mbsym.analysis import Analysis
@@ -81,7 +81,7 @@ def box_map(
 ) -> BoxMap:
     """The plane of two axes in boxes: halved down to 2^-depth of its area, ``most`` boxes.
 
-    Where matrices are no fractions of polynomials (``irrational``) enclosures prove them.
+    Where matrices are no fractions of polynomials enclosures prove them.
 
     Raises Unfit and Unavailable as ``exact_map`` does; TooLargeError where boundaries are too large and the matrices
     hold an irrational constant or no signature is asked of them.  KeyboardInterrupt ends the halving: what is proved
@@ -92,7 +92,7 @@ def box_map(
     try:
         there = section(analysis, axes, settings)
     except Unfit as unfit:
-        if not irrational(unfit) or of is not Of.STABILITY:
+        if not unfit.irrational or of is not Of.STABILITY:
             raise
         functions, because = IrrationalSection(analysis, axes, settings, unfit.complaints), because or unfit_text(unfit)
         there = functions.plain
@@ -291,11 +291,6 @@ class _Values(dict[str, Any]):
             raise NoValue(name)
         self[name] = self._scene.ring.evaluate(image, self)
         return self[name]
-
-
-def irrational(error: Failure) -> bool:
-    """Whether nothing else is wrong than that matrices are not rational in the axes."""
-    return isinstance(error, Unfit) and {complaint.fault for complaint in error.complaints} == {Fault.IRRATIONAL}
 
 
 def unfit_text(error: Unfit) -> str:

@@ -156,7 +156,9 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
         return _section(analysis, axes, settings, None, found)
     except Unfit as unfit:
         constant = None
-        if len(axes) <= MOST_BESIDE and {complaint.fault for complaint in unfit.complaints} == {Fault.IRRATIONAL}:
+        varied = {*(axis.name for axis in axes), *settings}  # of these the description's value is not the one here
+        described = not any(analysis.ring.generators[k].name in varied for k in found)
+        if described and len(axes) <= MOST_BESIDE and unfit.irrational:
             constant = constant_of(analysis.system, analysis.ring, found)
         if constant is None:
             raise
@@ -352,6 +354,11 @@ class Unfit(Failure):
     def __init__(self, complaints: Sequence[Complaint]) -> None:
         super().__init__("; ".join(f"{one.name}: {one.fault.value} {one.about}".rstrip() for one in complaints))
         self.complaints = tuple(complaints)
+
+    @property
+    def irrational(self) -> bool:
+        """Whether nothing else is wrong than that matrices are not rational in the axes."""
+        return {complaint.fault for complaint in self.complaints} == {Fault.IRRATIONAL}
 
 
 def numbers_given(

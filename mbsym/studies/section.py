@@ -93,7 +93,8 @@ def unfit_section(wrong: Sequence[Complaint], axis_option: str) -> Iterator[Unfi
                 yield Unfit("--set", "outside", message, "choose other values, or another interval")
             case Fault.IRRATIONAL:
                 message = Message("the matrices hold what is no rational number there: [[what]]", what=worded(one.name))
-                yield Unfit("--set", "irrational", message, "choose values at which roots and angles are rational")
+                remedy = "choose values at which roots and angles are rational; 'mbsym sweep' judges stability at any"
+                yield Unfit("--set", "irrational", message, remedy)
             case Fault.SINGULAR:
                 message = Message("a division by zero in [[what]]", what=worded(one.name))
                 yield Unfit("--set", "division-by-zero", message, "choose other values")

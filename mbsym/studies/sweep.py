@@ -195,6 +195,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
         raise NotFit([missing(error.lack.names)]) from error
     except Wrong as error:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
+    most = getattr(measure, "most", wanted.points.count)
+    if wanted.points.count > most:
+        message = Message("points are judged one by one here, at most [[most]]", most=most)
+        raise NotFit([Unfit("--points", "too-many", message, "take fewer")])
     every = sweep.chunks(wanted.points.count)
     digest = wanted.digest(meaning(system), derivation())
     folder = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)

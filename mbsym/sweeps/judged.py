@@ -3,24 +3,30 @@
 Points fall into classes by the signs of the deciding quantities (``mbsym.sweeps.deciding``), evaluated in floats with
 bounds of their rounding; the verdict of a class is found exactly at one of its points, which is a rational number as
 every float is.  A point whose signs are not certain is judged exactly by itself.  So every verdict is that of the exact
-judge at the number which the column holds.
+judge at the number which the column holds.  Where matrices hold functions of what is varied (the cosine of an angle)
+there are no such quantities, and every point is judged by itself.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from threading import Lock
 from typing import Any
 
 import numpy as np
 from flint import fmpq
 
+from mbsym.algebra import rationals
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.plane import Point
-from mbsym.analysis import Analysis
+from mbsym.analysis import Analysis, judge
+from mbsym.maps.admissible import Admissibility
+from mbsym.maps.axis import Axis
 from mbsym.maps.mapping import Judge, kept_in
 from mbsym.maps.result import Lack, Shape
-from mbsym.maps.section import Section
+from mbsym.maps.section import Section, Unfit, unmade
+from mbsym.maps.verdicts import Judged
 from mbsym.numerics.kernels import llvm
 from mbsym.problems.stability.word import Word
 from mbsym.sweeps.deciding import classes, deciding
@@ -55,7 +61,11 @@ class StabilityMeasure:
     Raises TooLargeError where a characteristic polynomial is too long, Unfit where no point is admissible.
     """
 
-    columns = (VERDICT, Column(RIGHT.name, RIGHT.meaning, whole=True), Column(EXACT.name, EXACT.meaning, whole=True))
+    columns: tuple[Column, ...] = (
+        VERDICT,
+        Column(RIGHT.name, RIGHT.meaning, whole=True),
+        Column(EXACT.name, EXACT.meaning, whole=True),
+    )
 
     def __init__(self, analysis: Analysis, section: Section) -> None:
         self.section = section
@@ -109,3 +119,37 @@ class StabilityMeasure:
         if cell.judged is None:
             return WORDS.index(NO_WORDS[cell.lack]), -1
         return WORDS.index(cell.judged.verdict.word.value), -1 if cell.right is None else cell.right
+
+
+class SingleVerdicts(StabilityMeasure):
+    """The verdict alone, where matrices are no fractions of polynomials in the axes; roots are not counted."""
+
+    columns = (VERDICT,)
+
+    #: Points that are judged one by one, some milliseconds each.
+    most = 20_000
+
+    def __init__(self, analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fraction], why: Unfit) -> None:
+        """Raises Unfit for ``why`` where an axis or a setting is a symbol of the notation."""
+        if not {*settings, *(axis.name for axis in axes)} <= {*analysis.system.parameter_names}:
+            raise why
+        self.section, _ = unmade(analysis, axes, settings)
+        self.admissibility = kept_in(analysis, self.section)
+        self._judge = _Singly(analysis, self.section, self.admissibility)
+
+    def at(self, points: Any) -> Mapping[str, Any]:
+        return {VERDICT.name: np.array([self.judged(point)[0] for point in points.T], dtype=np.int8)}
+
+
+class _Singly(Judge):
+    """Judges points by the route that problem 6 takes at the numbers of a description."""
+
+    def __init__(self, analysis: Analysis, there: Section, kept: Admissibility) -> None:
+        super().__init__(there, kept)
+        self._first = judge.Judge(analysis).first_approximation
+        self._known = {name: x for name, x in there.numbers.items() if name in analysis.system.parameter_names}
+
+    def judged(self, shape: Shape, point: Any, place: Any) -> Judged:
+        numbers = point if isinstance(point, tuple) else (point,)
+        there = {axis.name: rationals.fraction(x) for axis, x in zip(self.section.axes, numbers, strict=True)}
+        return Judged(self._first(self._known | there), None, None, None, None)

@@ -20,7 +20,7 @@ import numpy as np
 
 from mbsym.analysis import Analysis
 from mbsym.expressions.tree import Expression, number, text
-from mbsym.maps.section import Axis, Section, section
+from mbsym.maps.section import Axis, Section, Unfit, section
 from mbsym.model.system import System
 from mbsym.numerics.scenario import scenario
 from mbsym.sweeps.points import Measure, Points
@@ -74,7 +74,14 @@ def measure_of(system: System, asked: Asked) -> Measure:
         return SimulatedMeasure(given, overrides, asked.points.names, asked.formula, said, asked.time)
     analysis = Analysis(system)
     axes = [Axis(name, *asked.ends[name]) for name in asked.points.names]
-    found = section(analysis, axes, asked.settings)
+    try:
+        found = section(analysis, axes, asked.settings)
+    except Unfit as unfit:
+        if asked.measure != STABILITY or not unfit.irrational:
+            raise
+        from mbsym.sweeps.judged import SingleVerdicts
+
+        return SingleVerdicts(analysis, axes, asked.settings, unfit)
     if asked.formula is not None:
         from mbsym.sweeps.formula import FormulaMeasure
 

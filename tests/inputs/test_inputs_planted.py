@@ -59,8 +59,8 @@ MISTAKES = [
     Mistake(
         "an input torque without its reaction",
         "mechanics.loads.kinds:_torque_action",
-        "((load.body, given), (load.reaction_on, -given))",
-        "((load.body, given),)",
+        "((load.body, vector), (load.reaction_on, -vector))",
+        "((load.body, vector),)",
         "driven",
         (EQUATIONS, PERTURBED),
     ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from math import cos
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -14,9 +15,10 @@ import mbsym
 from mbsym.algebra.failures import TooLargeError
 from mbsym.maps import mapping
 from mbsym.maps.boundaries import Origin
+from mbsym.maps.boxes import box_map
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Lack, Map
-from mbsym.maps.section import Axis
+from mbsym.maps.section import Axis, Unfit
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.word import Word
 
@@ -146,3 +148,21 @@ def test_lines_with_a_constant_are_checked_too(monkeypatch: pytest.MonkeyPatch) 
     wrong = on_line()
     assert wrong.check is not None
     assert not wrong.check.holds
+
+
+@pytest.mark.parametrize("given", ["pi/3", "1", "0"])
+def test_an_angle_that_varies_has_not_the_value_of_the_description(given: str, tmp_path: Path) -> None:
+    """x'' + (cos(a) + c - 3/2) x = 0 has no exact plane of a and c, whatever a is elsewhere; boxes say what is true."""
+    text = HEAD.replace("[x, y]", f"{{a: {given}, c: 1}}").replace("[s, u]", "[s]").replace("[[1, 0], [0, 1]]", "[[1]]")
+    (tmp_path / "system.yaml").write_text(text + "  K: [[cos(a) + c - 3/2]]\n")
+    analysis = mbsym.load(tmp_path / "system.yaml")
+    axes = [Axis("a", Fraction(0), Fraction(3)), Axis("c", Fraction(1, 2), Fraction(2))]
+    with pytest.raises(Unfit):
+        exact_map(analysis, axes, {})
+    with pytest.raises(Unfit):
+        exact_map(analysis, axes[1:], {"a": Fraction(1, 2)})
+    proved = [cell for cell in box_map(analysis, axes, {}).cells if cell.judged is not None]
+    assert {cell.judged.verdict.word for cell in proved} == {Word.STABLE, Word.UNSTABLE}
+    for cell in proved:
+        a, c = (float(Fraction(int(v.p), int(v.q))) for v in (cell.sample.x, cell.sample.y))
+        assert (cell.judged.verdict.word is Word.STABLE) == (cos(a) + c > 3 / 2)

@@ -354,7 +354,7 @@ ARTICULATED_MISTAKES = [
     ("mechanics.articulated:_less", "- mul(u[i], v[j])", "+ mul(u[i], v[j])"),
     ("mechanics.articulated:_Articulated._inwards", " + frame.offset.cross(force)", ""),
     ("mechanics.articulated:_Articulated._outwards", " + angular.cross(frame.offset)", ""),
-    ("mechanics.factorisation:Elimination.backward", "value - factor * found[i]", "value + factor * found[i]"),
+    ("mechanics.factorisation:Elimination.backward", "value - factor * scalars[i]", "value + factor * scalars[i]"),
 ]
 
 

@@ -204,7 +204,7 @@ HAMILTON, LEFT = "problems.canonical.canonical:hamilton", "problems.canonical.ca
 MISTAKES = [
     Mistake("the sign of A1", HAMILTON, "p - a for", "p + a for", "driven", (CANONICAL,)),
     Mistake("a third for a half", HAMILTON, "Fraction(1, 2)", "Fraction(1, 3)", "driven", (CANONICAL,)),
-    Mistake("the sign of A0", HAMILTON, "- found.A0.polynomial", "+ found.A0.polynomial", "driven", (CANONICAL,)),
+    Mistake("the sign of A0", HAMILTON, "- energy.A0.polynomial", "+ energy.A0.polynomial", "driven", (CANONICAL,)),
     Mistake(
         "forces at other speeds",
         HAMILTON,

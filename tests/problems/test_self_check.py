@@ -541,8 +541,8 @@ CAUGHT = [
     Mistake(
         "a torque without its reaction",
         "mechanics.loads.kinds:_torque_action",
-        "(load.reaction_on, -given)",
-        "(None, -given)",
+        "(load.reaction_on, -vector)",
+        "(None, -vector)",
         "machine",
         DYNAMICS,
     ),

@@ -5,10 +5,14 @@ from __future__ import annotations
 from fractions import Fraction as F
 
 import numpy as np
+import pytest
 
 import mbsym
-from mbsym.maps.section import Axis, section
-from mbsym.sweeps.judged import EXACT, RIGHT, VERDICT, WORDS, StabilityMeasure
+from mbsym.maps.section import Axis, Unfit, section
+from mbsym.numerics.ensembles.variation import Grid
+from mbsym.sweeps.judged import EXACT, RIGHT, VERDICT, WORDS, SingleVerdicts, StabilityMeasure
+from mbsym.sweeps.points import Points
+from mbsym.sweeps.sweep import Asked, measure_of
 
 TEXT = """
 mbsym: 1
@@ -49,3 +53,20 @@ def test_beside_the_border_points_are_judged_singly_and_right() -> None:
     assert found[RIGHT.name][:3].tolist() == wanted
     assert found[EXACT.name].all()
     assert WORDS[found[VERDICT.name][3]] == "stable"  # +-i sqrt(sqrt(2) - 1), and x' = A x is all there is
+
+
+def test_points_at_an_angle_are_judged_one_by_one() -> None:
+    """x'' + (cos(a) + c - 3/2) x = 0: stable where the bracket is positive, whatever a is in the description."""
+    text = "mbsym: 1\nname: s\nparameters: {a: {value: pi/3}, c: 1}\nlinear system: {coordinates: [x], M: [[1]], "
+    system = mbsym.loads(text + "K: [[cos(a) + c - 3/2]]}\n").system
+    points = Points((Grid("a", 0.0, 3.0, 13), Grid("c", 0.5, 2.0, 7)))
+    ends = {"a": (F(0), F(3)), "c": (F(1, 2), F(2))}
+    measure = measure_of(system, Asked(points, ends, {}, "stability"))
+    assert isinstance(measure, SingleVerdicts)
+    there = points.part(0, points.count)
+    words = [WORDS[code] for code in measure.at(there)[VERDICT.name]]
+    for (a, c), word in zip(there.T, words, strict=True):
+        stiffness = np.cos(a) + c - 1.5
+        assert word == ("stable" if stiffness >= 0 else "unstable") or stiffness == 0
+    with pytest.raises(Unfit):
+        measure_of(system, Asked(points, ends, {}, "eigenvalues"))

@@ -305,7 +305,7 @@ def _at_irrational(
         exact = verdict_over(part.at(balance.at(values)), at).verdict
     except Failure:
         return verdict, True
-    return (verdict, True) if exact.word is Word.UNDECIDED else (exact, False)
+    return exact, False
 
 
 def _by_enclosures(

@@ -118,6 +118,7 @@ ACROSS, DOWN, WIDE, TALL, MARGIN = 190, 104, 150, 46, 14
 LETTERS, ANGLES = 20, 26
 #: A page is so many boxes wide.
 COLUMNS = 5
+INERTIAL = Message("inertial frame")
 
 
 def diagram(system: System, language: Language) -> Markup:
@@ -127,10 +128,9 @@ def diagram(system: System, language: Language) -> Markup:
     width = (found.columns - 1) * ACROSS + WIDE + MARGIN + max(MARGIN, beside)
     height = (found.rows - 1) * DOWN + TALL + 2 * MARGIN
     say = language.say
-    ground = say("inertial frame")
-    body = "".join([*_lines(found), *_loads(found), *(_node(node, ground) for node in found.nodes)])
+    body = "".join([*_lines(found), *_loads(found), *(_node(node, say(INERTIAL)) for node in found.nodes)])
     said = say(Message("Interconnection of bodies: [[count]]", count=len(system.bodies)))
-    told = "; ".join(map(say, _told(found, ground)))
+    told = "; ".join(map(say, _told(found)))
     return Markup(
         f'<svg class="diagram" role="img" aria-labelledby="diagram-title diagram-text" width="{width:g}" '
         f'height="{height:g}" viewBox="0 0 {width:g} {height:g}"><title id="diagram-title">{escape(said)}</title>'
@@ -138,17 +138,17 @@ def diagram(system: System, language: Language) -> Markup:
     )
 
 
-def _told(found: Interconnection, ground: str) -> Iterator[Message]:
+def _told(found: Interconnection) -> Iterator[Message]:
     for joint in found.joints:
-        ends = {"after": found.nodes[joint.after].name, "before": _named(found.nodes[joint.before], ground)}
+        ends = {"after": found.nodes[joint.after].name, "before": _named(found.nodes[joint.before])}
         yield Message("[[after]] on [[before]]: [[joint]]", joint=_joint_words(joint), **ends)
     for load in found.interactions:
-        first, second = (_named(found.nodes[k], ground) for k in (load.first, load.second))
+        first, second = (_named(found.nodes[k]) for k in (load.first, load.second))
         yield Message("[[load]] between [[first]] and [[second]]", load=worded(load.kind), first=first, second=second)
 
 
-def _named(node: Node, ground: str) -> str:
-    return ground if node.kind is Kind.INERTIAL else node.name
+def _named(node: Node) -> str | Message:
+    return INERTIAL if node.kind is Kind.INERTIAL else node.name
 
 
 def _joint_words(joint: Joint) -> Message:
@@ -179,7 +179,7 @@ def _node(node: Node, ground: str) -> str:
     words = "".join(
         f'<text x="{x:g}" y="{first + k * step:g}" class="middle">{escape(line)}</text>' for k, line in enumerate(lines)
     )
-    return f"<g><title>{escape(_named(node, ground))}</title>{box}{words}</g>"
+    return f"<g><title>{escape(ground if node.kind is Kind.INERTIAL else node.name)}</title>{box}{words}</g>"
 
 
 def _two(label: str) -> list[str]:

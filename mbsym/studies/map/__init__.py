@@ -147,7 +147,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     """Raises NotFit where the section cannot be made."""
     from mbsym.algebra.failures import Failure, TooLargeError, message_of
     from mbsym.analysis import Analysis
-    from mbsym.maps.boxes import box_map, irrational
+    from mbsym.maps.boxes import box_map
     from mbsym.maps.mapping import exact_map
     from mbsym.maps.result import Of
     from mbsym.maps.section import Unfit as Wrong
@@ -166,7 +166,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
         try:
             return exact_map(analysis, axes, values, of, watch)
         except Wrong as wrong:
-            if len(axes) == 1 or not (irrational(wrong) and of is Of.STABILITY):
+            if len(axes) == 1 or not (wrong.irrational and of is Of.STABILITY):
                 raise
             return box_map(analysis, axes, values, of, watch, "")
         except TooLargeError as large:

@@ -9,6 +9,7 @@ from flint import arb
 
 import mbsym
 from mbsym.problems.stability.enclosed import enclosed_verdict
+from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.word import Word
 from mbsym.report.words.claims import decided
 
@@ -86,3 +87,14 @@ def test_a_border_at_an_angle_whose_cosine_is_rational(angle: str, word: Word) -
     found = mbsym.loads(f"{text}{angle}}}\n").stability
     assert found.numerical.word is word
     assert ("exactly" in decided(found)) == (angle == "pi/3")  # elsewhere balls tell the sign
+
+
+def test_on_a_border_at_such_an_angle_it_is_said_what_leaves_it_open() -> None:
+    """x'' + (cos(a) - 1/2) x + 4 x^3 = 0 at a = pi/3: the root 0 is double, which is decided exactly."""
+    text = (
+        "mbsym: 1\nname: x\nparameters: {a: real}\nbodies: [{name: p, attached to: 0, mass: 1, "
+        "connection point: [x, 0, 0], coordinates: [x]}]\nloads: [force function: -(cos(a) - 1/2)*x**2/2 - x**4]\n"
+        "motion: {x: 0}\nvalues: {a: pi/3}\n"
+    )
+    verdict = mbsym.loads(text).stability.numerical
+    assert verdict.because(Because.JORDAN_BLOCK)
