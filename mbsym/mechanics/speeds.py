@@ -17,14 +17,16 @@ Where no speeds are declared u is q' and s is q: Y = 1.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
+from operator import itemgetter
 
 from mbsym.algebra.base import Algebra, Lowering, Scalar
 from mbsym.algebra.evaluate import Carrier
-from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.matrices import determinant, solved
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.ring import Polynomial, Ring
@@ -37,6 +39,9 @@ from mbsym.mechanics.motion import places, vanishing
 from mbsym.mechanics.variables import program_environment, ring_environment
 from mbsym.model.speeds import OMEGA, Quaternion, Speed, UnitVector
 from mbsym.model.system import Body, System, acceleration_name, velocity_name
+
+#: So much work is done to find velocities that speeds may replace where the motion begins.
+SEARCH_WORK = 5_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,24 +181,27 @@ class SpeedForm:
     def _chosen(self, rows: Sequence[Sequence[Polynomial]]) -> tuple[int, ...]:
         """The coordinates whose velocities the declared speeds replace: those of the bodies that declare them first.
 
-        Of several such sets one that is regular on the unperturbed motion, and in the initial position, where one is.
+        Of several such sets one that is regular on the unperturbed motion, and in the initial position, where one is
+        found.
         """
         own = {name for body in self.system.bodies if body.speeds for name in body.coordinates}
         order = sorted(range(len(self.coordinates)), key=lambda k: self.coordinates[k] not in own)
         touched = [k for k in order if any(not self.ring.vanishes(row[k]) for row in rows)]
         known = places(Scene(self.system, self.ring, self._plain, self.ring, bodies=False), initial=True)
-        best: tuple[list[bool], tuple[int, ...]] | None = None
-        for chosen in combinations(touched, len(rows)):
-            size = determinant(self.ring, [[row[k] for k in chosen] for row in rows])
-            if self.ring.vanishes(size):
-                continue
-            lost = vanishing(self.ring, size, known)
-            if best is None or lost < best[0]:
-                best = lost, chosen
-            if not any(lost):
-                break
+
+        def regular() -> Iterator[tuple[list[bool], tuple[int, ...]]]:
+            for chosen in combinations(touched, len(rows)):
+                size = determinant(self.ring, [[row[k] for k in chosen] for row in rows])
+                if not self.ring.vanishes(size):
+                    yield vanishing(self.ring, size, known), chosen
+
+        sets = regular()
+        best = next(sets, None)
         if best is None:
             raise SingularPoint("the speeds do not determine the generalised velocities")
+        with suppress(Failure), self.ring.budget(SEARCH_WORK):
+            while any(best[0]) and (other := next(sets, None)) is not None:
+                best = min(best, other, key=itemgetter(0))
         return best[1]
 
     def _speeds(self, kept: set[str]) -> list[Variable]:

@@ -24,7 +24,6 @@ from mbsym.mechanics.motion import motion_values
 from mbsym.picture.encode import number
 from mbsym.problems.linearisation import Linearisation
 from mbsym.problems.stability.problem import matrices_at, parameter_values, ring_numbers
-from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
@@ -91,10 +90,9 @@ def modes(analysis: Analysis) -> Modes:
     linear, scene = analysis.judgeable, analysis.parameters_scene
     values = parameter_values(scene, analysis.equilibrium)
     if values is None or stability.numerical is None:
-        raise NoClosedForm(Message("not all parameters have values, so that no mode has numbers"))
+        raise NoClosedForm("not all parameters have values, so that no mode has numbers")
     if not stability.spectra:
-        reasons = [sentence(reason) for reason in stability.numerical.reasons] or [worded(stability.numerical.word)]
-        raise NoClosedForm(Message("at these values there are none: [[why]]", why=joined(reasons, " ")))
+        raise NoClosedForm(f"no modes at these values: {stability.numerical.explanation or stability.numerical.word}")
     listed: list[Mode] = []
     for part in stability.spectra:
         blocks = [_floats(rows) for rows in matrices_at(scene, linear, part.coordinates, values)]
