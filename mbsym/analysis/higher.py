@@ -7,8 +7,13 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from flint import arb
+
+from mbsym.algebra import rationals
+from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
+from mbsym.algebra.point import Rationals
 from mbsym.analysis.approximation import kept_by_velocities
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
@@ -17,7 +22,7 @@ from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.variables import expressions
-from mbsym.problems import stability
+from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.stability.reasons import Because, Reason
@@ -26,7 +31,7 @@ from mbsym.problems.stability.verdict import Verdict, concluded
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
-    from mbsym.algebra.ring import Polynomial
+    from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.expansion import OnManifold
@@ -105,26 +110,33 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         return None
 
 
-def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
-    """A verdict that is on a border for all parameters, decided by the first term of V(x) of the one coordinate.
+def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str, Any] | None = None) -> Verdict:
+    """A verdict that is on a border, decided by the first term of V(x) of the one coordinate.
 
-    Where its sign is not known, the condition is told.  With damping of first order, x' = -V'(x)/d on the centre
-    manifold, else by the energy.  On a leaf of velocity constraints what decays there is stable: others keep apart.
+    For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.  With
+    damping of first order, x' = -V'(x)/d on the centre manifold, else by the energy.  On a leaf of velocity constraints
+    what decays there is stable: others keep apart.
     """
     if not installed("mbsym.problems.normal_forms"):
         return verdict
     from mbsym.problems.normal_forms import problem
 
-    scene, signs, law = analysis.parameters_scene, analysis.signs, analysis.balance.law
+    scene, balance = analysis.parameters_scene, analysis.balance
+    law = (balance if values is None else balance.at(values)).law
     tied = bool(analysis.system.constraints)
+
+    def for_all(x: Polynomial) -> str:
+        return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
+
+    sign = for_all if values is None else _sign_at(scene.ring, values)
     try:
         damping = analysis.linearisation.D.polynomials
-        damped = len(damping) == 1 and signs.sign(damping[0][0]) == "positive"
         if not law.bounded or len(damping) != 1:
             return verdict
+        damped = sign(damping[0][0]) == "positive"
         manifold = on_manifold(analysis) if tied else None
-        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold)
-        if term is None:
+        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold, sign)
+        if term is None or term[0] == 2:
             return verdict
         order, value = term
         above, below = scene.ring.fraction(value)
@@ -132,6 +144,7 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
         for factor, exponent in below:
             bottom = scene.ring.times(bottom, scene.ring.power(factor, exponent))
         value = scene.ring.reduce(scene.ring.times(above, bottom))
+        word = sign(value)
     except (Failure, *NOT_THERE):
         return verdict
     higher = Reason(Because.TERMS_OF_HIGHER_ORDER)
@@ -147,21 +160,47 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict) -> Verdict:
         decaying = Word.STABLE if on_a_leaf(analysis) else Word.ASYMPTOTIC
         leaving, staying = (Verdict(word, by_manifold, (higher,)) for word in (Word.UNSTABLE, decaying))
     leaves = damped or law is EnergyLaw.CONSERVED
-    word = signs.sign(value)
     if order % 2:
         return leaving if leaves and word in ("positive", "negative", "nonzero") else verdict
     if word == "positive":
         return staying
-    if not leaves or word in ("nonnegative", "nonpositive", "zero"):
-        return verdict
-    if word == "negative":
+    if leaves and word == "negative":
         return leaving
-    condition = signs.condition(value)
+    if not leaves or values is not None or word != "unknown":
+        return verdict
+    condition = knowledge.signs(scene).condition(value)
     if condition.kind != "inequality" or condition.nonzero:
         return verdict
     positive = Formula(scene.ring, condition.polynomial)
     reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
     return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (order, positive, staying.word))))
+
+
+def _sign_at(ring: Ring, values: Mapping[str, Any]) -> Callable[[Polynomial], str]:
+    """The sign at values of all parameters, rational or enclosed: "zero" only where a factor is so exactly."""
+    balls = {"pi": arb.pi()} | {name: x if isinstance(x, arb) else rationals.ball(x) for name, x in values.items()}
+    numbers = Rationals({}, {})
+    rational = {name: rationals.exact(x) for name, x in values.items() if isinstance(x, Fraction)}
+    exactly = Carrier(ring, numbers, rational)
+
+    def value(x: Polynomial) -> Any:
+        try:
+            return arb(exactly(x))
+        except NOT_THERE:
+            return ring.evaluate(x, balls)
+
+    def sign(x: Polynomial) -> str:
+        if ring.is_zero(x) is True:
+            return "zero"
+        unit, factors = x.factor()
+        parts = [arb(unit), *(value(factor) ** int(exponent) for factor, exponent in factors)]
+        if any(part.is_zero() for part in parts):
+            return "zero"
+        if any(part.contains(0) for part in parts):
+            return "unknown"
+        return "negative" if sum(part < 0 for part in parts) % 2 else "positive"
+
+    return sign
 
 
 def on_a_leaf(analysis: Analysis) -> bool:

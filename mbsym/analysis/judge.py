@@ -4,7 +4,8 @@ Asked in this order, each only where those before leave the nonlinear system ope
 
 1. the first approximation, with the energy and exactly linear equations (``stability.ExactVerdicts``);
 2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
-3. terms of higher order: normal forms, centre manifolds (problem 11).
+3. terms of higher order: normal forms, centre manifolds (problem 11); of one coordinate the first term of its potential
+   energy, which need not be an algebraic number.
 
 Relations that give coordinates explicitly are put in before 2, and displacements that change no equation are made
 coordinates: the motion does not know which coordinates tell it.
@@ -125,6 +126,8 @@ class Judge:
             return verdict
         found = self._of_higher_order(values)
         further = None if found is None else self._in_words(found)
+        if further is None and verdict.word.open:
+            return higher.of_one_coordinate(self.analysis, verdict, values)
         if further is None or (verdict.stable and not further.word.asymptotic):
             return verdict
         return further

@@ -84,6 +84,13 @@ class Varied:
             raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
 
     @cached_property
+    def in_angles(self) -> tuple[str, ...]:
+        """The parameters that stand in sines and cosines, which are unknowns beside them."""
+        used = [self.ring.generators[k] for k in occurring(self.search.equations)]
+        held = {g.name for g in used if g.kind in ("sine", "cosine")}
+        return tuple(name for name in self.search.parameters if name in held)
+
+    @cached_property
     def _independent(self) -> list[Row]:
         """The constraints that are independent near the case."""
         return [self.found.rows[k] for k in near(self.found, self.search.case)[1]]
@@ -227,12 +234,6 @@ class Curve(Varied):
         (self.parameter,) = search.parameters
         self.index = self.ring.index("parameter", self.parameter)
         self.low, self.high = (rationals.exact(x) for x in (low, high))
-
-    @cached_property
-    def in_angles(self) -> bool:
-        """Whether the parameter stands in sines and cosines, which are unknowns beside it."""
-        used = [self.ring.generators[k] for k in occurring(self.search.equations)]
-        return any(g.kind in ("sine", "cosine") and g.name == self.parameter for g in used)
 
     def along(self, x: Polynomial) -> Polynomial:
         """The derivative by the parameter.  Raises NoClosedForm where p stands in a root or a function."""

@@ -169,7 +169,7 @@ def sentences(found: Picture) -> Iterator[str]:
     if notes.open_loop:
         yield Message("The constraints are open here: [[why]].", why=notes.open_loop)
     if notes.velocity_rows:
-        text = "Constraints on velocities: [[count]]; every position can be shown, not every one is reached."
+        text = "Constraints on velocities: [[count]]; every position can be shown, whether a motion reaches it or not."
         yield Message(text, count=notes.velocity_rows)
     solid = [body.ellipsoid for body in found.bodies if body.ellipsoid is not None]
     if any(ellipsoid.true_size for ellipsoid in solid):

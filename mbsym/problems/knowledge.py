@@ -33,6 +33,8 @@ def signs(scene: Scene) -> Signs:
     for index, g in enumerate(ring.generators):
         if g.kind == "root":
             words[index] = "positive" if g.argument.is_constant() else "nonnegative"
+        elif g.kind == "function" and g.name == "exp":
+            words[index] = "positive"
     numbers = _numbers(ring)
     for index, value in numbers.items():
         if value > 0 or value < 0:

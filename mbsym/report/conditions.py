@@ -18,9 +18,8 @@ from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
 from mbsym.problems.stability.word import Word
 
-#: Places that are told with the condition: the others are those of the list as a whole.
-_TOLD = {Place.METHOD, Place.FIRST, Place.HARMLESS, Place.STRICTLY, Place.BESIDE}
-_TOLD |= {Place.EQUALITY, Place.MERELY, Place.DRIFTS}
+#: Places of the list as a whole: the others are told with the condition.
+_OF_THE_LIST = {Place.NECESSARY, Place.EXPONENTIAL, Place.SUFFICIENT}
 
 
 #: A formula of so many characters that was shown before is written again, rather than its name.
@@ -73,7 +72,7 @@ class Statement:
     @property
     def remark(self) -> str:
         """What is to be said of its place where it is not that of the others."""
-        return self.place.value if self.place in _TOLD else ""
+        return "" if self.place in _OF_THE_LIST else self.place.value
 
 
 @dataclass(frozen=True)

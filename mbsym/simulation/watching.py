@@ -113,8 +113,8 @@ def read_watch(
         complain(option, text, complaints)
         return found
 
-    found_events = [read("event", text) for text in events]
-    found_stops = [read("stop", text) for text in stops]
+    marks = [read("event", text) for text in events]
+    ends = [read("stop", text) for text in stops]
     condition = None if section is None else read("section", section)
     if axes and section is None and unread is None:
         wrong.append("axes are those of a section, and there is none")
@@ -124,8 +124,8 @@ def read_watch(
     if wrong:
         raise ValueError("; ".join(wrong))
     return Watch(
-        tuple(found_event for found_event in found_events if found_event is not None),
-        tuple(found_stop for found_stop in found_stops if found_stop is not None),
+        tuple(mark for mark in marks if mark is not None),
+        tuple(end for end in ends if end is not None),
         None if condition is None else section_of(system, condition, written),
     )
 

@@ -49,7 +49,8 @@ class Section:
     """A list of items of known kinds.
 
     ``meant``: other words and the kinds that they mean; ``example`` shows how an item is written; ``checks`` say what
-    else is wrong with one and answer whether it is kept; ``hints`` of a value that is no mapping.
+    else is wrong with one and answer whether it is kept; ``hints`` of a value that is no mapping; ``others`` complain
+    where the value is that of another kind, and answer whether it is.
     """
 
     what: str
@@ -58,6 +59,7 @@ class Section:
     meant: Mapping[str, str]
     checks: Mapping[str, Callable[[Item, Any], bool]]
     hints: Mapping[str, Callable[[Node], str]] = field(default_factory=dict)
+    others: Mapping[str, Callable[[Item], bool]] = field(default_factory=dict)
 
     def read(self, node: Node | None, bodies: list[str], reading: Reading) -> tuple[Any, ...]:
         """Every item, in its order."""
@@ -75,6 +77,8 @@ class Section:
         if name is None:
             return None
         item = Item(name, self.kinds[name], entry.key.span, entry.value, bodies, reading)
+        if name in self.others and self.others[name](item):
+            return None
         made = item.read(self.hints[name](entry.value) if name in self.hints else None)
         check = self.checks.get(name)
         return made if made is None or check is None or check(item, made) else None

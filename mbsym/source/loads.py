@@ -14,7 +14,7 @@ from mbsym.model.system import INERTIAL, rational
 from mbsym.source.identity import vanishes
 from mbsym.source.keys import CONSTRAINTS, LOADS
 from mbsym.source.kinds import Item, Section
-from mbsym.source.placed import Node, Scalar, Sequence
+from mbsym.source.placed import Mapping, Node, Scalar, Sequence
 from mbsym.source.reading import MAX_SHOWN, Reading
 
 #: Other words for loads, and the kind that is meant.
@@ -108,6 +108,20 @@ def _torque(item: Item, load: Torque) -> bool:
     return True
 
 
+def _of_a_coordinate(item: Item) -> bool:
+    """Whether {coordinate: x, ...: f} stands there, as springs have it: the generalised force f of x is meant."""
+    entries = {entry.key.text: entry for entry in item.value.entries} if isinstance(item.value, Mapping) else {}
+    name = getattr(entries["coordinate"].value, "text", "") if "coordinate" in entries else ""
+    if name not in item.reading.scope.of_kind("coordinate"):
+        return False
+    others = [getattr(entry.value, "text", "") for key, entry in entries.items() if key != "coordinate"]
+    force = others[0] if len(others) == 1 and 0 < len(others[0]) <= MAX_SHOWN else "F"
+    message = Message("a [[name]] acts on a body; on a coordinate it is a 'generalized force'", name=item.name)
+    hint = Message("write '- [[example]]'", example=f"generalized force: {{{name}: {force}}}")
+    item.reading.error("unknown-key", message, entries["coordinate"].key.span, hint)
+    return True
+
+
 _SECTION = Section(
     "load",
     LOADS,
@@ -120,6 +134,7 @@ _SECTION = Section(
         "torque": _torque,
     },
     {"uniform gravity": _vector_hint},
+    {"force": _of_a_coordinate, "torque": _of_a_coordinate},
 )
 
 

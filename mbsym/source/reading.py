@@ -7,7 +7,7 @@ every mistake; a System is only returned when there was none.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
@@ -58,10 +58,13 @@ def _filled_hint(items: tuple[Node, ...]) -> str | None:
 
 
 def _as_mapping(node: Node) -> Message | None:
-    """``{m: 1, l: 2}`` for ``m = 1 l = 2``, where every name has its number, and for ``[m: 1, l: 2]``."""
+    """``{m: 1, l: 2}`` for ``m = 1 l = 2``, where every name has its value, and for ``[m: 1, l: 2]``."""
     pairs: list[tuple[str, str]] = []
-    if isinstance(node, Scalar):
-        pairs = [(one[1], one[2]) for one in _ASSIGNED.finditer(node.text)]
+    if isinstance(node, Scalar) and len(node.text) <= 3 * MAX_SHOWN:
+        first, *parts = _ASSIGNED.split(node.text)
+        pairs = [(name, value.strip(" \n,;")) for name, value in zip(parts[::2], parts[1::2], strict=True)]
+        if first.strip() or not all(_is_expression(value) for _, value in pairs):
+            return None
     elif isinstance(node, Sequence):
         entries = [
             item.entries[0] for item in node.items if isinstance(item, placed.Mapping) and len(item.entries) == 1
@@ -73,8 +76,8 @@ def _as_mapping(node: Node) -> Message | None:
     return Message("write {[[example]]}", example=written) if pairs and len(written) <= 3 * MAX_SHOWN else None
 
 
-#: A name and its number.
-_ASSIGNED = re.compile(r"([A-Za-z]\w*)\s*=\s*([^\s=,;]+)")
+#: A name that is given a value.
+_ASSIGNED = re.compile(r"([A-Za-z]\w*)\s*=(?!=)")
 
 #: So many keys that are all unknown are one mistake, of more each is; so many are told where there are none.
 MOST_OTHER = 8
@@ -92,23 +95,25 @@ def _bare_list(node: Node, wanted: int) -> str | None:
     bare = _BRACKETED.sub(r"\1", text)
     for parts in (text.split(","), bare.split(","), bare.split()):
         parts = [part.strip() for part in parts]
-        scratch = Complaints()
-        if len(parts) == wanted and len(text) <= 3 * MAX_SHOWN:
-            trees = [parse_expression(part, scratch, lambda _start, _end: Span(1, 1)) for part in parts]
-            if all(tree is not None for tree in trees):
-                return ", ".join(parts)
+        if len(parts) == wanted and len(text) <= 3 * MAX_SHOWN and all(map(_is_expression, parts)):
+            return ", ".join(parts)
     return None
 
 
-def _by_axis(node: Node) -> str | None:
-    """``0, -l, 0`` for ``{y: -l}``, and ``0, -1, 0`` for the axis ``-y``."""
+def _is_expression(text: str) -> bool:
+    return parse_expression(text, Complaints(), lambda _start, _end: Span(1, 1)) is not None
+
+
+def _by_axis(node: Node, known: Container[str]) -> str | None:
+    """``0, -l, 0`` for ``{y: -l}``, ``0, -1, 0`` for the axis ``-y``, and ``0, -y, 0`` where that is a known name."""
     if isinstance(node, placed.Mapping):
         written = {entry.key.text.strip(): entry.value for entry in node.entries}
         texts = {axis: value.text.strip() for axis, value in written.items() if isinstance(value, Scalar)}
         if texts and len(texts) == len(written) and set(texts) <= {*_AXES}:
             return ", ".join(texts.get(axis) or "0" for axis in _AXES)
     elif isinstance(node, Scalar) and (named := _AXIS.fullmatch(node.text.strip())):
-        return ", ".join(f"{named[1].strip('+')}1" if axis == named[2] else "0" for axis in _AXES)
+        one = named[2] if named[2] in known else "1"
+        return ", ".join(f"{named[1].strip('+')}{one}" if axis == named[2] else "0" for axis in _AXES)
     return None
 
 
@@ -257,7 +262,7 @@ class Reading:
             )
 
     def vector(self, node: Node, allowed: Allowed) -> Vector:
-        items = self.triple(node, allowed.what)
+        items = self.triple(node, allowed.what, kinds=allowed.kinds)
         if items is None:
             return ZERO_VECTOR
         return (
@@ -266,11 +271,12 @@ class Reading:
             self.expression(items[2], allowed),
         )
 
-    def triple(self, node: Node, what: str, alike: bool = False) -> tuple[Node, ...] | None:
-        """The three items of a list of three; ``alike``: a lone value is most likely meant for all three."""
+    def triple(self, node: Node, what: str, alike: bool = False, kinds: Container[str] = ()) -> tuple[Node, ...] | None:
+        """The three items of a list of three, names of ``kinds``; ``alike``: a lone value is likely meant thrice."""
         if not isinstance(node, Sequence):
             bare, lone = _bare_list(node, 3), _bare_list(node, 1) if alike else None
-            bare = bare or _by_axis(node) or (lone and ", ".join([lone] * 3))
+            known = [name for name, kind in self.scope.kinds.items() if kind in kinds]
+            bare = bare or (lone and ", ".join([lone] * 3)) or _by_axis(node, known)
             self.shape_error(node, what, "a list of three", Message("write [[[bare]]]", bare=bare or "0, 0, 0"))
             return None
         if len(node.items) != 3:

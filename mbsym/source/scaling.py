@@ -93,11 +93,11 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
             example = "t=tau/omega0" if item.name == "t" else f"{item.name}=L*{item.name}1"
             complaints.error("bad-scale", message, item.span, Message("for example [[example]]", example=example))
             continue
-        told_as = Scaled(item.name, linear[-1], factor_of(item.value, linear[-1]) or ONE)
+        scaled = Scaled(item.name, linear[-1], factor_of(item.value, linear[-1]) or ONE)
         if item.name == "t":
-            time = told_as
+            time = scaled
         else:
-            variables.append(told_as)
+            variables.append(scaled)
     images = _resolved({one.name: one.value for one in items if one.name in system.parameter_names}, items, complaints)
     if complaints.errors:
         return None

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Counted, Message
+from mbsym.expressions.safe import UNBROKEN
 from mbsym.report.content import Block, Subheading, paragraph
 from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, failed
 
@@ -80,7 +81,8 @@ def _motion(found: Found) -> Iterator[str]:
     dimensions = read_scaling("", system, Complaints())
     scale = "" if dimensions is None else proposed(system, dimensions, found.groups.units)
     if scale:
-        yield Message('in variables by dimensions: --scale "[[scale]]"', scale=scale)
+        option = f'--scale{UNBROKEN}"{scale}"'  # in one line, so that it can be pasted
+        yield Message("in variables by dimensions, of run, show and convert: [[option]]", option=option)
 
 
 def _said(found: Groups, effects: bool = True) -> Iterator[str]:

@@ -229,11 +229,15 @@ def _executor(system: System, request: Request, wanted: Wanted, measure: Measure
 
 
 def _fixed(system: System, points: Points, request: Request) -> dict[str, Any]:
-    """The numbers of what does not vary: of parameters, or what was put in for symbols of the notation."""
+    """The numbers of what does not vary: of parameters, or what was put in for symbols of the notation.
+
+    Not of what relations give, which may vary with the others.
+    """
     from mbsym.model.admissibility import known_values
 
     described = known_values(system) if {*points.names} <= {*system.parameter_names} else {}
-    return {name: value for name, value in {**described, **request.values}.items() if name not in points.names}
+    varied = {*points.names, *(relation.name for relation in system.relations)}
+    return {name: value for name, value in {**described, **request.values}.items() if name not in varied}
 
 
 def answer(asked: Asked, request: Request, found: Swept) -> Answer:

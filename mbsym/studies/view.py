@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING, Annotated
 
+from mbsym.expressions.message import Message
 from mbsym.studies.request import Flag, Number, Settings, Value
 from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, line, no_program
 
@@ -54,11 +55,15 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Page:
 
 
 def answer(asked: Asked, request: Request, found: Page) -> Answer:
-    return Answer(line(f"  {text}") for text in found.said)
+    from mbsym.report.language import Language
+
+    say = Language(asked.system.language).say
+    return Answer(line(f"  {say(text)}") for text in found.said)
 
 
 def document(asked: Asked, request: Request, found: Page) -> Document:
-    return Document(found.text, told=f"{len(found.text) / 1e6:.1f} MB, opens in a browser without network")
+    size = f"{len(found.text) / 1e6:.1f}"
+    return Document(found.text, told=Message("[[size]] MB, opens in a browser without network", size=size))
 
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:

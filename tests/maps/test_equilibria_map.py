@@ -15,8 +15,10 @@ from jsonschema import Draft202012Validator
 import mbsym
 import mbsym.maps.equilibria_map as module
 from mbsym.algebra.certainty import Certainty
+from mbsym.algebra.failures import NoClosedForm
 from mbsym.maps.boundaries import Boundaries, Origin
 from mbsym.maps.equilibria_map import EquilibriaMap, equilibria_map
+from mbsym.maps.mapping import unwatched
 from mbsym.maps.result import Cell, Counted, Lack
 from mbsym.maps.section import Axis
 from mbsym.mechanics.rest import given_values
@@ -198,3 +200,16 @@ def test_every_word_is_translated() -> None:
         assert {("", text) for text in (*LACKS.values(), *_CONDITIONS.values())} <= messages(language).keys()
     told = schema("equilibria_map")["properties"]["regions"]["items"]["properties"]["standing"]["enum"]
     assert told == [str(one) for one in STANDINGS]
+
+
+def test_a_parameter_under_a_cosine_has_no_map() -> None:
+    """x (cos(a) + c - 3/2) + 4 x^3 = 0: one rest or three by the sign of the bracket, no polynomial in a."""
+    system = mbsym.loads(
+        "mbsym: 1\nname: fork\nparameters: {a: real, c: real}\n"
+        "bodies: [{name: p, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]\n"
+        "loads: [force function: -(cos(a) + c - 3/2)*x**2/2 - x**4]\nmotion: {}\n"
+    ).system
+    with pytest.raises(NoClosedForm, match="a stands in"):
+        equilibria_map(
+            system, (Axis("a", Fraction(0), Fraction(2)), Axis("c", Fraction(0), Fraction(2))), {}, unwatched
+        )

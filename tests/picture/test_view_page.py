@@ -102,6 +102,18 @@ def test_the_command_writes_a_page_and_tells_of_it(tmp_path: Path) -> None:
     assert "opens in a browser" in done.output
 
 
+def test_what_is_told_of_a_page_is_in_the_language_of_the_description(tmp_path: Path) -> None:
+    """A skate: by motions it comes to every position, so that none is said to be out of reach."""
+    text = (SYSTEMS / "chaplygin-sleigh.yaml").read_text(encoding="utf-8")
+    file = tmp_path / "sledge.yaml"
+    file.write_text(text.replace("mbsym: 1\n", "mbsym: 1\nlanguage: ru\n"), encoding="utf-8")
+    done = run(file, "--equilibria", "-o", tmp_path / "page.html")
+    assert done.exit_code == 0, done.output
+    assert "достижимо оно движением или нет" in done.output
+    lines = [line for line in done.output.split("\n") if not line.startswith(text.split("name: ")[1].split("\n")[0])]
+    assert not re.search("[a-z]{4}", re.sub(r"\S*(html|yaml)", "", "\n".join(lines))), done.output
+
+
 @pytest.mark.parametrize(
     ("name", "what", "why"),
     [("four-bar", "modes", "no unperturbed motion"), ("chaplygin-sleigh", "equilibria", "constraints tie what moves")],

@@ -218,8 +218,9 @@ def test_what_is_wrong_is_said_at_its_place(text: str, code: str, place: int, wo
 
 def test_groups_propose_a_scaling_that_converts(tmp_path: Path) -> None:
     path = str(SYSTEMS / "double-pendulum.yaml")
-    told = CliRunner().invoke(main, ["groups", path]).output
-    proposal = " ".join(told.split()).split('--scale "')[1].split('"')[0].replace(" ", "")
+    told = CliRunner().invoke(main, ["groups", path], env={"COLUMNS": "70"}).output
+    (line,) = (one for one in told.splitlines() if "--scale" in one)  # in one line, as it is pasted
+    proposal = line.partition('--scale "')[2].partition('"')[0]
     assert proposal == "t=tau/sqrt(g/l1),m2=m1*m2_hat,l2=l1*l2_hat"
     out = tmp_path / "scaled.yaml"
     done = CliRunner().invoke(main, ["convert", path, "--scale", proposal, "--out", str(out)])

@@ -121,3 +121,52 @@ def test_every_surface_asks_the_same_judge(seed: int) -> None:
     listed = relative_equilibria(analysis.system, given_values(analysis.system, {}))
     there = [one for one in listed.equilibria if all(x.exact and x.value == 0 for x in one.values)]
     assert all(one.verdict.word is found.word for one in there)
+
+
+CURVE = """mbsym: 1
+name: a bead on a curve
+parameters: {{b: {{sign: real, value: {b}}}}}
+bodies:
+  - {{name: p, connection point: [x, {height}, 0], mass: 1, coordinates: [{coordinates}]}}
+constraints: {constraints}
+loads:
+  - uniform gravity: {{acceleration: 9.81, direction: [0, -1, 0]}}
+motion: {{x: 1}}
+"""
+
+
+@pytest.mark.parametrize("related", [False, True])
+@pytest.mark.parametrize(
+    ("shape", "everywhere", "there"),
+    [
+        ("exp(x)", Word.STABLE, Word.STABLE),
+        ("(2 + sin(x))", Word.STABLE, Word.STABLE),
+        ("exp(-b*x)", Word.STABLE, Word.STABLE),
+        ("(1 - exp(x))", Word.UNSTABLE, Word.UNSTABLE),
+        ("cos(b*x)", Word.UNDECIDED, Word.UNSTABLE),  # cos 2 < 0
+    ],
+)
+def test_the_first_term_decides_though_it_is_no_algebraic_number(
+    shape: str, everywhere: Word, there: Word, related: bool
+) -> None:
+    """y = (x - 1)^4 f(x) has its bottom at x = 1 where f(1) > 0, and falls on both sides where f(1) < 0."""
+    height = f"(x - 1)**4*{shape}"
+    text = CURVE.format(
+        b=2,
+        height="y" if related else height,
+        coordinates="x, y" if related else "x",
+        constraints=f"[{{relation: 'y = {height}'}}]" if related else "[]",
+    )
+    found = Analysis(mbsym.loads(text).system, (6,)).stability
+    assert found.numerical is not None
+    assert (found.verdict.word, found.numerical.word) == (everywhere, there)
+
+
+@pytest.mark.parametrize(("b", "word"), [("1", Word.STABLE), ("1/10", Word.UNSTABLE)])
+def test_what_vanishes_at_the_values_only_is_no_first_term(b: str, word: Word) -> None:
+    """V = (x - 1)^4 at b = 1; at b = 1/10 it is (x - 1)^3 e^x."""
+    shape = "((b - 1)*(x - 1)**2*exp(x) + (x - 1)**4)" if b == "1" else "((10*b - 1)*(x - 1)**2 + (x - 1)**3*exp(x))"
+    text = CURVE.format(b=b, height=shape, coordinates="x", constraints="[]")
+    found = Analysis(mbsym.loads(text).system, (6,)).stability
+    assert found.numerical is not None
+    assert found.numerical.word is word

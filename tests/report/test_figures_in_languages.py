@@ -55,8 +55,8 @@ COMMANDS = (
 )
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_no_english_word_is_drawn(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def drawn_by(command: str, description: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Every text in the figures of a command."""
     drawn: list[str] = []
 
     class Watched(FigureCanvasAgg):
@@ -66,10 +66,16 @@ def test_no_english_word_is_drawn(command: str, tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(drawing, "FigureCanvasAgg", Watched)
     file = tmp_path / "pendulum.yaml"
-    file.write_text(DESCRIPTION, encoding="utf-8")
+    file.write_text(description, encoding="utf-8")
     study, *options = command.split()
     done = CliRunner().invoke(main, [study, str(file), *options, "--out", str(tmp_path / "out"), "--quiet"])
     assert done.exit_code == 0, done.output
+    return drawn
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_english_word_is_drawn(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn = drawn_by(command, DESCRIPTION, tmp_path, monkeypatch)
     assert any(re.search("[а-я]{4}", text) for text in drawn)
     plain = (NAMES.sub("", re.sub(r"\$[^$]*\$", "", text)) for text in drawn)
     assert [text for text in plain if re.search("[A-Za-z]{3}", text)] == []
@@ -90,3 +96,17 @@ def test_what_tells_curves_apart_stands_inside_of_the_picture() -> None:
     saved("x", figure, ["png"])
     box = legend.get_window_extent()
     assert 0 <= box.x0 < box.x1 <= figure.bbox.width
+
+
+@pytest.mark.parametrize("command", ["simulate --time 1 --format png", "sweep --measure damping"])
+def test_what_a_relation_gives_is_not_told_to_be_the_same(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """m = l^2 is 1, 1.0002 and 1.0004 where l is 1, 1.0001 and 1.0002: no number stands for all, and four digits do not
+    tell curves apart."""
+    related = DESCRIPTION.replace("m: {sign: positive, value: 1}", "m: positive") + "relations: {m: l**2}\n"
+    drawn = drawn_by(f"{command} --vary l=1:1.0002:3", related, tmp_path, monkeypatch)
+    assert any(re.search(r"\$g\$ = 9\.81", text) for text in drawn)
+    assert not any(re.search(r"\$m\$ \S \d", text) for text in drawn)
+    if command.startswith("simulate"):
+        assert {"$l$ = 1", "$l$ = 1.0001", "$l$ = 1.0002"} <= {*drawn}

@@ -283,3 +283,16 @@ def test_a_generalized_force_written_as_other_loads_are() -> None:
     system, complaints = read(described("force", "  - generalized force: {theta: -c*theta_dot}"))
     assert system is not None
     assert not list(complaints)
+
+
+@pytest.mark.parametrize("kind", ["torque", "force"])
+@pytest.mark.parametrize("key", ["torque", "moment", "components", "value"])
+def test_a_torque_on_a_coordinate_is_one_mistake(kind: str, key: str) -> None:
+    _, complaints = read(described("force", f"  - {kind}: {{coordinate: theta, {key}: -c*theta_dot}}"))
+    (only,) = complaints
+    assert (only.code, only.hint) == ("unknown-key", f"write '-{SOUND['force'].partition('-')[2]}'")
+
+
+def test_what_else_is_wrong_with_a_torque_is_told() -> None:
+    _, complaints = read(described("force", "  - torque: {coordinate: y, body: lower, components: [0, 0, c]}"))
+    assert {one.code for one in complaints} == {"unknown-key", "missing-key"}

@@ -274,13 +274,13 @@ def up_to(passed: Passed | None, end: float) -> Passed | None:
 def together(runs: Iterable[Run], whole: Iterable[Callable[[Any], Any]]) -> Passed | None:
     """What runs of parts of a system have met; ``whole`` makes of the state of each that of the system."""
     runs = list(runs)
-    passeds = [one for run in runs if (one := met_by(run)) is not None]
-    if not passeds:
+    passages = [one for run in runs if (one := met_by(run)) is not None]
+    if not passages:
         return None
     return Passed(
-        sorted({time for passed in passeds for time in passed.switches}),
-        sorted((replace(x, place=None) for passed in passeds for x in passed.narrow), key=lambda x: x.time),
-        sorted(time for passed in passeds for time in passed.unresolved),
+        sorted({time for passed in passages for time in passed.switches}),
+        sorted((replace(x, place=None) for passed in passages for x in passed.narrow), key=lambda x: x.time),
+        sorted(time for passed in passages for time in passed.unresolved),
         [
             (time, complete(state))
             for run, complete in zip(runs, whole, strict=True)

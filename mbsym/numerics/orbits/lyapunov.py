@@ -57,8 +57,8 @@ class Exponents:
     and ``sum_error`` how far the sum of all exponents is from it; nan where not all were asked for.
 
     ``linear``: the equations are linear in the state (proved: their Jacobian does not know it), so that all motions
-    part alike and none is chaotic; ``planar``: smooth equations without the time move two variables, and no such
-    motion is chaotic (Poincare and Bendixson); ``resting``: the motion is a rest in every digit.
+    part alike and none is chaotic; ``planar``: smooth equations and constraints without the time move two variables,
+    and no such motion is chaotic (Poincare and Bendixson); ``resting``: the motion is a rest in every digit.
     """
 
     values: Any
@@ -145,7 +145,8 @@ def exponents(
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
     doubt, linear = _uncertainty(rates, times), dynamics.linear
-    planar = most == 2 and autonomous(dynamics)
+    # What a constraint drives is a variable more, though the rates may hold no time.
+    planar = most == 2 and autonomous(dynamics) and (constraints is None or constraints.steady)
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, planar, resting)
 
 

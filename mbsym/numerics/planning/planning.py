@@ -445,10 +445,10 @@ def _settled(
         if trial is not None and (found is None or trial.cost < found.cost):
             found = trial
     if found is None and pins.scalar is None:
-        for in_more_digit in in_more_digits():
-            if pins.method in (None, in_more_digit.method.traits.name):
-                watch(f"{in_more_digit.method.traits.name}, {in_more_digit.scalar}")
-                found = found or _searched(bench, in_more_digit, Setting(first), goal, inf)
+        for finer in in_more_digits():
+            if pins.method in (None, finer.method.traits.name):
+                watch(f"{finer.method.traits.name}, {finer.scalar}")
+                found = found or _searched(bench, finer, Setting(first), goal, inf)
     if found is None:
         if not bench.trials:
             raise Unusable("no method comes to the end of this motion")

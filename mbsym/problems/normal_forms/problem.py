@@ -128,9 +128,16 @@ def by_energy(
 
 
 def first_term(
-    scene: Scene, whole: Any, equilibrium: Equilibrium | None, manifold: Callable[[int], OnManifold] | None
+    scene: Scene,
+    whole: Any,
+    equilibrium: Equilibrium | None,
+    manifold: Callable[[int], OnManifold] | None,
+    sign: Callable[[Polynomial], str],
 ) -> tuple[int, Polynomial] | None:
-    """The order and the coefficient of the first term of V(x) of the one coordinate; None of others, or of none."""
+    """The order and the coefficient of the first term of V(x) of the one coordinate that ``sign`` does not call zero.
+
+    None of several coordinates, or where all terms are zero.
+    """
     made = _Expanded(scene, whole, equilibrium, False, (), manifold)
     for most in (4, MOST_ORDER):
         found = made.plain(most)
@@ -139,7 +146,7 @@ def first_term(
             return None
         for order in range(2, most + 1):
             value = parts.get((0,) * order)
-            if value is not None and scene.ring.is_zero(value) is not True:
+            if value is not None and scene.ring.is_zero(value) is not True and sign(value) != "zero":
                 return order, value
     return None
 

@@ -105,7 +105,7 @@ def named(names: LatexNames, name: str) -> str:
     return name.replace("$", r"\$") if "mathtt" in symbol.stem else f"${symbol}$"
 
 
-def equalities(values: Mapping[str, Any]) -> str:
+def equalities(values: Mapping[str, Any], digits: int = 4) -> str:
     """``m = 1, omega = 3.333``: numbers beside symbols, as mathematical text; nothing of too many to be read.
 
     They are about equal where digits are left out.
@@ -115,8 +115,8 @@ def equalities(values: Mapping[str, Any]) -> str:
     names = LatexNames(list(values))
     written = []
     for name, value in values.items():
-        digits = f"{float(value):.4g}"
-        written.append(f"{named(names, name)} {'=' if float(digits) == float(value) else chr(0x2248)} {digits}")
+        number = f"{float(value):.{digits}g}"
+        written.append(f"{named(names, name)} {'=' if float(number) == float(value) else chr(0x2248)} {number}")
     return ", ".join(written).replace("-", "\u2212")
 
 

@@ -19,6 +19,7 @@ from mbsym.algebra.failures import Failure, NoValue, message_of
 from mbsym.analysis import Analysis
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.analysis.stages import Unavailable
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, substitute
 from mbsym.mechanics.rest import given_values, missing_values
 from mbsym.model.system import System, rational, with_values
@@ -103,8 +104,9 @@ def viewed(
         "modes": modes_part(system, overrides) if modes else None,
         "equilibria": equilibria_part(system, overrides) if equilibria else None,
     }
-    said = [*drawn["sentences"]]
-    said += [f"no {name}: {part['why']}" for name, part in further.items() if part is not None and "why" in part]
+    none = {"modes": "no modes: [[why]]", "equilibria": "no equilibria: [[why]]"}
+    missing = [(none[name], part["why"]) for name, part in further.items() if part is not None and "why" in part]
+    said = [*drawn["sentences"], *(Message(text, why=why) for text, why in missing)]
     return Page(view_page(system, drawn, moving, further["modes"], further["equilibria"]), said)
 
 

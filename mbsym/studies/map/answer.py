@@ -267,8 +267,8 @@ def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
     if system is not None and system.assumptions:
         text = "the assumptions of the description, and triangle inequalities of inertias, are not looked at"
         told.append(Message(text))
-    counteds = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
-    if counteds:
+    checked = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
+    if checked:
         text = (
             "check at another point of [[regions]]: Newton's method from many points finds no more than "
             "the list there; "
@@ -279,8 +279,8 @@ def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
                 "check at another point of [[regions]]: the exact numbers agree, and Newton's method from many points "
                 "finds no more than the list there; as many as at the sample in [[same]]"
             )
-        same = Counted(sum(counted.confirmed == counted.count for counted in counteds), "region")
-        told.append(Message(text, regions=Counted(len(counteds), "region"), same=same))
+        same = Counted(sum(counted.confirmed == counted.count for counted in checked), "region")
+        told.append(Message(text, regions=Counted(len(checked), "region"), same=same))
     if any(region.lack is Lack.INCOMPLETE for region in found.regions):
         told.append(Message("where the list is not complete nothing is counted"))
     return told

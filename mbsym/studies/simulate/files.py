@@ -113,7 +113,6 @@ def motion_files(run: Simulation, derivatives: Sensitivities | None, formats: Se
 
 def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
     """Of many motions: curves of few, else fan charts."""
-    from mbsym.report.figures.drawing import equalities
     from mbsym.report.figures.figures import Curve, curves, fan_charts
     from mbsym.report.runs.ensemble_tables import ensemble_csv, ensemble_json, members_csv
     from mbsym.studies.simulate.fitting import variations_of
@@ -123,7 +122,8 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
     if "csv" in request.formats:
         files |= {"ensemble.csv": ensemble_csv(ensemble), "members.csv": members_csv(ensemble)}
     if kinds and result.few and all(len(run.times) > 1 for run in result.few.values()):
-        drawn = [Curve(run.trajectory, rates_along(run), equalities(dict(x))) for x, run in result.few.items()]
+        legend = zip(result.few.values(), _legend(result.few), strict=True)
+        drawn = [Curve(run.trajectory, rates_along(run), words) for run, words in legend]
         files |= curves(drawn, kinds, _fixed(result.few))
     elif kinds and len(ensemble.times) > 1:
         files |= fan_charts(ensemble, kinds)
@@ -131,12 +131,24 @@ def ensemble_files(result: Many, request: Command) -> Mapping[str, str | bytes]:
     return files | {"ensemble.json": ensemble_json(ensemble, *how, list(files))}
 
 
+def _legend(few: Mapping[Member, Simulation]) -> list[str]:
+    """What varies of each, in as many digits, from four on, as tell them apart."""
+    from mbsym.report.figures.drawing import equalities
+
+    written: list[str] = []
+    for digits in range(4, 18):
+        written = [equalities(dict(member), digits) for member in few]
+        if len({*written}) == len(written):
+            break
+    return written
+
+
 def _fixed(few: Mapping[Member, Simulation]) -> str:
     """The parameters that are the same on all curves."""
     from mbsym.report.figures.drawing import equalities
 
-    member, run = next(iter(few.items()))
-    same = {name: value for name, value in run.scenario.parameters.items() if name not in dict(member)}
+    known = [run.scenario.parameters for run in few.values()]  # what a relation gives may vary with the others
+    same = {name: value for name, value in known[0].items() if all(other[name] == value for other in known)}
     return equalities(same)
 
 
