@@ -40,6 +40,7 @@ from mbsym.expressions.tree import (
     Number,
     Operation,
     multiply,
+    sign_by_structure,
     text,
 )
 
@@ -440,7 +441,9 @@ class _Parser:
         if form is None or not form.is_constant:
             of_euler = base == Name("e")
             written = text(Call("exp", tree if of_euler else multiply(tree, Call("log", base))))
-            hint = Message("[[base]] to this power is [[written]]", base=text(base), written=written)
+            shown = Message("Euler's number") if of_euler else text(base)
+            real = not _is_zero(base) and sign_by_structure(base, {}) != "negative"
+            hint = Message("[[base]] to this power is [[written]]", base=shown, written=written) if real else None
             self.complain("bad-exponent", "an exponent must be a rational number", start, end, hint)
             return tree if of_euler else self.grown(Operation("*", base, tree, self.span_of(start, end)), base, tree)
         value = form.constant

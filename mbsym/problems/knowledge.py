@@ -62,7 +62,7 @@ def signs(scene: Scene) -> Signs:
 def _radicands(ring: Ring, values: Iterable[Polynomial], told: Signs) -> list[tuple[Polynomial, str]]:
     """x >= 0 of every sqrt(x) by which parameters are given: they are real numbers.
 
-    As a polynomial that is top * bottom, x = top/bottom; > 0 where top is known not to vanish.
+    As a polynomial that is top * bottom, x = top/bottom; > 0, and the root with it, where top is known not to vanish.
     """
     facts = []
     for k in occurring(values):
@@ -78,6 +78,7 @@ def _radicands(ring: Ring, values: Iterable[Polynomial], told: Signs) -> list[tu
             continue
         if len(product) <= MOST_TERMS and told.sign(product) not in ("negative", "nonpositive", "zero"):
             facts.append((product, ">" if strict else ">="))
+            facts += [(ring.context.gen(k), ">")] * strict
     return facts
 
 

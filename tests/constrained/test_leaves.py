@@ -318,6 +318,7 @@ motion: {{x: 0, y: 0}}
     stability = described(text).stability
     assert stability.verdict.word is word
     assert stability.numerical is None or stability.numerical.word is word
+    assert "problem 11" not in stability.verdict.explanation  # it does not take constraints
 
 
 @pytest.mark.parametrize("given", ["velocity: 5*z_dot = 3*x_dot + 4*y_dot", "relation: 5*z = 3*x + 4*y - 5"])

@@ -337,3 +337,16 @@ def test_an_input_is_supplied_and_conserves_nothing(tmp_path):
     assert found.integrals == ()
     assert "inputs" in found.stage_of("first_order").failure.reason
     assert [found.check(name).outcome for name in CHECKED] == [EXACT] * 4
+
+
+def test_a_chain_that_begins_where_all_its_angles_are_singular_keeps_its_budget():
+    """At 3-1-3 angles of 0 no choice of the velocities that speeds replace is regular: not all are tried for one."""
+    bodies = []
+    for k in range(5):
+        turn = f"rotation: {{axes: [3, 1, 3], angles: [a{k}, b{k}, c{k}]}}, coordinates: [a{k}, b{k}, c{k}]"
+        own = f", speeds: {{p{k}: omega1, q{k}: omega2, r{k}: omega3}}" if k > 2 else ""
+        bodies.append(f"  - {{name: B{k}, attached to: {f'B{k - 1}' if k else 0}, {turn}, mass: 1{own}}}\n")
+    start = ", ".join(f"{name}{k}: 0" for k in range(5) for name in "abc")
+    analysis = mbsym.loads("mbsym: 1\nname: Chain\nbodies:\n" + "".join(bodies) + f"initial: {{{start}}}\n")
+    assert {one.name for one in analysis.form.speeds} >= {f"{name}{k}_dot" for k in range(3) for name in "abc"}
+    assert analysis.ring.work < analysis.ring.work_budget / 10

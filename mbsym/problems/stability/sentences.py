@@ -115,7 +115,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "the smallest velocity leads away from it along a geodesic."
     ),
     Because.TERMS_OF_HIGHER_ORDER: (
-        "The first approximation leaves the nonlinear system open; terms of higher order decide (problem 11)."
+        "The first approximation leaves the nonlinear system open; terms of higher order decide."
     ),
     Because.GYROSCOPIC_ONLY: (
         "The necessary conditions hold, but K is not positive definite: the first approximation is stable by "

@@ -104,3 +104,20 @@ motion: {f: {rate: w}, th: a}
         "stable but for a drift of cyclic coordinates"
     ]
     assert mbsym.loads(text.replace("sqrt(g/(l*cos(a)))", "g/(l*cos(a))")).stability.verdict.word.value != "unstable"
+
+
+def test_a_root_of_what_cannot_vanish_does_not_either():
+    """V = (1 - c) b x^2 with b = sqrt(1/(1 - c)), a number: 1 - c > 0, and b > 0 without a condition of its own."""
+    verdict = mbsym.loads("""
+mbsym: 1
+name: Spring by a root
+parameters: {b: real, c: real}
+relations: {b: sqrt(1/(1 - c))}
+bodies:
+  - {name: p, attached to: 0, coordinates: [x], connection point: [x, 0, 0], mass: 1}
+loads:
+  - potential: (1 - c)*b*x**2
+motion: {x: 0}
+""").stability
+    assert verdict.verdict.word.value == "stable"
+    assert not verdict.subsystems[0].conditions
