@@ -82,7 +82,7 @@ def _motion(found: Found) -> Iterator[str]:
     scale = "" if dimensions is None else proposed(system, dimensions, found.groups.units)
     if scale:
         option = f'--scale{UNBROKEN}"{scale}"'  # in one line, so that it can be pasted
-        yield Message("in variables by dimensions, of run, show and convert: [[option]]", option=option)
+        yield Message("in dimensionless variables (mbsym run, show, convert): [[option]]", option=option)
 
 
 def _said(found: Groups, effects: bool = True) -> Iterator[str]:

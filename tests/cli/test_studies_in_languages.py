@@ -40,6 +40,10 @@ TYPED = {
     "log",
     "theta",
     "det",
+    "mbsym",
+    "run",
+    "show",
+    "convert",
     "float64",
 }
 

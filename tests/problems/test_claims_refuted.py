@@ -300,7 +300,7 @@ def test_the_role_of_a_condition_is_written_and_read() -> None:
         ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(s**2)/s", Outcome.EXACT, "s > 0"),
         ("coefficient, of: kinetic energy, at: r_dot**2, equals: -m/2*sqrt(n**2)/n", Outcome.EXACT, ""),
         ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(n**2)/n", Outcome.SCALED, ""),  # by -1
-        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(exp(s)**2)/exp(s)", Outcome.NUMERICAL, ""),
+        ("coefficient, of: kinetic energy, at: r_dot**2, equals: m/2*sqrt(exp(s)**2)/exp(s)", Outcome.EXACT, ""),
     ],
 )  # fmt: skip
 def test_what_holds_for_one_sign_is_told_to(claim: str, outcome: str, where: str) -> None:
