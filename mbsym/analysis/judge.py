@@ -62,8 +62,9 @@ _NO_MOTION = (
 class Judge:
     """judge(values): the verdict on the unperturbed motion at exact values of all parameters."""
 
-    def __init__(self, analysis: Analysis) -> None:
-        self.analysis = analysis
+    def __init__(self, analysis: Analysis, displaces: bool = True) -> None:
+        """``displaces``: displacements that change no equation may be taken for coordinates, which is done once."""
+        self.analysis, self._displaces = analysis, displaces
 
     def __call__(self, values: Mapping[str, Fraction]) -> Verdict:
         return self.decided(self.first_approximation(values), values)
@@ -149,7 +150,7 @@ class Judge:
         """
         of = self.analysis
         if not of.system.constraints:
-            system = self._displaced
+            system = self._displaced if self._displaces else None
         elif not any(isinstance(constraint, Relation) for constraint in of.system.constraints):
             return None
         else:
@@ -161,7 +162,8 @@ class Judge:
 
             if said_rows(type(of)(system, (), of.terms).scene):  # those that say 0 = 0 followed from what is put in
                 return None
-        return Judge(type(of)(replace(system, constraints=()), (), of.terms, suggests=False))
+        plain = type(of)(replace(system, constraints=()), (), of.terms, suggests=False)
+        return Judge(plain, displaces=bool(of.system.constraints))
 
     @property
     def _displaced(self) -> System | None:
