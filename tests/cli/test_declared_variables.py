@@ -133,7 +133,7 @@ def test_a_few_motions_of_a_grid_are_drawn_beside_each_other(tmp_path: Path) -> 
     result = called(tmp_path / "table-1.yaml", *words)
     assert result.exit_code == 0, result.output
     pictures = (tmp_path / "out" / "phase-planes-2.svg").read_text(encoding="utf-8")
-    assert all(f"lx = {value}" in pictures for value in (30, 60, 90))
+    assert all(f"$l_{{x}}$ = {value} -->" in pictures for value in (30, 60, 90))
     with (tmp_path / "out" / "members.csv").open(encoding="utf-8") as file:
         (last, _, _) = csv.DictReader(file)
     (row,) = [one for one in truth["rows"] if Fraction(one["t"]) == Fraction(1, 2)]
