@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.model.system import System
     from mbsym.problems.constraints import Constraints
+    from mbsym.problems.constraints.motion import Embedded
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds.speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
@@ -209,14 +210,39 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
     from mbsym.problems.constraints.motion import oscillating_position, steady_motions
 
     derived = analysis.optional("equations")
-    if derived is None or derived.embedded is None:
+    embedded = None if derived is None else derived.embedded
+    if embedded is None:
         return {}
     ring, names = analysis.ring, analysis.system.coordinates
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
     return {
-        "oscillating": oscillating_position(ring, derived.embedded, names),
-        "steady": steady_motions(ring, derived.embedded, names, about.idle, at, analysis.signs),
+        "oscillating": oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded),
+        "steady": steady_motions(ring, embedded, names, about.idle, at, analysis.signs),
     }
+
+
+#: So many choices of independent velocities are tried.
+MOST_CHOICES = 4
+
+
+def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
+    """The position that velocities follow, told in others: x' of a body that turns brings in its heading, u does not."""
+    from mbsym.problems.constraints.motion import felt_coordinates, oscillating_position
+
+    idle, system = {*analysis.reduced.about.idle}, analysis.system
+    felt = {*(felt_coordinates(analysis.ring, embedded, system.coordinates) or ())}
+    if len(felt - idle) != 1 or not felt & idle:
+        return ""
+    replaced = [name for name in embedded.free if name not in felt]
+    for name in [name for name in system.coordinates if name not in embedded.free][:MOST_CHOICES]:
+        chosen = replace(system, dependent=(*replaced, name))
+        other = type(analysis)(chosen, (), analysis.terms, suggests=False)
+        found = other.optional("equations")
+        if found is not None and found.embedded is not None:
+            position = oscillating_position(other.ring, found.embedded, system.coordinates)
+            if position:
+                return position
+    return ""
 
 
 def state_space_of(analysis: Analysis) -> StateSpace:

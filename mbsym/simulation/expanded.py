@@ -190,14 +190,18 @@ class _Numbers:
 
 
 def _span(flow: Flow, s: Floats) -> float:
-    """How long: some multiple of 1/|df/ds| at the beginning, of variables in parts of their sizes; in two digits."""
+    """How long: some multiple of 1/max |eigenvalue of df/ds| at the beginning, whatever the units; in two digits.
+
+    Where all eigenvalues vanish, of 1/|df/ds| for variables in parts of their sizes.
+    """
     sizes = np.where(s != 0, np.abs(s), np.max(np.abs(s), initial=0.0) or 1.0)
     with np.errstate(all="ignore"):
         columns = [(flow(s + d) - flow(s - d)) / (2 * STEP) for d in np.diag(STEP * sizes)]
         slopes, rates = np.array(columns) / sizes, np.abs(flow(s)) / sizes
     if not np.isfinite(slopes).all():
         raise NotMeasured("the flow on the manifold has no derivatives at the initial state")
-    rate = float(np.linalg.norm(slopes, 2))
+    norm, radius = float(np.linalg.norm(slopes, 2)), float(np.abs(np.linalg.eigvals(slopes)).max())
+    rate = radius if radius > 1e-6 * norm else norm
     if rate <= 1e-9 * float(np.max(rates)):
         raise NotMeasured("the flow on the manifold does not change there; ask for a --time")
     return float(f"{SPAN / rate:.2g}")

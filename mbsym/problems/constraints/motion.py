@@ -65,7 +65,7 @@ def oscillating_position(ring: Ring, embedded: Embedded, coordinates: Sequence[s
     So w is a function of q along every motion, w = w(q; c), with as many constants c as there are velocities w: bodies
     of revolution that roll on a plane (Chaplygin 1897, Appell and Korteweg 1899), where no integral has a closed form.
     """
-    moving = _felt(ring, embedded, coordinates)
+    moving = felt_coordinates(ring, embedded, coordinates)
     if moving is None or len(moving) != 1 or len(embedded.free) == 1:
         return ""
     matrix, forcing = embedded.mass_matrix.polynomials, [x.polynomial for x in embedded.forcing]
@@ -94,7 +94,7 @@ def steady_motions(
     that are linear in a velocity, say nothing; there is a manifold where the rows that are left are as many as their
     rank ``at`` the motion (implicit functions), by pivots that are shown not to vanish.
     """
-    felt = _felt(ring, embedded, coordinates)
+    felt = felt_coordinates(ring, embedded, coordinates)
     if felt is None:
         return None
     resting = {ring.index("velocity", name): ring.zero for name in felt}
@@ -144,7 +144,7 @@ def _eliminated(
     return None
 
 
-def _felt(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> tuple[str, ...] | None:
+def felt_coordinates(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> tuple[str, ...] | None:
     """The coordinates that the equations depend on; None where these are not analytic, or know other velocities."""
     entries = [*(x for row in embedded.mass_matrix.polynomials for x in row), *(x.polynomial for x in embedded.forcing)]
     held = [ring.generators[k] for k in ring.held(entries)]
