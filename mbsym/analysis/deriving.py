@@ -226,7 +226,7 @@ MOST_CHOICES = 4
 
 
 def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
-    """The position that velocities follow, told in others: x' of a body that turns brings in its heading, u does not."""
+    """The position that velocities follow, told in others: x' of a body that turns brings in a heading, u does not."""
     from mbsym.problems.constraints.motion import felt_coordinates, oscillating_position
 
     idle, system = {*analysis.reduced.about.idle}, analysis.system
