@@ -101,17 +101,17 @@ def steady_motions(
     if any(not ring.reduce(at[index]).is_zero() for index in resting):
         return None
     rows = [ring.reduce(ring.substitute(x.polynomial, resting)) for x in embedded.forcing]
-    velocities = [velocity_name(name) for name in embedded.free if name not in felt]
-    dimension = len(velocities) + len({*felt} - {*idle})
+    gliding = [name for name in embedded.free if name not in felt]
+    variables = (*felt, *map(velocity_name, gliding))
+    dimension = len(gliding) + len({*felt} - {*idle})
     while rows := [row for row in rows if not row.is_zero()]:
         slopes: list[Mapping[Hashable, Polynomial]] = [
-            {k: ring.substitute(ring.derivative(row, name), at) for k, name in enumerate((*felt, *velocities))}
-            for row in rows
+            {k: ring.substitute(ring.derivative(row, name), at) for k, name in enumerate(variables)} for row in rows
         ]
-        rank = echelon(ring, signs, slopes, range(len(felt) + len(velocities)))
+        rank = echelon(ring, signs, slopes, range(len(variables)))
         if len(rank.pivots) == len(rows) and not rank.assumed:
             return dimension - len(rows)
-        left = _eliminated(ring, rows, velocities, at, signs)
+        left = _eliminated(ring, rows, gliding, at, signs)
         if left is None:
             return None
         rows, dimension = left, dimension - 1
@@ -119,15 +119,16 @@ def steady_motions(
 
 
 def _eliminated(
-    ring: Ring, rows: Sequence[Polynomial], velocities: Sequence[str], at: Mapping[int, Polynomial], signs: Signs
+    ring: Ring, rows: Sequence[Polynomial], coordinates: Sequence[str], at: Mapping[int, Polynomial], signs: Signs
 ) -> list[Polynomial] | None:
-    """The other rows with a velocity put in that a row is linear in: a w + b = 0, a != 0; None without such a row."""
+    """The other rows with the velocity w of a coordinate put in, by a row a w + b = 0, a != 0; None without one."""
     for i, row in enumerate(rows):
-        for name in velocities:
+        for coordinate in coordinates:
+            name = velocity_name(coordinate)
             factor = ring.derivative(row, name)
             if not _is_linear(ring, row, name) or not signs.never_zero(ring.substitute(factor, at)):
                 continue
-            nothing = {ring.index("velocity", name.removesuffix("_dot")): ring.zero}
+            nothing = {ring.index("velocity", coordinate): ring.zero}
             rest = ring.substitute(row, nothing)
             others = []
             for other in (*rows[:i], *rows[i + 1 :]):
