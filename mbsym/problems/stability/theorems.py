@@ -14,7 +14,7 @@ x'.M x'/2 + x.K x/2 + terms of higher order:
   theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V; Karapetyan).
 * Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w) and
   q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed with the
-  time: a centre where its roots are imaginary (bodies of revolution that roll on a plane).
+  time: a centre where q rests and its roots are imaginary (bodies of revolution that roll on a plane).
 * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
   in a system of one coordinate, where the converse holds.
 * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
