@@ -23,7 +23,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from enum import Enum
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -35,9 +34,7 @@ from mbsym.algebra.failures import NotRational
 from mbsym.algebra.matrices import leading_determinants, null_space
 from mbsym.algebra.polynomial_systems import Residues
 from mbsym.algebra.rationals import rounded
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, concluded
+from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
 Rows = Sequence[Sequence[Element]]
@@ -193,14 +190,6 @@ MOST_ORDER = 10
 _TRIED = [Fraction(k, 4) for k in range(-16, 17)]
 
 
-class Extremum(Enum):
-    """What is proved of a stationary point of the potential energy."""
-
-    MINIMUM = "strict minimum"
-    NONE = "no minimum"
-    OPEN = "open"
-
-
 def by_potential(
     size: int, derivative: Derivative, field: NumberField, conserved: bool, only: bool, gyroscopic: bool
 ) -> Verdict | None:
@@ -216,13 +205,7 @@ def by_potential(
     except NotRational:
         return None
     extremum = _extremum(order, form, field)
-    if extremum is Extremum.MINIMUM:
-        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
-        return concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
-    if extremum is Extremum.NONE and only and conserved and not (gyroscopic and size > 1):
-        facts = {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED}
-        return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
-    return None
+    return by_extremum(order, extremum, conserved and only and not (gyroscopic and size > 1))
 
 
 def _extremum(order: int, form: Sequence[Element], field: NumberField) -> Extremum:
