@@ -26,7 +26,7 @@ from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.theorems import HigherOrder
-from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum
+from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
 from mbsym.problems.stability.word import Word
 
 if TYPE_CHECKING:
@@ -104,6 +104,9 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         if not balance.law.bounded:
             return None
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
+        forces = (analysis.energy.force_function.polynomial, *generalized_forces(analysis.held_scene).values())
+        if balance.conserves and all(map(analysis.ring.vanishes, forces)):
+            return coasting(Because.ALIKE) if len(analysis.linearisation.M.polynomials) == 1 else by_geodesics()
         return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, balance.conserves, values)
     except (Failure, *NOT_THERE):
         return None

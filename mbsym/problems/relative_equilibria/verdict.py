@@ -21,7 +21,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.rest import Rest
-from mbsym.mechanics.symmetry import free_spin
+from mbsym.mechanics.symmetry import constantly_curved, free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
 from mbsym.problems.conserved import Conserved, by_integrals, conserved
@@ -34,8 +34,7 @@ from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cycl
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
+from mbsym.problems.stability.verdict import Verdict, by_geodesics, coasting, combine, drifting, undecided
 
 #: Matrices by their entries, which are numbers.
 Rows = list[list[list[Any]]]
@@ -93,7 +92,7 @@ class LinearAtRest:
         stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
         forces = (x for row in (*stiffness, *self.matrices[2]) for x in row)
         if self.law is EnergyLaw.CONSERVED and all(ring.is_zero(x) is True for x in forces):
-            return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
+            return coasting(Because.ALIKE) if self._alike else by_geodesics()
         of = [names[i] for i in kept]
 
         def derivative(i: int, j: int, *further: int) -> Element | None:
@@ -110,6 +109,14 @@ class LinearAtRest:
         conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
         verdict = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
+
+    @property
+    def _alike(self) -> bool:
+        """Whether all positions are alike for the kinetic energy."""
+        try:
+            return constantly_curved(self.found.ring, self.matrices[0], self.found.system.coordinates)
+        except Failure:
+            return False
 
     @property
     def conservative(self) -> bool:

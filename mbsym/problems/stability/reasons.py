@@ -55,6 +55,7 @@ class Because(Enum):
     HIGHER_ORDER = auto()
     # of cyclic coordinates
     COASTING = auto()
+    ALIKE = auto()
     VELOCITIES = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()

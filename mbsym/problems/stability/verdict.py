@@ -411,10 +411,15 @@ def off_the_leaf(verdict: Verdict) -> Verdict:
     return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
 
 
-def coasting() -> Verdict:
-    """All coordinates are cyclic and nothing acts on them: M q'' = 0."""
+def coasting(because: Because = Because.COASTING) -> Verdict:
+    """All coordinates are cyclic and nothing acts on them: M q'' = 0; or so it is in other coordinates (ALIKE)."""
     every = tuple((ground, ()) for ground in Ground if ground is not Ground.LINEAR)
-    return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(Because.COASTING),), every, frozenset({Flaw.CYCLIC}))
+    return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(because),), every, frozenset({Flaw.CYCLIC}))
+
+
+def by_geodesics() -> Verdict:
+    """The verdict on a rest where nothing acts at all, and positions are not shown to be alike."""
+    return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
 
 
 def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
