@@ -253,16 +253,39 @@ def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
     from mbsym.problems.normal_forms import Vanishing
 
-    def left(formula: Formula) -> Formula:
-        product = formula.ring.one
-        if not formula.is_zero:
-            for factor, _ in formula.polynomial.factor()[1]:
-                if not signs.never_zero(factor):
-                    product = formula.ring.times(product, factor)
-        return formula if formula.is_zero else Formula(formula.ring, formula.ring.reduce(product))
+    region = [x.polynomial for x in (found.trace, found.product, found.discriminant)]  # positive: two frequencies
+    inside = signs.assuming((x, ">") for x in region)
 
-    resonances = tuple((vector, left(x)) for vector, x in found.resonances)
-    return replace(found, vanishing=Vanishing(left(found.zero), resonances))
+    def left(formula: Formula, may_vanish: Callable[[Polynomial], bool]) -> Formula:
+        product = formula.ring.one
+        if formula.is_zero:
+            return formula
+        for factor, _ in formula.polynomial.factor()[1]:
+            if may_vanish(factor):
+                product = formula.ring.times(product, factor)
+        return Formula(formula.ring, formula.ring.reduce(product))
+
+    def inside_too(factor: Polynomial) -> bool:
+        return not inside.never_zero(factor) and not any(map(_zeros_of_terms(factor, signs), region))
+
+    zero = left(found.zero, lambda factor: not signs.never_zero(factor))
+    resonances = tuple((vector, left(x, inside_too)) for vector, x in found.resonances)
+    return replace(found, vanishing=Vanishing(zero, resonances))
+
+
+def _zeros_of_terms(p: Polynomial, signs: Signs) -> Callable[[Polynomial], bool]:
+    """Whether another polynomial vanishes where p does, as terms of one sign vanish together: a^2 + 8 g^2 = 0."""
+    context = p.context()
+    terms = [(monomial, context.from_dict({monomial: coefficient})) for monomial, coefficient in p.to_dict().items()]
+    alike = any(all(signs.sign(term) in words for _, term in terms) for words in _ONE_SIDED)
+    used = [[k for k, exponent in enumerate(monomial) if exponent] for monomial, _ in terms]
+    zeros = {k for names in used if len(names) == 1 for k in names} if alike else set[int]()
+    at = [context.constant(0) if k in zeros else context.gen(k) for k in range(context.nvars())]
+    return lambda x: bool(zeros) and x.compose(*at, ctx=context) == 0
+
+
+#: Signs of terms that vanish together where their sum does.
+_ONE_SIDED = (("nonnegative", "positive"), ("nonpositive", "negative"))
 
 
 def decided(word: Word) -> Word | None:
