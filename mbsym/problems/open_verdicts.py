@@ -8,17 +8,12 @@ order of the potential energy (``stability.degenerate``) and by combinations of 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from fractions import Fraction
 from typing import Any
 
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import number, substitute
 from mbsym.mechanics.kinematics import Scene
-from mbsym.mechanics.motion import motion_values
-from mbsym.mechanics.rest import Rest, at_numbers, rest
-from mbsym.model.system import System
-from mbsym.problems.relative_equilibria.place import candidate_at, exact_rates
+from mbsym.mechanics.rest import at_numbers, rest
+from mbsym.problems.relative_equilibria.place import candidate_at, described_place, exact_rates
 from mbsym.problems.relative_equilibria.verdict import linear_at_rest
 from mbsym.problems.stability.verdict import Verdict
 
@@ -33,7 +28,7 @@ def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Ver
         return verdict
     try:
         there = rest(at_numbers(system, values))
-        forms = _motion(system, there, values)
+        forms = described_place(system, there, values)
         if forms is None:
             return verdict
         candidate = candidate_at(there, forms)
@@ -44,16 +39,3 @@ def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Ver
         return verdict if again.word.open else again
     except NOT_THERE:
         return verdict
-
-
-def _motion(system: System, there: Rest, values: Mapping[str, Fraction]) -> dict[str, LinearForm] | None:
-    """The constant coordinates on the unperturbed motion; None where one is no number and no multiple of pi."""
-    numbers = {name: number(x) for name, x in values.items()}
-    forms = {}
-    for name, (value, _) in motion_values(system).items():
-        if name in there.constant:
-            form = linear_form(substitute(value, numbers))
-            if form is None or form.coefficients:
-                return None
-            forms[name] = form
-    return forms
