@@ -32,7 +32,7 @@ OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
 
 def one_oscillates(form: NonholonomicForm) -> Verdict:
     """The verdict where velocities follow one position and the pair of roots that is its, if any, is imaginary."""
-    verdict = concluded({Fact.ONE_POSITION, Fact.BOUNDED})
+    verdict = concluded({Fact.ONE_POSITION, Fact.BOUNDED}, *(() if form.pairs else (Reason(Because.FOLLOWING),)))
     return drifting(verdict, constant_momenta=False) if form.drifts else verdict
 
 

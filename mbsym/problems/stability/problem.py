@@ -408,6 +408,8 @@ def prepared_parts(
     outside = not {*about.idle} <= {name for part in prepared for name in part.coordinates}
     steady = [_steady_directions(part, about.idle) for part in prepared]
     known = free and isinstance(balance, ConstrainedBalance) and sum(steady) == balance.steady
+    if isinstance(balance, ConstrainedBalance) and not any(balance.oscillating in x.coordinates for x in prepared):
+        balance = replace(balance, oscillating="")  # what drops out of the first approximation is no centre
     forms = (
         _form(part, balance, about, signs, free, outside, at_least=directions if known else 0)
         for part, directions in zip(prepared, steady, strict=True)

@@ -25,6 +25,7 @@ class Because(Enum):
     STEADY_DECAYS = auto()
     OTHER_LEAF = auto()
     FOLLOWS_ONE = auto()
+    FOLLOWING = auto()
     MINIMUM = auto()
     MINIMUM_AND_DISSIPATION = auto()
     MINIMUM_BUT_CYCLIC = auto()

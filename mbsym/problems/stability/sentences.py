@@ -94,6 +94,10 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
         "form), and this position oscillates as in a system of one degree of freedom."
     ),
+    Because.FOLLOWING: (
+        "Along every motion the velocities are functions of one position (integrals of Chaplygin, without a closed "
+        "form), and while that rests these velocities are constant."
+    ),
     Because.LINEAR_GROWS: (
         "The equations of motion are exactly linear, and a multiple root on the imaginary axis is not semisimple: "
         "there are disturbances that grow like a power of t."

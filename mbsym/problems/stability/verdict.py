@@ -513,6 +513,8 @@ def _telling(reasons: set[Reason]) -> set[Reason]:
         reasons = reasons - {Reason(Because.ELSEWHERE)}
     if any(reason.code is Because.RIGHT_ROOTS for reason in reasons):
         reasons = reasons - {Reason(Because.RIGHT_ROOT)}
+    if Reason(Because.FOLLOWS_ONE) in reasons:
+        reasons = reasons - {Reason(Because.FOLLOWING)}
     return reasons
 
 

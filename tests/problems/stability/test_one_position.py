@@ -177,3 +177,20 @@ def test_velocities_are_functions_of_the_lean_along_a_motion(load: str, returns:
     end = run.y_events[0][0]
     mirrored = start * [1, 1, -1, 1]
     assert bool(np.abs(end - mirrored).max() < 1e-8) == returns
+
+
+def test_of_velocities_beside_no_oscillation_is_told() -> None:
+    """A skate runs straight on: x'' = -x' a' tan a, and a, which x' follows, turns away."""
+    text = """mbsym: 1
+name: skate
+bodies:
+  - {name: p, rotation: {axes: [3], angles: [a]}, connection point: [x, y, 0], coordinates: [x, y, a], mass: 1,
+     inertia about: mass centre, inertia: [1, 1, 1]}
+constraints: [velocity: x_dot*sin(a) = y_dot*cos(a)]
+motion: {x: {value: 0, rate: 1}}
+"""
+    analysis = mbsym.loads(text)
+    verdicts = [part.theory.verdict for part in analysis.stability.subsystems]
+    assert verdicts[0].because(Because.FOLLOWING)
+    assert not any(verdict.because(Because.FOLLOWS_ONE) for verdict in verdicts)
+    assert analysis.stability.numerical.word is Word.UNDECIDED
