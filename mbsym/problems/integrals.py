@@ -118,7 +118,7 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     energies = [*_generalised_energy(scene, energy, equations)]
     idle = any(item.name == ENERGY for item in energies)
     for item in _energies_of_parts(scene, energy, equations):
-        if _is_new(item.formula.polynomial, [x.formula.polynomial for x in energies]):
+        if _is_new(scene.ring, item.formula.polynomial, [x.formula.polynomial for x in energies]):
             energies.append(item)
     found = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
     found = [item for item in found if varies(scene, item.formula.polynomial)]
@@ -308,7 +308,7 @@ def _momenta(
     try:
         for kind, axis, formula in whole_momenta(scene):
             others = [*known, *(item.formula.polynomial for item in found)]
-            wanted = (kind, axis) in conserved and _is_new(formula, others)
+            wanted = (kind, axis) in conserved and _is_new(scene.ring, formula, others)
             if wanted and is_conserved(scene, equations, formula):
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
                 if status is Certainty.VERIFIED and scene.ring.kinked:
@@ -343,7 +343,7 @@ def _momenta_with_a_share(
             rate = ring.reduce(rate)
             work = None if ring.is_zero(rate) else _work(scene, rate)
             others = [*known, *(item.formula.polynomial for item in found)]
-            if work is None or not _is_new(whole := ring.reduce(formula - work), others):
+            if work is None or not _is_new(ring, whole := ring.reduce(formula - work), others):
                 continue
             sort, title = _with_share(momentum_title(kind, axis), idle)
             of = f"{kind.removesuffix(' momentum')} {axis}"
@@ -397,14 +397,33 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
     return sorted(found, key=lambda item: order[item[0]])
 
 
-def _is_new(formula: Polynomial, others: Sequence[Polynomial]) -> bool:
-    """Whether it depends on the state and is no rational combination of the others and a constant of parameters."""
+def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bool:
+    """Whether it depends on the state and is no combination of the others, and of a constant of parameters."""
     if formula.is_zero() or formula.is_constant():
         return False
-    columns = [other.to_dict() for other in others] + [formula.to_dict()]
-    monomials = sorted({monomial for column in columns for monomial in column})
-    table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
-    return bool(table.rank() == len(columns)) if len(others) else True
+    return is_independent(ring, formula, others)
+
+
+#: Numbers in place of parameters: a combination there, twice, is one with coefficients that depend on parameters.
+_NUMBERS = (101, 10007)
+
+
+def is_independent(ring: Ring, x: Polynomial, others: Sequence[Polynomial]) -> bool:
+    """Whether x is no combination of the others with coefficients in the field of parameters."""
+    if not others:
+        return True
+    parameters = [k for k, g in enumerate(ring.generators) if g.kind == "parameter" and g.name != "pi"]
+    for first in _NUMBERS:
+        at = {k: ring.number(first + 6 * i) for i, k in enumerate(parameters)}
+        columns = [ring.reduce(ring.substitute(one, at)).to_dict() for one in (*others, x)]
+        monomials = sorted({monomial for column in columns for monomial in column})
+        if not monomials:
+            continue
+        table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
+        before = fmpq_mat(len(monomials), len(others), [c.get(m, 0) for m in monomials for c in columns[:-1]])
+        if table.rank() > before.rank():
+            return True
+    return False
 
 
 def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool | None:

@@ -30,7 +30,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from flint import ctx, fmpq_mat
+from flint import ctx
 
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
@@ -51,7 +51,7 @@ from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
 from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, NORM, Candidate, candidates
-from mbsym.problems.integrals import ENERGY, Integral
+from mbsym.problems.integrals import ENERGY, Integral, is_independent
 
 # Whether something vanishes along every motion of a constrained system.
 #
@@ -197,12 +197,11 @@ class _Kept(AlongMotion):
         return x
 
     def says_something(self, found: Integral, on: Polynomial, known: Sequence[Polynomial]) -> bool:
-        """Whether it depends on the state, a momentum on velocities, and is no rational combination of the others."""
+        """Whether it depends on the state, a momentum on velocities, and is no combination of the others."""
         speeds = [u.name for u in self.form.speeds]
         if found.kind == ENERGY:
             return bool(self.ring.dependencies(on, [*speeds, *(x.name for x in self.form.positions)]))
-        columns = [other.to_dict() for other in known]
-        return bool(self.ring.dependencies(on, speeds)) and _rank([*columns, on.to_dict()]) > _rank(columns)
+        return bool(self.ring.dependencies(on, speeds)) and is_independent(self.ring, on, known)
 
     def status(self, found: Integral, multipliers: Sequence[Polynomial]) -> Certainty | None:
         """Proved, or verified at states on the constraints; None where it is not kept, or that is not known.
@@ -241,10 +240,3 @@ class _Kept(AlongMotion):
     def _residuals(self) -> list[Polynomial]:
         """E."""
         return [x.polynomial for x in self.equations.equalities(self.form.system.coordinates)]
-
-
-def _rank(columns: Sequence[Any]) -> int:
-    """Of polynomials as columns of coefficients."""
-    monomials = sorted({monomial for column in columns for monomial in column})
-    entries = [column.get(monomial, 0) for monomial in monomials for column in columns]
-    return int(fmpq_mat(len(monomials), len(columns), entries).rank()) if monomials and columns else 0
