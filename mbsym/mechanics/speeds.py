@@ -332,11 +332,13 @@ class SpeedForm:
 
     def in_angles(self, x: Polynomial) -> Polynomial:
         """x with the unit vectors in terms of the angles that they replace, and modulo |e|^2 - 1 of quaternions."""
-        ring = self.ring
-        x = ring.substitute(x, self._cosines) if self._cosines else x
+        return self.of_unit_quaternions(self.ring.substitute(x, self._cosines) if self._cosines else x)
+
+    def of_unit_quaternions(self, x: Polynomial) -> Polynomial:
+        """x modulo |e|^2 - 1 of quaternions."""
         for relation in self._norms:
             if len(x) and any(x.degrees()[k] for k, d in enumerate(relation.degrees()) if d):
-                x = ring.reduce(divmod(x, relation)[1])
+                x = self.ring.reduce(divmod(x, relation)[1])
         return x
 
     @cached_property

@@ -158,7 +158,10 @@ def candidates(
 
 
 def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> Integral:
-    return Integral(name, kind, of, Formula(form.ring, form.ring.reduce(x)), Certainty.PROVED)
+    x = form.ring.reduce(x)
+    if kind != NORM:
+        x = min(x, form.of_unit_quaternions(x), key=len)
+    return Integral(name, kind, of, Formula(form.ring, x), Certainty.PROVED)
 
 
 def is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
