@@ -333,7 +333,7 @@ class Jets(Algebra[Jet]):
             name.curve.kinked_at(knot) and ball.contains(rationals.exact(knot)) for knot in name.curve.knots
         ):
             raise NoClosedForm(
-                Message("the table [[table]] has a kink at the motion that is expanded about", table=name.table.name)
+                "the table [[table]] has a kink at the motion that is expanded about", table=name.table.name
             )
         coefficients, curve = [], name
         for k in range(self.order + 1):

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 
@@ -42,7 +41,8 @@ class Quotient:
             top, bottom = top / unit, bottom / unit
         if len(top) > MOST_TERMS or len(bottom) > MOST_TERMS:
             raise NoClosedForm(
-                Message("a coefficient of the expansion has more than [[most]] terms", most=MOST_TERMS),
+                "a coefficient of the expansion has more than [[most]] terms",
+                most=MOST_TERMS,
                 limit=Limit.TERMS,
                 remedy=LOWER,
             )

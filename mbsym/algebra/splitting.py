@@ -25,7 +25,6 @@ from typing import Any
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly
 
@@ -187,7 +186,7 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
         if p == 0:
             continue
         if len(p) > work.limits.terms:
-            raise NoClosedForm(Message("an equation of [[count]] terms", count=len(p)))
+            raise NoClosedForm("an equation of [[count]] terms", count=len(p))
         factors = [f for f in work.factors(p) if not work.known(f, branch.nonzero)]
         if not factors:
             return []

@@ -16,7 +16,6 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.polynomial_systems import Limits, context, real_roots, solve
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.expressions.message import Message
 
 
 class Several:
@@ -324,7 +323,7 @@ class HalfAngles:
         used = [ring.generators[k] for k in occurring([polynomial])]
         for g in used:
             if g.kind not in ("sine", "cosine", "coordinate", "prescribed", "time") or g.argument is not None:
-                raise NoClosedForm(Message("a [[kind]] in a determinant", kind=g.kind), limit=Limit.TERMS)
+                raise NoClosedForm("a [[kind]] in a determinant", kind=g.kind, limit=Limit.TERMS)
         self.angles = {g.name: g.denominator for g in used if g.kind in ("sine", "cosine")}
         plain = [g.name for g in used if g.kind not in ("sine", "cosine")]
         self.names = (*self.angles, *(name for name in plain if name not in self.angles))

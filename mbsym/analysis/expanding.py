@@ -117,26 +117,21 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     inside = [name for name in whole.variables if not name.isidentifier()]
     if inside:
         raise NoClosedForm(
-            Message(
-                "[[names]] are variables: slow manifolds are expanded in positions and velocities that stand by "
-                "themselves",
-                names=", ".join(inside),
-            ),
+            "[[names]] are variables: slow manifolds are expanded in positions and velocities that stand by themselves",
+            names=", ".join(inside),
             remedy="see 'mbsym oscillations' about a motion",
         )
     for name, _ in small.powers:
         if name in whole.variables:
             raise NoClosedForm(
-                Message(
-                    "[[name]] is a variable that is small itself: slow manifolds take powers of parameters only",
-                    name=name,
-                ),
+                "[[name]] is a variable that is small itself: slow manifolds take powers of parameters only",
+                name=name,
                 remedy="see 'mbsym oscillations'",
             )
     numbers = {n: rationals.exact(x) for n, x in (values or {}).items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
-        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
+        raise NoClosedForm("the equations do not depend on [[name]]", name=small.name)
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
     there, known, root = _with_root(analysis, there, fast, (*fast, small.name, *dict(small.powers)))
@@ -177,12 +172,10 @@ def _real_roots(analysis: Analysis, there: ScaledField, fast: tuple[str, ...]) -
     real_roots = replace(real_roots, squares=tuple(x for x in real_roots.squares if signs.condition(x).kind != "never"))
     if not real_roots.any:
         raise NoClosedForm(
-            Message(
-                "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
-                "rational or square roots",
-                small=there.small,
-                fast=", ".join(fast),
-            )
+            "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
+            "rational or square roots",
+            small=there.small,
+            fast=", ".join(fast),
         )
     return real_roots
 
@@ -259,12 +252,10 @@ def _about(
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
     if steady.fast.bounded:
         raise NoClosedForm(
-            Message(
-                "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
-                "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
-                fast=", ".join(manifold.fast),
-                small=manifold.field.small,
-            ),
+            "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
+            "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
+            fast=", ".join(manifold.fast),
+            small=manifold.field.small,
             remedy=slow.DECLARE,
         )
     plain = replace(plain, manifold=replace(plain.manifold, steady=steady))
@@ -312,22 +303,19 @@ def _refuse(
     for name in scales:
         if name in related:
             raise NoClosedForm(
-                Message("[[name]] is given by a relation: it is not small, or scaled, by itself", name=name),
+                "[[name]] is given by a relation: it is not small, or scaled, by itself",
+                name=name,
                 remedy="solve the relation for another parameter",
             )
         if name in values:
-            raise NoClosedForm(Message("[[name]] depends on the small parameter: it cannot be a number", name=name))
+            raise NoClosedForm("[[name]] depends on the small parameter: it cannot be a number", name=name)
     for name in values:
         if name in related:
-            raise NoClosedForm(Message("[[name]] is given by a relation: it cannot be another number", name=name))
+            raise NoClosedForm("[[name]] is given by a relation: it cannot be another number", name=name)
     signs = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
     if signs.get(small.name) in ("negative", "nonpositive", "zero"):
         raise NoClosedForm(
-            Message(
-                "expansions are about [[small]] > 0, and it is declared [[sign]]",
-                small=small.name,
-                sign=signs[small.name],
-            )
+            "expansions are about [[small]] > 0, and it is declared [[sign]]", small=small.name, sign=signs[small.name]
         )
 
 
@@ -343,9 +331,7 @@ def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...
     """The fast variables that are declared.  Raises NoClosedForm for one on which the equations do not depend."""
     for name in (*small.fast, *small.slow):
         if name not in variables:
-            raise NoClosedForm(
-                Message("the equations do not depend on [[name]], which is declared fast or slow", name=name)
-            )
+            raise NoClosedForm("the equations do not depend on [[name]], which is declared fast or slow", name=name)
     return small.fast
 
 
@@ -374,7 +360,7 @@ def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -
     values = {}
     for name, k in zip(transfer.variables, transfer.places[len(transfer.parameters) :], strict=True):
         if k not in motion:
-            raise NoClosedForm(Message("[[name]] is not constant on the motion", name=name))
+            raise NoClosedForm("[[name]] is not constant on the motion", name=name)
         values[name] = motion[k]
     return values
 

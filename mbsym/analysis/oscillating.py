@@ -22,7 +22,6 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Call, Expression, Negative, Operation
 from mbsym.formulas.formula import Formula
@@ -208,7 +207,8 @@ def oscillating(
     for name in (small.name, *(one for one, _ in small.powers), *given):
         if name in related:
             raise NoClosedForm(
-                Message("[[name]] is given by a relation: it is not small, scaled, or a number by itself", name=name),
+                "[[name]] is given by a relation: it is not small, scaled, or a number by itself",
+                name=name,
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
@@ -222,7 +222,7 @@ def oscillating(
         if name in system.coordinates and velocity_name(name) in field.variables:
             powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
-        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
+        raise NoClosedForm("the equations do not depend on [[name]]", name=small.name)
     kept = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
@@ -251,11 +251,9 @@ def oscillating(
     sign = _sign(analysis, tower, found.frequency * found.frequency)
     if sign == "negative":
         raise NoClosedForm(
-            Message(
-                "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
-                leading=found.leading,
-                small=small.name,
-            )
+            "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
+            leading=found.leading,
+            small=small.name,
         )
     size = _sign(analysis, tower, found.amplitude * found.amplitude)
     return Oscillating(
@@ -297,9 +295,7 @@ def with_integrals(told: Oscillating, analysis: Analysis, rates: Mapping[str, Ex
             _is_rate(analysis, name, rate)
         power, slopes = series_of(system, told, rate)
         if power < 0:
-            raise NoClosedForm(
-                Message("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
-            )
+            raise NoClosedForm("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
         nothing = [Harmonics(found.tower, {})] * power
         drifts.append(integrated(name, [*nothing, *slopes], found.frequency, found.corrections))
     return replace(told, found=replace(found, drifts=tuple(drifts)))
@@ -312,7 +308,8 @@ def _is_rate(analysis: Analysis, name: str, rate: Expression) -> None:
     """
     form = analysis.form
     refusal = NoRate(
-        Message("[[name]] is a coordinate, and its rate was not found to be this", name=name),
+        "[[name]] is a coordinate, and its rate was not found to be this",
+        name=name,
         remedy="give the integral a name that the description does not have",
     )
     if not analysis.system.speeds or form.by_quaternion:
@@ -498,11 +495,9 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     for name in names:
         if weights.get(name) and any(f"({name}" in variable for variable in field.variables):
             raise NoClosedForm(
-                Message(
-                    "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
-                    "which all coordinates are small only",
-                    name=name,
-                ),
+                "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
+                "which all coordinates are small only",
+                name=name,
                 remedy="give the 'motion', and a power to every coordinate",
             )
     return field, False

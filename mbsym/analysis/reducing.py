@@ -18,7 +18,6 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.rationals import exact
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation, names, substitute, text, walk
 from mbsym.formulas.formula import Formula
@@ -128,7 +127,7 @@ class _Start:
         self.moving |= {velocity_name(n) for n in bases}
         self.letters = {name: x for name, x in expressions.items() if name not in self.moving}
         for name in sorted({*self.letters} & {*parameters, "pi"}):
-            raise NoClosedForm(Message("[[name]] is a parameter: a letter needs a name of its own", name=name))
+            raise NoClosedForm("[[name]] is a parameter: a letter needs a name of its own", name=name)
         seen = [name for x in expressions.values() for name in sorted(names(x))]
         known = {*parameters, *self.letters, *self.moving, "pi"}
         self.fresh = [name for name in dict.fromkeys(seen) if name not in known]
@@ -139,7 +138,7 @@ class _Start:
         self._constants = [next(x for x in numbered if x not in taken) for _ in bases]
         added = [*self._firsts.values(), *self._constants]
         if asked.small and asked.small not in parameters:
-            raise NoClosedForm(Message("[[name]] is no parameter of the equations", name=asked.small))
+            raise NoClosedForm("[[name]] is no parameter of the equations", name=asked.small)
         fixed = dict.fromkeys((*parameters, *added))
         positive = [parameter.name for parameter in self.system.parameters if parameter.sign == "positive"]
         self.ring = ring = Ring([*bases, *self.fresh], [], [*fixed], own.angles, positive, spare=64)
@@ -163,7 +162,7 @@ class _Start:
             variable = ring.generator(g.kind, g.name)
             factor = ring.quotient(carry(own.context.gen(k)), variable)
             if factor is None:
-                raise NoClosedForm(Message("[[name]] under sines and cosines is not scaled", name=g.name))
+                raise NoClosedForm("[[name]] under sines and cosines is not scaled", name=g.name)
             below = ring.times(carry(there.back(field.denominator)), factor)
             rate = ring.times(ring.times(carry(there.back(p)), time), ring.reciprocal(below))
             self.rows[self.at(variable)] = self.transfer.fraction(rate)
@@ -214,7 +213,7 @@ class _Start:
     def place(self, name: str) -> int:
         """Raises NoClosedForm for what is no variable."""
         if name not in self.moving:
-            raise NoClosedForm(Message("[[name]] is no variable of the equations", name=name))
+            raise NoClosedForm("[[name]] is no variable of the equations", name=name)
         return self.at(self.environment[name])
 
     def initial(self, places: Iterable[int]) -> dict[int, Series]:
@@ -254,7 +253,7 @@ class _Start:
             case Operation("+" | "-" | "*" | "/" as operator, left, right):
                 act: Any = {"+": add, "-": sub, "*": mul, "/": truediv}[operator]
                 return cast("Quotient", act(self._quotient(left), self._quotient(right)))
-        raise NoClosedForm(Message("[[formula]] is no rational function of names that are known", formula=text(x)))
+        raise NoClosedForm("[[formula]] is no rational function of names that are known", formula=text(x))
 
     def flow(self) -> Flow:
         velocities = {}

@@ -72,11 +72,11 @@ def in_variables(system: System, scaling: Scaling) -> System:
     from mbsym.analysis import Analysis
 
     if system.linear is not None:
-        raise NoDescription(Message("the system is given by its matrices"))
+        raise NoDescription("the system is given by its matrices")
     vectors = {name for body in system.bodies for one in body.orientation for name in one.components}
     for one in scaling.variables:
         if one.name in vectors and not is_number(one.factor, 1):
-            raise NoDescription(Message("[[name]] is a component of a unit vector or quaternion", name=one.name))
+            raise NoDescription("[[name]] is a component of a unit vector or quaternion", name=one.name)
     base = with_parameters(system, scaling)
     groups = _groups(base, scaling)
     units = {name: number(1) for name in groups.units}
@@ -84,7 +84,7 @@ def in_variables(system: System, scaling: Scaling) -> System:
     lower = Lowering(ring, ring_environment(base, ring))
     if scaling.time is not None and lower(folded(scaling.time.factor, units)) != ring.one:
         left = text(folded(scaling.time.factor, units))
-        raise NoDescription(Message("with what can be set to 1 the unit of time is [[left]], not 1", left=left))
+        raise NoDescription("with what can be set to 1 the unit of time is [[left]], not 1", left=left)
     found = renamed(in_groups(base, groups), {variable.name: variable.new for variable in scaling.variables})
     for one in scaling.variables:
         factor = folded(one.factor, units)
@@ -228,7 +228,7 @@ def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Gr
     lost = next((name for name in free if len(independent((*units, name), exponents)) > len(units)), None)
     if lost is not None and lost not in units:
         raise NoDescription(
-            Message("nothing that is positive measures [[name]]", name=lost), remedy="say what it is in new names"
+            "nothing that is positive measures [[name]]", name=lost, remedy="say what it is in new names"
         )
     rate = [fmpq(-int(base_ == "s")) for base_ in bases]
     moving = (*base.coordinates, *base.variables, *(one.name for one in base.prescribed), *base.input_names)
@@ -321,7 +321,7 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
     if name in speeds:
         images = dict.fromkeys((), ONE) | {name + "_dot": images[name + "_dot"], name: images[name]}
     if name in system.dependent:
-        raise NoDescription(Message("'[[name]]' is a dependent variable", name=name))
+        raise NoDescription("'[[name]]' is a dependent variable", name=name)
     loads = tuple(_load(load, name, factor) for load in system.loads)
     kept = {one: getattr(system, one) for one in ("motion", "initial", "start")}
     base = replace(system, loads=loads, motion=(), initial=(), start=())
@@ -535,7 +535,7 @@ def _demand_law(old: Analysis, new: Analysis, scaling: Scaling, groups: Groups) 
         ]
         if not all(same) or (k is not None and not a[k]):
             raise NoDescription(
-                Message("the equations hold numbers that have a dimension, or the scaled ones could not be compared"),
+                "the equations hold numbers that have a dimension, or the scaled ones could not be compared",
                 remedy="give the numbers names under 'parameters'",
             )
 

@@ -264,7 +264,7 @@ def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
 
 def _not_steady(names: Iterable[str]) -> NoClosedForm:
     what = "the motion is not steady in speeds and positions: they vary with [[names]]"
-    return NoClosedForm(Message(what, names=", ".join(names)))
+    return NoClosedForm(what, names=", ".join(names))
 
 
 def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict[str, Polynomial]:

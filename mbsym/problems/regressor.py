@@ -127,11 +127,11 @@ def _refuse(system: System) -> None:
     inertial = [part for body in system.bodies for part in expressions(body)]
     fields = [load for load in system.loads if isinstance(load, UniformGravity)]
     if any(timely & names(x) for x in (*inertial, *expressions(tuple(fields)))):
-        raise NoClosedForm(Message("base parameters of a system that moves as prescribed are not looked for"))
+        raise NoClosedForm("base parameters of a system that moves as prescribed are not looked for")
     if system.newtonian_fields:
-        raise NoClosedForm(Message("base parameters are looked for in uniform fields of gravity alone"))
+        raise NoClosedForm("base parameters are looked for in uniform fields of gravity alone")
     if any(names(x) & {*system.coordinates} for body in system.bodies for x in _mass_properties(body)):
-        raise NoClosedForm(Message("the inertia of a body changes with the motion"))
+        raise NoClosedForm("the inertia of a body changes with the motion")
 
 
 def _mass_properties(body: Any) -> list[Any]:
@@ -170,7 +170,7 @@ class _Split:
         degrees = x.degrees()
         for k, g in enumerate(self.ring.generators[: self.ring.spare]):
             if degrees[k] > 0 and (g.argument is None or self._moves(g.argument)):
-                raise NoClosedForm(Message("a joint's place is no polynomial in coordinates, sines and cosines"))
+                raise NoClosedForm("a joint's place is no polynomial in coordinates, sines and cosines")
 
     def _moves(self, x: Polynomial) -> bool:
         degrees = x.degrees()
@@ -212,7 +212,7 @@ def _slots(
     kept, dependent = _relations(ring, ordered)
     kept = [*kept, *long]
     if long and len(kept) > MOST_PROVED:
-        raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
+        raise NoClosedForm("formulas of T are too long to find the relations between their parts")
     if long:
         _independent(frames, system, kept)
     made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in kept}
@@ -271,7 +271,7 @@ def _independent(frames: Articulation[Polynomial], system: System, slots: Sequen
             for i in range(size):
                 matrix[i, k] = matrix[i, k] / longest if longest > 0 else matrix[i, k]
         if matrix.det().contains(0):
-            raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
+            raise NoClosedForm("formulas of T are too long to find the relations between their parts")
 
 
 def _relations(ring: Ring, columns: Mapping[Key, _Column]) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
@@ -315,7 +315,7 @@ def _eliminated(
             continue
         key = min(left, key=lambda one: (len(left[one].top) + len(left[one].bottom), rows.index(one)))
         if ring.is_zero(left[key].top) is None:
-            raise NoClosedForm(Message("whether a constant is zero cannot be decided"))
+            raise NoClosedForm("whether a constant is zero cannot be decided")
         unit = left[key]
         keys.append(name)
         pivots.append(

@@ -344,7 +344,7 @@ def test_a_message_is_its_english_text_and_is_said_with_its_gaps() -> None:
 
 def test_a_failure_keeps_its_message() -> None:
     """Through a pickle, as its reason, and in what is made of it: str() is English."""
-    failure = NoClosedForm(Message("[[count]] terms are beyond the budget of [[most]]", count=9, most=5))
+    failure = NoClosedForm("[[count]] terms are beyond the budget of [[most]]", count=9, most=5)
     again = pickle.loads(pickle.dumps(failure))
     assert type(again.reason) is Message
     assert again.reason.gaps == {"count": "9", "most": "5"}

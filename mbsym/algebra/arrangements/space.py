@@ -28,7 +28,6 @@ from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
-from mbsym.expressions.message import Message
 
 # Whether two arrangements correspond: a bijection of their regions, arcs and corners that keeps what they adjoin.
 #
@@ -189,7 +188,7 @@ def critical_levels(
     found = decompose_line(wanted, low, high)
     if len(found.zeros) > budget.abscissas:
         raise TooLargeError(
-            Message("[[count]] values at which the picture may change", count=len(found.zeros)), limit=Limit.WORK
+            "[[count]] values at which the picture may change", count=len(found.zeros), limit=Limit.WORK
         )
     return found
 
@@ -289,6 +288,8 @@ def _affordable(polynomials: Sequence[Polynomial], generator: int, budget: Budge
                     worst = max(worst, own[k] * other[generator] + other[k] * own[generator])
     if worst > budget.degree:
         raise TooLargeError(
-            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            "a resultant of degree up to [[worst]], more than [[most]]",
+            worst=worst,
+            most=budget.degree,
             limit=Limit.DEGREE,
         )

@@ -18,7 +18,6 @@ from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz, fmpz
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Isolated, Rational
-from mbsym.expressions.message import Message
 
 # Greatest common divisors over QQ(alpha) by way of finite rings, where Euclid's numbers would grow without bound.
 #
@@ -63,13 +62,10 @@ def common_divisor(modulus: Element, a: Sequence[Element], b: Sequence[Element])
         if candidate is not None and all(divides(modulus, candidate, p) for p in (a, b)):
             return candidate
     raise TooLargeError(
-        Message(
-            "a common divisor of polynomials of degrees [[count]] and [[other]] over a number field of "
-            "degree [[degree]]",
-            count=len(a) - 1,
-            other=len(b) - 1,
-            degree=modulus.degree(),
-        ),
+        "a common divisor of polynomials of degrees [[count]] and [[other]] over a number field of degree [[degree]]",
+        count=len(a) - 1,
+        other=len(b) - 1,
+        degree=modulus.degree(),
         limit=Limit.DIGITS,
     )
 

@@ -18,7 +18,6 @@ from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Polynomial, coefficients
-from mbsym.expressions.message import Message
 
 #: Number fields of a higher degree are left alone: arithmetic in them takes minutes.
 MOST_DEGREE = 48
@@ -40,15 +39,13 @@ class _Purse:
         self.spent += degree**3 * bits
         if self.spent > MOST_WORK:
             raise TooLargeError(
-                Message("arithmetic at a point in a number field of degree [[degree]]", degree=degree), limit=Limit.WORK
+                "arithmetic at a point in a number field of degree [[degree]]", degree=degree, limit=Limit.WORK
             )
 
 
 def _affordable(degree: int) -> None:
     if degree > MOST_DEGREE:
-        raise TooLargeError(
-            Message("a point in a number field of degree [[degree]]", degree=degree), limit=Limit.DEGREE
-        )
+        raise TooLargeError("a point in a number field of degree [[degree]]", degree=degree, limit=Limit.DEGREE)
 
 
 def _degree(x: Any) -> int:

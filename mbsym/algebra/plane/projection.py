@@ -31,7 +31,6 @@ from mbsym.algebra.plane.numbers import (
     primitive,
     roots_between,
 )
-from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpq_mpoly in two generators
 
@@ -203,9 +202,7 @@ def abscissas(
     progress("projection", whole, whole)
     found = table.abscissas()
     if len(found) > budget.abscissas:
-        raise TooLargeError(
-            Message("[[count]] abscissas at which the picture may change", count=len(found)), limit=Limit.WORK
-        )
+        raise TooLargeError("[[count]] abscissas at which the picture may change", count=len(found), limit=Limit.WORK)
     return found
 
 
@@ -219,7 +216,9 @@ def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
             worst = max(worst, ax * b.degree + int(b.polynomial.degrees()[0]) * a.degree)
     if worst > budget.degree:
         raise TooLargeError(
-            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            "a resultant of degree up to [[worst]], more than [[most]]",
+            worst=worst,
+            most=budget.degree,
             limit=Limit.DEGREE,
         )
 

@@ -195,11 +195,9 @@ def _solved(ring: Ring, matrix: Sequence[Sequence[Polynomial]], right: Sequence[
     """matrix^-1 right by Cramer's rule: the only denominator is the determinant."""
     if len(right) > MOST:
         raise NoClosedForm(
-            Message(
-                "the inverse of a matrix of [[count]] rows: at most [[most]] are inverted in closed form",
-                count=len(right),
-                most=MOST,
-            )
+            "the inverse of a matrix of [[count]] rows: at most [[most]] are inverted in closed form",
+            count=len(right),
+            most=MOST,
         )
     try:
         return [x for (x,) in solved(ring, matrix, [[x] for x in right])]

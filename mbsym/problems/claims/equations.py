@@ -137,7 +137,7 @@ class Dynamics:
             if wanted.isdisjoint(block):
                 continue
             if len(block) > MOST_COUPLED:
-                raise NoClosedForm(Message("[[count]] equations are coupled", count=len(block)))
+                raise NoClosedForm("[[count]] equations are coupled", count=len(block))
             cut = [[mass[i][j] for j in block] for i in block]
             whole = determinant(ring, cut)
             if ring.vanishes(whole):

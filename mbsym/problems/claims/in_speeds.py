@@ -125,7 +125,7 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
     if claim.kind == "acceleration":
         top, bottom = Dynamics.of(derived).solved(_speed(form, claim.of))
         return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
-    raise NoClosedForm(Message("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind)))
+    raise NoClosedForm("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind))
 
 
 def _speed(form: SpeedForm, name: str) -> int:
@@ -133,7 +133,7 @@ def _speed(form: SpeedForm, name: str) -> int:
     for r, u in enumerate(form.speeds):
         if name in (u.name, without_velocity(u.name)):
             return r
-    raise NoClosedForm(Message("the velocity of [[name]] is no speed: other speeds have taken its place", name=name))
+    raise NoClosedForm("the velocity of [[name]] is no speed: other speeds have taken its place", name=name)
 
 
 def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomial | None:

@@ -49,11 +49,9 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         nonzero = positive
     else:
         raise NoClosedForm(
-            Message(
-                "no [[kind]] in parameters: [[why]]",
-                kind=Message(claim.kind),
-                why=forms.no_symbols or "problem 11 has another case",
-            )
+            "no [[kind]] in parameters: [[why]]",
+            kind=Message(claim.kind),
+            why=forms.no_symbols or "problem 11 has another case",
         )
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
     claimed, known = on_relations(derived, claim, claimed), on_relations(derived, claim, truth.polynomial)

@@ -64,7 +64,7 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
     try:
         printed, value = _both(derived, claim)
     except KeyError as missing:
-        raise NotRational(Message("no number is given for [[name]]", name=missing.args[0])) from None
+        raise NotRational("no number is given for [[name]]", name=missing.args[0]) from None
     for what, number in ((Message("the value"), value), (Message("the claimed value"), printed)):
         if not number.is_finite():
             return (

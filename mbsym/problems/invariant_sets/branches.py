@@ -18,7 +18,6 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.algebra.splitting import Branch, Solved
-from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula
 
 # The ring in which problem 10 works: parameters, multipliers and variables as generators without relations.
@@ -101,19 +100,13 @@ def arena(
     """
     if len(integrals) > MOST_INTEGRALS:
         raise NoClosedForm(
-            Message(
-                "[[count]] integrals: families of at most [[most]] are looked at",
-                count=len(integrals),
-                most=MOST_INTEGRALS,
-            )
+            "[[count]] integrals: families of at most [[most]] are looked at", count=len(integrals), most=MOST_INTEGRALS
         )
     if len(field.variables) > MOST_VARIABLES:
         raise NoClosedForm(
-            Message(
-                "[[count]] variables: families of integrals of at most [[most]] are looked at",
-                count=len(field.variables),
-                most=MOST_VARIABLES,
-            )
+            "[[count]] variables: families of integrals of at most [[most]] are looked at",
+            count=len(field.variables),
+            most=MOST_VARIABLES,
         )
     variables = identifiers(field.variables, field.parameters)
     taken = {*field.parameters, *variables}
@@ -186,7 +179,7 @@ class Rule:
         while (power := p.degrees()[self.generator]) >= self.degree:
             p = self.leading * p - self.top(p, power) * g ** (power - self.degree) * self.equation
             if len(p) > MOST_TERMS:
-                raise NoClosedForm(Message("a polynomial of [[count]] terms", count=len(p)), limit=Limit.TERMS)
+                raise NoClosedForm("a polynomial of [[count]] terms", count=len(p), limit=Limit.TERMS)
         return p
 
 

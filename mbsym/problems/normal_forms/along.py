@@ -165,12 +165,10 @@ def _of_two_frequencies(
     if count != 2:
         besides = " without its cyclic coordinates" if found.cyclic else ""
         raise NotAlong(
-            Message(
-                "of systems whose energy is conserved exceptional values are listed where there are two "
-                "frequencies; this one has [[count]][[besides]]",
-                count=count,
-                besides=besides,
-            )
+            "of systems whose energy is conserved exceptional values are listed where there are two "
+            "frequencies; this one has [[count]][[besides]]",
+            count=count,
+            besides=besides,
         )
     try:
         _, tower, named = twist(found, values)
@@ -183,10 +181,10 @@ def _of_two_frequencies(
         )
         raise NotAlong(reason) from None
     if name not in tower.parameters:
-        raise NotAlong(Message("the expansion does not depend on [[name]]", name=name))
+        raise NotAlong("the expansion does not depend on [[name]]", name=name)
     for key, x in named.items():
         if x.is_zero():
-            raise NotAlong(Message("for all values of [[name]] this vanishes: [[key]]", name=name, key=key))
+            raise NotAlong("for all values of [[name]] this vanishes: [[key]]", name=name, key=key)
     return tower, named
 
 
@@ -197,10 +195,10 @@ def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tu
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1][::-1]
     m = len(coefficients) - 1
     if coefficients[m].is_zero():
-        raise NotAlong(Message("for all values of [[name]] a root is zero", name=name))
+        raise NotAlong("for all values of [[name]] a root is zero", name=name)
     last = determinant_by_traces(hurwitz(coefficients, tower.zero, m - 1), tower.zero, tower.one)
     if last.is_zero():
-        raise NotAlong(Message("for all values of [[name]] there are roots whose sum is zero", name=name))
+        raise NotAlong("for all values of [[name]] there are roots whose sum is zero", name=name)
     return tower, {"root": coefficients[m], "pair": last}
 
 
@@ -237,11 +235,9 @@ def _refuse_singular(
         if factor not in known:
             at = root.str(8, radius=False)
             raise NotAlong(
-                Message(
-                    "the expansion is singular at [[name]] = [[at]]: choose an interval without this value",
-                    name=name,
-                    at=at,
-                )
+                "the expansion is singular at [[name]] = [[at]]: choose an interval without this value",
+                name=name,
+                at=at,
             )
 
 

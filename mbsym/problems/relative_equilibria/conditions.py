@@ -106,10 +106,7 @@ class Conditions:
             part = ring.context.from_dict(terms)
             if ring.dependencies(part, moving):
                 raise NoClosedForm(
-                    Message(
-                        "the equations vary with [[names]] in a way that cannot be separated",
-                        names=", ".join(present),
-                    )
+                    "the equations vary with [[names]] in a way that cannot be separated", names=", ".join(present)
                 )
             yield part
 
@@ -221,7 +218,7 @@ def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> 
         rows, case = pending.pop()
         looked_at += 1
         if looked_at > MOST_CASES:
-            raise NoClosedForm(Message("more than [[count]] cases of the rank of constraints", count=MOST_CASES))
+            raise NoClosedForm("more than [[count]] cases of the rank of constraints", count=MOST_CASES)
         if case.zero and not possible(case.zero, case.nonzero):
             continue
         place = _pivot(rows)

@@ -199,11 +199,9 @@ def rank_of(first: Rest) -> int | None:
 
     if first.tied_in_motion:
         raise Constrained(
-            Message(
-                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
-                "looked for",
-                names=", ".join(first.tied_in_motion),
-            ),
+            "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+            "looked for",
+            names=", ".join(first.tied_in_motion),
             remedy="'mbsym run' judges such a motion where the description gives it",
         )
     plain = first.system.without_speeds

@@ -82,12 +82,9 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
             if len(rest) > 1 or any(e > 1 for _, e in rest):
                 told = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
                 raise NoClosedForm(
-                    Message(
-                        "the equations are not quasi-linear: without the small parameter that of [[name]] holds "
-                        "[[told]]",
-                        name=names[i],
-                        told=told,
-                    ),
+                    "the equations are not quasi-linear: without the small parameter that of [[name]] holds [[told]]",
+                    name=names[i],
+                    told=told,
                     remedy="declare which variables are small: 'small parameter: {eps: {powers: {x: 1}}}'",
                 )
             for j, e in enumerate(exponents):
@@ -154,10 +151,7 @@ def _roots_of(found: Generating, block: tuple[int, ...]) -> _Roots:
     tower = found.tower
     if len(block) > MOST_BLOCK:
         raise NoClosedForm(
-            Message(
-                "more than [[most]] variables oscillate together without the small parameter",
-                most=MOST_BLOCK,
-            )
+            "more than [[most]] variables oscillate together without the small parameter", most=MOST_BLOCK
         )
     whole = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
     coefficients = without_zeros(whole)
@@ -251,10 +245,8 @@ def graded_rows(
     zero = (0,) * len(field.variables)
     if set(below[0]) != {zero}:
         raise NoClosedForm(
-            Message(
-                "the equations are not quasi-linear: without [[small]] the mass matrix depends on the state",
-                small=small,
-            ),
+            "the equations are not quasi-linear: without [[small]] the mass matrix depends on the state",
+            small=small,
             remedy=Message(
                 "declare that the deviations are small: 'small parameter: {[[small]]: {powers: {x: 1}}}'", small=small
             ),
@@ -267,11 +259,9 @@ def graded_rows(
         above = {k - shift: part for k, part in above.items()}
         if any(k < 0 for k in above):
             raise NoClosedForm(
-                Message(
-                    "[[name]]' grows without bound as [[small]] tends to 0: nothing oscillates at a rate of order 1",
-                    name=name,
-                    small=small,
-                ),
+                "[[name]]' grows without bound as [[small]] tends to 0: nothing oscillates at a rate of order 1",
+                name=name,
+                small=small,
                 remedy="see 'mbsym expand' for slow manifolds, and the powers that are declared",
             )
         graded: _Graded = {}

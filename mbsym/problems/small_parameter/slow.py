@@ -24,7 +24,6 @@ from operator import add
 
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Series
-from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.result import Adjoined, ScaledField
 from mbsym.problems.small_parameter.root import Root, Roots, roots
 
@@ -43,9 +42,8 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
     swift = [i for i, k in enumerate(there.scales) if k > 0]
     if not swift:
         raise NoClosedForm(
-            Message(
-                "no variable is fast: no derivative grows without bound as [[small]] tends to 0", small=there.small
-            ),
+            "no variable is fast: no derivative grows without bound as [[small]] tends to 0",
+            small=there.small,
             remedy="see 'powers' of the small parameter: {p2: -1} says that p2 is large",
         )
     others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
@@ -61,7 +59,7 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
                 found.append(places)
         if len(found) > 1:
             told = "; ".join(", ".join(names[i] for i in one) for one in found[:3])
-            raise NoClosedForm(Message("which variables are fast is not clear: [[told]]", told=told), remedy=DECLARE)
+            raise NoClosedForm("which variables are fast is not clear: [[told]]", told=told, remedy=DECLARE)
         if found:
             return tuple(names[i] for i in found[0])
     raise NoClosedForm(
@@ -76,12 +74,10 @@ def roots_of(there: ScaledField, fast: Sequence[str]) -> Roots:
     found = roots(there, [there.field.variables.index(name) for name in fast])
     if not found.any:
         raise NoClosedForm(
-            Message(
-                "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
-                "singular, or not solved by equations that are linear or quadratic in one of them",
-                small=there.small,
-                fast=", ".join(fast),
-            )
+            "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
+            "singular, or not solved by equations that are linear or quadratic in one of them",
+            small=there.small,
+            fast=", ".join(fast),
         )
     return found
 
@@ -114,11 +110,9 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int, start: Root | 
             changed.append(function.up_to(order + 1).exactly())
         functions = changed
     raise NoClosedForm(
-        Message(
-            "the coefficients up to order [[order]] do not settle within [[most]] steps",
-            order=order,
-            most=MOST_STEPS,
-        ),
+        "the coefficients up to order [[order]] do not settle within [[most]] steps",
+        order=order,
+        most=MOST_STEPS,
         limit=Limit.WORK,
         remedy=LOWER,
     )
@@ -172,7 +166,7 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
     below = on(there.denominator, near, None)
     if 0 not in below.coefficients:
         raise NoClosedForm(
-            Message("the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small)
+            "the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small
         )
     found = {}
     for name, row in zip(there.field.variables, there.rows, strict=True):

@@ -15,7 +15,6 @@ from mbsym.algebra import matrices
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
-from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.result import Hurwitz, ScaledField, SteadyStates
 
 #: Characteristic polynomials of a higher degree are not expanded.
@@ -35,10 +34,7 @@ def steady_states(
     names = field.variables
     if len(names) > MOST_VARIABLES:
         raise NoClosedForm(
-            Message(
-                "more than [[most]] variables: no characteristic polynomial is expanded",
-                most=MOST_VARIABLES,
-            )
+            "more than [[most]] variables: no characteristic polynomial is expanded", most=MOST_VARIABLES
         )
     context = field.context
 
@@ -52,14 +48,12 @@ def steady_states(
     for name, one in flow.items():
         if on(one).coefficients:
             raise NoClosedForm(
-                Message("the motion is no steady state on the manifold: [[name]] does not stay constant", name=name)
+                "the motion is no steady state on the manifold: [[name]] does not stay constant", name=name
             )
     for name, function in functions.items():
         series = Series.constant(values[name])
         if (on(function) - series).coefficients:
-            raise NoClosedForm(
-                Message("the motion does not lie on the manifold: [[name]] is another one there", name=name)
-            )
+            raise NoClosedForm("the motion does not lie on the manifold: [[name]] is another one there", name=name)
     slow = list(flow)
     small = [[on(flow[i].derivative(first + names.index(j))) for j in slow] for i in slow]
     rows = [Series(context, {k: Quotient.of(p) for k, p in row.items()}) for row in there.rows]
