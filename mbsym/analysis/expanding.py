@@ -15,6 +15,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
+from mbsym.algebra.terms import coefficients_in
 from mbsym.analysis.stages import Unavailable
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Shown
@@ -90,10 +91,8 @@ def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:
 
     def parts(p: Any) -> list[Any]:
         found = [context.constant(0), context.constant(0)]
-        for monomial, number in p.to_dict().items():
-            power = int(monomial[root.place])
-            term = context.from_dict({(*monomial[: root.place], 0, *monomial[root.place + 1 :]): number})
-            found[power % 2] += term * root.square ** (power // 2)
+        for power, c in enumerate(coefficients_in(p, root.place)):
+            found[power % 2] += c * root.square ** (power // 2)
         return found
 
     (a, b), (e, f) = parts(c.top), parts(c.bottom)

@@ -17,9 +17,11 @@ from flint import acb
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import evaluated, with_quotients
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
 from mbsym.expressions.rates import without_velocity
@@ -379,19 +381,10 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
 
     def whole(p: Any) -> Element:
         """A polynomial with everything put in, over the product of the denominators."""
-        degrees = [int(d) for d in p.degrees()]
-        used = [k for k, degree in enumerate(degrees) if degree > 0]
-        for k in used:
+        for k in occurring([p]):
             known.setdefault(k, generator(k))
-        total = tower.context.constant(0)
-        for monomial, c in p.to_dict().items():
-            term = tower.context.constant(c)
-            for k in used:
-                term *= known[k].top ** int(monomial[k]) * known[k].bottom ** (degrees[k] - int(monomial[k]))
-            total += term
-        below = tower.context.constant(1)
-        for k in used:
-            below *= known[k].bottom ** degrees[k]
+        images = {k: (x.top, x.bottom) for k, x in known.items()}
+        total, below = with_quotients(p, images, tower.context)
         return tower.made(tower.reduced(total), below)
 
     def put(x: Element) -> Element:
@@ -537,14 +530,7 @@ def in_letters(
         return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     def carried(p: Any) -> Polynomial:
-        total = ring.zero
-        for monomial, c in p.to_dict().items():
-            term = ring.number(rationals.fraction(c))
-            for index, exponent in enumerate(monomial):
-                if exponent:
-                    term = ring.times(term, generator(index) ** int(exponent))
-            total = total + term
-        return ring.reduce(total)
+        return ring.reduce(evaluated(p, lambda k, e: generator(k) ** e, ring.context.constant, ring.times))
 
     top = carried(x.top)
     if x.bottom.is_constant():

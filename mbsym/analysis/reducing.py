@@ -18,6 +18,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.rationals import exact
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation, names, substitute, text, walk
 from mbsym.formulas.formula import Formula
@@ -270,16 +271,12 @@ class _Start:
 
     def _graded(self, top: Polynomial, bottom: Polynomial) -> Series:
         """By powers of the small parameter."""
-        context = self.transfer.context
-        parts = []
-        for p in (top, bottom):
-            found: dict[int, dict[tuple[int, ...], Any]] = {}
-            for monomial, c in p.to_dict().items():
-                k = int(monomial[self.small]) if self.small >= 0 else 0
-                rest = (*monomial[: self.small], 0, *monomial[self.small + 1 :]) if k else tuple(monomial)
-                found.setdefault(k, {})[rest] = c
-            parts.append(Series(context, {k: Quotient.of(context.from_dict(x)) for k, x in found.items()}))
-        return parts[0].over(parts[1], self.known if len(parts[1].coefficients) > 1 else None)
+        places = [self.small] if self.small >= 0 else []
+        above, below = (
+            Series(self.transfer.context, {sum(k): Quotient.of(c) for k, c in apart(p, places).items()})
+            for p in (top, bottom)
+        )
+        return above.over(below, self.known if len(below.coefficients) > 1 else None)
 
 
 def _tried(name: str) -> Iterator[str]:

@@ -26,6 +26,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.analysis.in_groups import in_groups, product
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import ENDINGS, velocity_name, without_velocity
@@ -456,14 +457,7 @@ def _moving(ring: Ring, x: Polynomial) -> bool:
 def _terms(ring: Ring, x: Polynomial) -> Iterator[Polynomial]:
     """The coefficients of what moves: polynomials in parameters."""
     moving = [k for k, g in enumerate(ring.generators) if g.kind not in ("parameter", "spare")]
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for monomial, c in x.to_dict().items():
-        key = tuple(monomial[k] for k in moving)
-        rest = list(monomial)
-        for k in moving:
-            rest[k] = 0
-        parts.setdefault(key, {})[tuple(rest)] = c
-    return (ring.context.from_dict(part) for part in parts.values())
+    return iter(apart(x, moving).values())
 
 
 def _ring(system: System, original: System, scaling: Scaling) -> Ring:

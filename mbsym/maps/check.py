@@ -36,13 +36,14 @@ from mbsym.algebra.matrices import added
 from mbsym.algebra.plane import AlgebraicNumber
 from mbsym.algebra.plane.elements import ElementMatrix
 from mbsym.algebra.plane.fields import Over
-from mbsym.algebra.plane.line import Line, univariate
+from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign, simplest
 from mbsym.algebra.plane.point_field import LineField, PointField
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.roots import RootCount, counted, counted_real
+from mbsym.algebra.terms import univariate
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Border, Judged, jumps, verdict_at
 from mbsym.problems.stability.constant import Constant

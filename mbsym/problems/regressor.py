@@ -34,6 +34,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
@@ -147,21 +148,19 @@ class _Split:
         coordinates = set(system.coordinates)
         kinds = ("velocity", "acceleration", "coordinate", "prescribed", "time")
         self.moving = [
-            g.kind in kinds or (g.kind in ("sine", "cosine") and g.name in coordinates) for g in ring.generators
+            k
+            for k, g in enumerate(ring.generators)
+            if g.kind in kinds or (g.kind in ("sine", "cosine") and g.name in coordinates)
         ]
 
     def __call__(self, kinetic: Polynomial, force: Polynomial) -> _Column:
-        found: dict[tuple[Any, ...], dict[tuple[int, ...], Any]] = {}
+        column: dict[tuple[Any, ...], Polynomial] = {}
         for mark, x in (("T", kinetic), ("U", force)):
             self._check(x)
-            for monomial, coefficient in x.terms():
-                fast = tuple(int(e) if m else 0 for e, m in zip(monomial, self.moving, strict=True))
-                if mark == "U" and not any(fast):
-                    continue
-                slow = tuple(0 if m else int(e) for e, m in zip(monomial, self.moving, strict=True))
-                key = (mark, *((k, e) for k, e in enumerate(fast) if e))
-                found.setdefault(key, {})[slow] = coefficient
-        return {key: self.ring.context.from_dict(part) for key, part in found.items()}
+            for fast, slow in apart(x, self.moving).items():
+                if mark == "T" or any(fast):
+                    column[mark, *((k, e) for k, e in zip(self.moving, fast, strict=True) if e)] = slow
+        return column
 
     def _check(self, x: Polynomial) -> None:
         """Adjoined elements (roots, reciprocals) have to be constant, or monomials with them may depend on others."""

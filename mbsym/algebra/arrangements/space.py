@@ -28,6 +28,7 @@ from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
+from mbsym.algebra.terms import coefficients_in
 
 # Whether two arrangements correspond: a bijection of their regions, arcs and corners that keeps what they adjoin.
 #
@@ -262,11 +263,7 @@ def _projected(
 
 def _coefficients(p: Polynomial, generator: int) -> list[Polynomial]:
     """The leading coefficient, and all others where none is a number."""
-    table: dict[int, dict[Any, Any]] = {}
-    for powers, value in p.to_dict().items():
-        key = tuple(0 if k == generator else int(power) for k, power in enumerate(powers))
-        table.setdefault(int(powers[generator]), {})[key] = value
-    every = [p.context().from_dict(table[k]) for k in sorted(table, reverse=True)]
+    every = [c for c in reversed(coefficients_in(p, generator)) if c != 0]
     return every[:1] if any(c.is_constant() for c in every) else every
 
 

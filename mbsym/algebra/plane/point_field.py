@@ -14,10 +14,10 @@ from flint import fmpq, fmpq_poly
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.elements import Element, ElementMatrix
 from mbsym.algebra.plane.fields import Extension, Over, OverField
-from mbsym.algebra.plane.line import univariate
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Polynomial, coefficients
+from mbsym.algebra.terms import univariate
 
 #: Number fields of a higher degree are left alone: arithmetic in them takes minutes.
 MOST_DEGREE = 48

@@ -31,6 +31,7 @@ from mbsym.algebra.plane.numbers import (
     primitive,
     roots_between,
 )
+from mbsym.algebra.terms import coefficients_in, univariate
 
 Polynomial = Any  # a flint.fmpq_mpoly in two generators
 
@@ -140,15 +141,7 @@ class Abscissa:
 
 def coefficients(p: Polynomial, generator: int) -> tuple[Univariate, ...]:
     """Of 1, g, g^2, ... for a polynomial in two generators, as polynomials in the other one."""
-    other = 1 - generator
-    table: dict[int, dict[int, Any]] = {}
-    for powers, value in p.to_dict().items():
-        table.setdefault(int(powers[generator]), {})[int(powers[other])] = value
-    univariates = []
-    for k in range(max(table, default=0) + 1):
-        row = table.get(k, {})
-        univariates.append(fmpq_poly([row.get(j, fmpq(0)) for j in range(max(row, default=0) + 1)]))
-    return tuple(univariates)
+    return tuple(univariate(c, 1 - generator) for c in coefficients_in(p, generator))
 
 
 def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Vertical, ...]]:

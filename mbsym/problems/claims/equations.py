@@ -16,11 +16,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import islice
-from typing import Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
@@ -99,15 +99,9 @@ class Dynamics:
         total = x
         for i, top, bottom in self._solutions(wanted):
             k = self.places[i]
-            degree = int(total.degrees()[k])
-            powers: dict[int, dict[tuple[int, ...], Any]] = {}
-            for monomial, coefficient in total.terms():
-                exponents = [int(e) for e in monomial]
-                power, exponents[k] = exponents[k], 0
-                powers.setdefault(power, {})[tuple(exponents)] = coefficient
-            total = ring.zero
-            for power, terms in powers.items():
-                term = ring.context.from_dict(terms)
+            parts = coefficients_in(total, k)
+            degree, total = len(parts) - 1, ring.zero
+            for power, term in enumerate(parts):
                 for factor, exponent in ((top, power), (bottom, degree - power)):
                     for _ in range(exponent):
                         term = ring.reduce(ring.times(term, factor))

@@ -17,13 +17,14 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from random import Random
-from typing import Any, Protocol
+from typing import Protocol
 
 from flint import nmod_mat
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Signs
+from mbsym.algebra.terms import modulo
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
@@ -155,7 +156,7 @@ def _points(tower: Tower) -> Iterator[list[int]]:
     for _ in range(_TRIALS):
         values = [0] * MOST_ROOTS + [random.randrange(1, PRIME) for _ in tower.parameters]
         for k, square in enumerate(tower.squares):
-            root = _root(_polynomial_at(square, values))
+            root = _root(modulo(square, values, PRIME))
             if root is None:
                 break
             values[MOST_ROOTS - 1 - k] = root
@@ -173,21 +174,10 @@ def _root(square: int) -> int | None:
 
 
 def _at(x: Element, values: Sequence[int]) -> int:
-    below = _polynomial_at(x.bottom, values)
+    below = modulo(x.bottom, values, PRIME)
     if below == 0:
         raise ZeroDivisionError
-    return _polynomial_at(x.top, values) * pow(below, -1, PRIME) % PRIME
-
-
-def _polynomial_at(p: Any, values: Sequence[int]) -> int:
-    total = 0
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q), -1, PRIME)
-        for value, exponent in zip(values, monomial, strict=True):
-            if exponent:
-                term = term * pow(value, int(exponent), PRIME) % PRIME
-        total += term
-    return total % PRIME
+    return modulo(x.top, values, PRIME) * pow(below, -1, PRIME) % PRIME
 
 
 #: The kinds of claim that this is about.

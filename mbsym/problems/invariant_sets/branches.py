@@ -18,6 +18,7 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.algebra.splitting import Branch, Solved
+from mbsym.algebra.terms import apart, coefficients_in, modulo
 from mbsym.formulas.formula import Formula
 
 # The ring in which problem 10 works: parameters, multipliers and variables as generators without relations.
@@ -167,9 +168,7 @@ class Rule:
 
     def top(self, p: Polynomial, power: int) -> Polynomial:
         """The coefficient of generator^power in p."""
-        g = self.generator
-        terms = {(*m[:g], 0, *m[g + 1 :]): c for m, c in p.to_dict().items() if m[g] == power}
-        return p.context().from_dict(terms) if terms else p.context().constant(0)
+        return apart(p, (self.generator,)).get((power,), p.context().constant(0))
 
     def applied(self, p: Polynomial) -> Polynomial:
         """p times a power of ``leading``, of a lower degree in the generator than the equation."""
@@ -403,14 +402,7 @@ def _as_it_is(p: Polynomial) -> Polynomial:
 
 def evaluate(p: Polynomial, values: Mapping[int, int]) -> int:
     """p modulo ``PRIME``."""
-    total = 0
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
-        for g, power in enumerate(monomial):
-            if power:
-                term = term * pow(values[g], power, PRIME) % PRIME
-        total += term
-    return total % PRIME
+    return modulo(p, values, PRIME)
 
 
 def rank(rows: Sequence[Sequence[int]]) -> int:
@@ -421,14 +413,7 @@ def rank(rows: Sequence[Sequence[int]]) -> int:
 
 
 def _roots(p: Polynomial, generator: int, values: Mapping[int, int]) -> list[int]:
-    coefficients = [0] * (p.degrees()[generator] + 1)
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
-        for g, power in enumerate(monomial):
-            if power and g != generator:
-                term = term * pow(values[g], power, PRIME) % PRIME
-        coefficients[monomial[generator]] = (coefficients[monomial[generator]] + term) % PRIME
-    found: Any = nmod_poly(coefficients, PRIME)
+    found: Any = nmod_poly([evaluate(c, values) for c in coefficients_in(p, generator)], PRIME)
     if found.degree() < 1:
         return []
     return [

@@ -17,11 +17,12 @@ from functools import cache
 from itertools import combinations, pairwise
 from typing import Any
 
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
+from flint import acb, acb_poly, arb, ctx, fmpq_poly
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant_by_traces, faddeev, hurwitz
 from mbsym.algebra.rationals import fraction
+from mbsym.algebra.terms import univariate
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.expressions.message import Message
@@ -211,10 +212,7 @@ def _norm(tower: Tower, x: Element) -> fmpq_poly:
     for k in reversed(range(len(tower.squares))):
         if norm.top.degrees()[MOST_ROOTS - 1 - k] > 0:
             norm = norm * tower.conjugate(norm, k)
-    coefficients = [fmpq(0)] * (1 + max(0, int(norm.top.total_degree())))
-    for monomial, coefficient in norm.top.terms():
-        coefficients[int(monomial[MOST_ROOTS])] = coefficient
-    return fmpq_poly(coefficients)
+    return univariate(norm.top, MOST_ROOTS)
 
 
 def _refuse_singular(

@@ -32,6 +32,7 @@ from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import coefficients_in
 from mbsym.problems.polynomial_integrals.gradings import Grading
 from mbsym.problems.polynomial_integrals.lifting import lifted, monomial
 from mbsym.problems.polynomial_integrals.modular import (
@@ -266,16 +267,10 @@ def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] |
     )
     found = []
     for factor, _ in irreducible_factors(characteristic)[1]:
-        degree = int(factor.degrees()[0])
-        leading = _coefficient(wide, factor, degree)  # a number: the characteristic polynomial is monic
-        scaled = [_coefficient(wide, factor, k) / leading.leading_coefficient() for k in range(degree + 1)]
+        parts = coefficients_in(factor, 0)  # the last a number: the characteristic polynomial is monic
+        scaled = [c / parts[-1].leading_coefficient() for c in parts]
         found.append(RestFactor(tuple(c.compose(context.constant(0), *context.gens(), ctx=context) for c in scaled)))
     return found
-
-
-def _coefficient(context: Any, p: Any, power: int) -> Any:
-    """Of the first generator to that power."""
-    return context.from_dict({(0, *m[1:]): c for m, c in p.to_dict().items() if int(m[0]) == power})
 
 
 def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:

@@ -22,10 +22,9 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import fmpq_poly
-
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.terms import univariate
 from mbsym.problems.polynomial_integrals.darboux import (
     DarbouxSearch,
     darboux_polynomials,
@@ -314,7 +313,7 @@ class _Drops:
                 self.irrational.append(lifted)
 
     def _double_roots(self, delta: Any) -> None:
-        for factor, _ in fmpq_poly(_list(delta)).factor()[1]:
+        for factor, _ in univariate(delta).factor()[1]:
             if factor.degree() == 1:
                 root = -factor[0] / factor[1]
                 self.values[rationals.fraction(root)] = None
@@ -322,13 +321,7 @@ class _Drops:
 
 def _moves(delta: Any) -> bool:
     """Whether it depends on t if Delta is the square of a rational number: not where it is one but for a constant."""
-    return any(power % 2 for _, power in fmpq_poly(_list(delta)).factor()[1])
-
-
-def _list(p: Any) -> list[Any]:
-    """The coefficients of a polynomial in the parameter alone, that of t^0 first."""
-    powers = {int(m[0]): c for m, c in p.to_dict().items()}
-    return [powers.get(k, 0) for k in range(max(powers, default=0) + 1)]
+    return any(power % 2 for _, power in univariate(delta).factor()[1])
 
 
 def _constant(there: ModularField, p: Any) -> int:

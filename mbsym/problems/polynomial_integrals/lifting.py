@@ -13,6 +13,7 @@ from typing import Any
 from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import Operators, PrimitiveRows
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import apart
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.modular import SMALLER, Exponents
 
@@ -77,13 +78,7 @@ def monomial(field: PolynomialField, exponents: Sequence[int]) -> Any:
 
 def coefficients(field: PolynomialField, f: Any) -> dict[Exponents, Any]:
     """Polynomials in the parameters, by the monomials in the variables that they belong to."""
-    count = len(field.parameters)
-    nothing = (0,) * len(field.variables)
-    parts: dict[Exponents, dict[tuple[int, ...], Any]] = {}
-    for exponents, c in f.to_dict().items():
-        key = tuple(int(x) for x in exponents[count:])
-        parts.setdefault(key, {})[(*exponents[:count], *nothing)] = c
-    return {key: field.context.from_dict(terms) for key, terms in parts.items()}
+    return apart(f, field.places)
 
 
 def primitive(field: PolynomialField, f: Any) -> Any:

@@ -118,16 +118,9 @@ class Numbers:
         return p
 
     def _of(self, p: Any) -> Any:
-        total = self.context.constant(0)
-        for monomial, c in p.to_dict().items():
-            term = self.context.constant(c)
-            for k, e in enumerate(monomial):
-                if e and k < MOST_ROOTS:
-                    term = term * self.roots[MOST_ROOTS - 1 - k] ** e
-                elif e:
-                    term = term * self.values[k - MOST_ROOTS] ** e
-            total = total + term
-        return total
+        images = [*self.roots[::-1], *map(self.context.constant, self.values)]
+        absent = [self.context.constant(0)] * (MOST_ROOTS - len(self.roots))
+        return p.compose(*absent, *images, ctx=self.context)
 
     def __call__(self, x: Element) -> Any:
         bottom = self._of(x.bottom)

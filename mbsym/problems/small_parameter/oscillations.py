@@ -14,6 +14,7 @@ from dataclasses import field as dataclass_field
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.terms import coefficients_in
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.checks import oscillation_orders
@@ -283,10 +284,7 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
 
 def _by_powers(tower: Tower, p: Any, place: int) -> list[Element]:
     """The coefficients of the powers of a generator, from low to high."""
-    parts: list[dict[Any, Any]] = [{} for _ in range(p.degrees()[place] + 1)]
-    for monomial, c in p.to_dict().items():
-        parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
-    return [tower.made(tower.context.from_dict(part), tower.context.constant(1)) for part in parts]
+    return [tower.made(part, tower.context.constant(1)) for part in coefficients_in(p, place)]
 
 
 def _squares(there: Equations, coefficients: Sequence[Element]) -> list[Element] | None:
@@ -404,15 +402,11 @@ def _put(orders: Orders, place: int, value: Element) -> None:
     images[place] = tower.context.constant(0)
 
     def change(x: Element) -> Element:
-        degree = x.top.degrees()[place]
-        if degree <= 0:
+        if x.top.degrees()[place] <= 0:
             return x
-        parts: list[dict[Any, Any]] = [{} for _ in range(degree + 1)]
-        for monomial, c in x.top.to_dict().items():
-            parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
         total = tower.zero
-        for part in reversed(parts):
-            total = total * value + tower.made(tower.context.from_dict(part), tower.context.constant(1))
+        for part in reversed(_by_powers(tower, x.top, place)):
+            total = total * value + part
         return total / tower.made(x.bottom, tower.context.constant(1))
 
     for i, one in enumerate(orders.series):

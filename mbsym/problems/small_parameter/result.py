@@ -9,6 +9,7 @@ from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.quotients import Quotient, Series
+from mbsym.algebra.terms import grouped
 
 
 class Outcome(Enum):
@@ -152,16 +153,10 @@ def scaled(field: PolynomialField, small: str, powers: Mapping[str, int]) -> Sca
     for name, power in powers.items():
         if name in names:
             weights[names.index(name)] = power
-    own = names.index(small) if small in names else None
+    own = [names.index(small)] if small in names else []
 
     def graded(p: Polynomial) -> dict[int, Polynomial]:
-        parts: dict[int, dict[tuple[int, ...], Any]] = {}
-        for monomial, c in p.to_dict().items():
-            order = sum(weights[k] * int(e) for k, e in enumerate(monomial) if e)
-            if own is not None:
-                monomial = (*monomial[:own], 0, *monomial[own + 1 :])
-            parts.setdefault(order, {})[monomial] = c
-        return {k: field.context.from_dict(part) for k, part in parts.items()}
+        return grouped(p, lambda m: sum(weights[k] * int(e) for k, e in enumerate(m) if e), own)
 
     denominator = graded(field.denominator)
     least = min(denominator)

@@ -15,6 +15,7 @@ from flint import fmpq_mpoly_ctx
 from mbsym.algebra.factors import irreducible_factors, occurring, square_apart
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.algebra.quotients import Quotient
+from mbsym.algebra.terms import apart
 from mbsym.problems.small_parameter.result import Adjoined, ScaledField
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
@@ -184,17 +185,10 @@ def _linear_in_one(left: Sequence[Quotient], unknown: Sequence[int]) -> tuple[in
 
 def put(p: Polynomial, values: Mapping[int, Quotient]) -> Quotient:
     """p with quotients in place of some generators.  Raises NoClosedForm where it becomes too long."""
-    context = p.context()
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    places = tuple(values)
-    for monomial, c in p.to_dict().items():
-        key = tuple(int(monomial[k]) for k in places)
-        rest = tuple(0 if k in values else e for k, e in enumerate(monomial))
-        parts.setdefault(key, {})[rest] = c
-    total = Quotient.of(context.constant(0))
-    for key, terms in parts.items():
-        term = Quotient.of(context.from_dict(terms))
-        for place, exponent in zip(places, key, strict=True):
+    total = Quotient.of(p.context().constant(0))
+    for key, part in apart(p, values).items():
+        term = Quotient.of(part)
+        for place, exponent in zip(values, key, strict=True):
             for _ in range(exponent):
                 term = term * values[place]
         total = total + term

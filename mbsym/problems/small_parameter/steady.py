@@ -16,6 +16,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant_by_traces, faddeev
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.problems.small_parameter.result import Hurwitz, ScaledField, SteadyStates
+from mbsym.problems.small_parameter.root import put
 
 #: Characteristic polynomials of a higher degree are not expanded.
 MOST_VARIABLES = 8
@@ -140,19 +141,5 @@ def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
 
 def _put(c: Quotient, first: int, values: Sequence[Quotient]) -> Quotient:
     """c with quotients in place of the variables."""
-    context = c.top.context()
-    gens = context.gens()
-    images = [*gens[:first], *(x.top for x in values)]
-    if all(x.bottom.is_constant() for x in values):
-        return Quotient.of(c.top.compose(*images), c.bottom.compose(*images))
-    quotients = []
-    for p in (c.top, c.bottom):
-        total = Quotient.of(context.constant(0))
-        for monomial, number in p.to_dict().items():
-            term = Quotient.of(context.from_dict({(*monomial[:first], *(0 for _ in values)): number}))
-            for x, exponent in zip(values, monomial[first:], strict=True):
-                for _ in range(exponent):
-                    term = term * x
-            total = total + term
-        quotients.append(total)
-    return quotients[0] / quotients[1]
+    images = dict(enumerate(values, first))
+    return put(c.top, images) / put(c.bottom, images)
