@@ -18,7 +18,7 @@ an empty list means that nothing is missing.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import combinations, product
@@ -30,7 +30,7 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, message_of
 from mbsym.algebra.matrices import echelon
-from mbsym.algebra.terms import evaluated, univariate
+from mbsym.algebra.terms import residue, univariate
 from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpz_mpoly
@@ -141,21 +141,6 @@ def real_roots(p: Univariate, bits: int = 64) -> list[Any]:
 def _known_roots(coefficients: tuple[Any, ...], bits: int) -> list[Any]:
     """``real_roots``, once for all the points of a field that are asked for together."""
     return real_roots(fmpq_poly(list(coefficients)), bits)
-
-
-def residue(x: Polynomial, values: Sequence[Univariate] | Mapping[int, Univariate], modulus: Univariate) -> Univariate:
-    """x at the values, modulo ``modulus``."""
-    powers: dict[tuple[int, int], Univariate] = {}
-
-    def power(index: int, exponent: int) -> Univariate:
-        if exponent == 1:
-            return values[index]
-        key = (index, exponent)
-        if key not in powers:
-            powers[key] = power(index, exponent - 1) * values[index] % modulus
-        return powers[key]
-
-    return evaluated(x, power, lambda c: fmpq_poly([fmpq(c)]), lambda a, b: a * b % modulus) % modulus
 
 
 def solve(

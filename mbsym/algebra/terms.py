@@ -76,7 +76,7 @@ def evaluated(
     times: Callable[[Any, Any], Any] = operator.mul,
 ) -> Any:
     """The sum of number(c) prod_k power(k, e_k) over the terms c x^e, by ``times`` and the scalars' own sum."""
-    total = number(0)
+    total = number(fmpq(0))
     for monomial, c in p.terms():
         term = number(c)
         for k, exponent in enumerate(monomial):
@@ -89,7 +89,22 @@ def evaluated(
 def modulo(p: Polynomial, values: Sequence[int] | Mapping[int, int], prime: int) -> int:
     """The value at integers, modulo a prime that divides no denominator."""
 
-    def number(c: Any) -> int:
-        return int(c) % prime if isinstance(c, int) else int(c.p) * pow(int(c.q), -1, prime) % prime
+    def number(c: fmpq) -> int:
+        return int(c.p) * pow(int(c.q), -1, prime) % prime
 
     return int(evaluated(p, lambda k, e: pow(values[k], e, prime), number, lambda a, b: a * b % prime)) % prime
+
+
+def residue(x: Polynomial, values: Sequence[fmpq_poly] | Mapping[int, fmpq_poly], modulus: fmpq_poly) -> fmpq_poly:
+    """x at the values, modulo ``modulus``."""
+    powers: dict[tuple[int, int], fmpq_poly] = {}
+
+    def power(index: int, exponent: int) -> fmpq_poly:
+        if exponent == 1:
+            return values[index]
+        key = (index, exponent)
+        if key not in powers:
+            powers[key] = power(index, exponent - 1) * values[index] % modulus
+        return powers[key]
+
+    return evaluated(x, power, lambda c: fmpq_poly([fmpq(c)]), lambda a, b: a * b % modulus) % modulus

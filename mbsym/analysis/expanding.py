@@ -25,7 +25,7 @@ from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Adjoined, Choice, Hurwitz, Outcome, ScaledField, SlowManifold, scaled
 from mbsym.problems.small_parameter.root import Root, Roots, adjoined, put
-from mbsym.problems.small_parameter.steady import steady_states
+from mbsym.problems.small_parameter.slow import steady_states
 from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:
     def parts(p: Any) -> list[Any]:
         found = [context.constant(0), context.constant(0)]
         for power, c in enumerate(coefficients_in(p, root.place)):
-            found[power % 2] += c * root.square ** (power // 2)
+            found[power % 2] += context.from_dict(c.to_dict()) * root.square ** (power // 2)
         return found
 
     (a, b), (e, f) = parts(c.top), parts(c.bottom)

@@ -38,7 +38,6 @@ from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.generating import graded_rows
 from mbsym.problems.small_parameter.lindstedt import integrated
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -46,6 +45,7 @@ from mbsym.problems.small_parameter.oscillations import (
     oscillation,
     tower_over,
 )
+from mbsym.problems.small_parameter.result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:

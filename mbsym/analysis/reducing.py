@@ -1,4 +1,4 @@
-"""A reduction of a system, from what its author asks for (``mbsym.source.reduction``)."""
+"""A reduction of a system, from what its author asks for (``mbsym.source.scaling``)."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ from mbsym.problems.scaling import Groups, independent, measured_in
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
 
 #: Fields that hold names of variables.
 _NAMED = ("coordinate", "coordinates", "order", "dependent", "fast", "slow", "leading", "powers", "components")

@@ -41,7 +41,7 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
-from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.in_speeds import SpeedEquations
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:

@@ -174,7 +174,7 @@ class _Split:
     def _moves(self, x: Polynomial) -> bool:
         degrees = x.degrees()
         spare = self.ring.generators[: self.ring.spare]
-        return any(d > 0 and m for d, m in zip(degrees, self.moving, strict=True)) or any(
+        return any(degrees[k] > 0 for k in self.moving) or any(
             degrees[k] > 0 and (g.argument is None or self._moves(g.argument)) for k, g in enumerate(spare)
         )
 

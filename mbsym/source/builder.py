@@ -44,8 +44,8 @@ from mbsym.source.settings import (
     read_motion,
     read_notation,
     read_relations,
+    read_small,
 )
-from mbsym.source.small import read_small
 from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, in_coordinates, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables

@@ -26,8 +26,8 @@ from mbsym.algebra.arrangements.arrangement import (
 )
 from mbsym.algebra.arrangements.stacks import BOTTOM, TOP, Column, Fibre, column, connected, points_over
 from mbsym.algebra.failures import Defect, Limit, TooLargeError
+from mbsym.algebra.plane.fields import Point
 from mbsym.algebra.plane.numbers import between_simply
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget, Curve, Polynomial, Progress, abscissas, nothing, parts
 
 Key = tuple[int, int]

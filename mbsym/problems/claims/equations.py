@@ -24,10 +24,9 @@ from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
+from mbsym.problems.claims.comparison import closest_multiple, decided, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, by_place, in_parameters, on_relations
-from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
 
 #: States at which an expression must vanish before a proof is tried; coupled equations, and powers of accelerations,

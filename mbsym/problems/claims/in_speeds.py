@@ -26,8 +26,7 @@ from mbsym.problems.claims.integrals import of_positions, substituted
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds.speed_integrals import Field
-from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.in_speeds import Field, SpeedEquations
 
 #: What is told in coordinates.
 _LINEAR = ("linear matrix", "subsystem matrix", "characteristic")

@@ -24,10 +24,10 @@ from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.states import SEED
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.problems.claims.comparison import ROUNDING
 from mbsym.problems.claims.counterexample import DIGITS_SHOWN, PRECISION, follow, shown
 from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
-from mbsym.problems.claims.signs_under_roots import ROUNDING
 from mbsym.problems.claims.symbols import Symbols
 
 #: The value is shown to so many digits more than the claim has.

@@ -32,12 +32,11 @@ from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Ope
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
+from mbsym.problems.claims.comparison import decided
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters
-from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
-from mbsym.problems.small_parameter.result import SlowManifold
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation, SlowManifold
 from mbsym.problems.vector_field import Transfer
 
 # Whether a formula of another form may be the same periodic solution with its symbols chosen otherwise.

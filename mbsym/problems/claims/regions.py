@@ -41,9 +41,8 @@ from mbsym.problems.stability.requirements import (
     joined,
 )
 from mbsym.problems.stability.symbolic import on_border
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Fact, Word
 
 #: Of which coordinates a condition is, and what it is.
 _OF = "[[whose]] ([[formula]] [[relation]] 0)"

@@ -34,7 +34,6 @@ from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.terms import coefficients_in
 from mbsym.problems.polynomial_integrals.gradings import Grading
-from mbsym.problems.polynomial_integrals.lifting import lifted, monomial
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     Exponents,
@@ -43,6 +42,8 @@ from mbsym.problems.polynomial_integrals.modular import (
     at_random,
     echelon,
     kernel_of,
+    lifted,
+    monomial,
     monomials,
     times,
 )

@@ -28,8 +28,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.excess import Block, Excess, Line, dropped, larger, rational, roots
-from mbsym.problems.polynomial_integrals.lifting import primitive
-from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, monomials
+from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, monomials, primitive
 from mbsym.problems.polynomial_integrals.result import Case, Cases, PolynomialIntegrals
 from mbsym.problems.polynomial_integrals.values import special_of
 

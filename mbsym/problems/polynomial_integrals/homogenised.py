@@ -25,8 +25,15 @@ from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
-from mbsym.problems.polynomial_integrals.lifting import primitive
-from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, at_random, echelon, remainder
+from mbsym.problems.polynomial_integrals.modular import (
+    PRIMES,
+    ModularField,
+    Terms,
+    at_random,
+    echelon,
+    primitive,
+    remainder,
+)
 from mbsym.problems.polynomial_integrals.other_levels import other_levels
 from mbsym.problems.polynomial_integrals.result import (
     UNITY,

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.problems.polynomial_integrals.lifting import lifted
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     Exponents,
@@ -23,6 +22,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     Terms,
     at_random,
     kernel_of,
+    lifted,
     monomials,
     remainder,
     times,

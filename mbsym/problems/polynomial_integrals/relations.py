@@ -20,7 +20,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.terms import with_quotient
 from mbsym.problems.polynomial_integrals.darboux import is_regular_on
-from mbsym.problems.polynomial_integrals.lifting import coefficients, primitive
+from mbsym.problems.polynomial_integrals.modular import coefficients, primitive
 from mbsym.problems.polynomial_integrals.result import Relation, Relations
 
 #: Cases that are followed for one leading variable, and terms of an equation.

@@ -17,7 +17,6 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals import gradings as frames
 from mbsym.problems.polynomial_integrals.gradings import Grading, beyond, homogeneous_parts
-from mbsym.problems.polynomial_integrals.lifting import lifted, primitive
 from mbsym.problems.polynomial_integrals.modular import (
     MOST_MONOMIALS,
     PRIMES,
@@ -29,7 +28,9 @@ from mbsym.problems.polynomial_integrals.modular import (
     count,
     echelon,
     kernel,
+    lifted,
     monomials,
+    primitive,
     times,
 )
 from mbsym.problems.polynomial_integrals.result import FUNCTION, Count, Generator, PolynomialIntegrals

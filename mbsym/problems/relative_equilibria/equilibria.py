@@ -59,8 +59,7 @@ from mbsym.problems.relative_equilibria.listing import (
 from mbsym.problems.relative_equilibria.oriented import orientations
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 __all__ = [
     "CERTIFIED",

@@ -12,8 +12,9 @@ from flint import arb, ctx, fmpq, fmpq_poly, fmpz
 from mbsym.algebra import rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
-from mbsym.algebra.polynomial_systems import AlgebraicPoint, context, inverse_modulo, residue
+from mbsym.algebra.polynomial_systems import AlgebraicPoint, context, inverse_modulo
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.formulas.python import python_text
 from mbsym.mechanics.rest import Rest

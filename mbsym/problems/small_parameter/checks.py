@@ -10,8 +10,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.tower import MOST_ROOTS, Element
-from mbsym.problems.small_parameter.oscillation_result import Harmonics, Oscillation
-from mbsym.problems.small_parameter.result import ScaledField
+from mbsym.problems.small_parameter.result import Harmonics, Oscillation, ScaledField
 
 #: Numerators and denominators of the random states.
 _SIZE = 40

@@ -23,7 +23,7 @@ from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
-from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift, Harmonics
+from mbsym.problems.small_parameter.result import Divisor, Drift, Harmonics
 
 
 class Resonance(NoClosedForm):

@@ -20,7 +20,7 @@ from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation
 
 #: A condition on the amplitude may first appear in this order.
 LATEST = 4

@@ -14,11 +14,10 @@ from flint import fmpq, fmpz_poly
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.algebra.plane.elements import Element, ElementMatrix
+from mbsym.algebra.plane.elements import Element, ElementMatrix, SimpleField
 from mbsym.algebra.plane.numbers import AlgebraicNumber
-from mbsym.algebra.plane.point_field import SimpleField
-from mbsym.algebra.polynomial_systems import residue
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.tree import divide, number
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined

@@ -18,9 +18,8 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.factors import Polynomial
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane.fields import Extension, Over
+from mbsym.algebra.plane.fields import Extension, Over, Point
 from mbsym.algebra.plane.numbers import AlgebraicNumber, number, primitive, roots_between, sign
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import linear_form
 from mbsym.model.system import System

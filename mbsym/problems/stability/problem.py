@@ -40,12 +40,11 @@ from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells_of, everywhere, joined
 from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction

@@ -63,7 +63,6 @@ from mbsym.problems.stability.linear_form import (
     null_rows,
 )
 from mbsym.problems.stability.on_border import where_zero
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
     BUT_TURNED,
     BUT_ZERO,
@@ -93,7 +92,6 @@ from mbsym.problems.stability.routh import (
     momenta_are_constant,
     only_momenta,
 )
-from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
 from mbsym.problems.stability.verdict import (
     Flaw,
     Verdict,
@@ -107,7 +105,7 @@ from mbsym.problems.stability.verdict import (
     only_drifts,
     undecided,
 )
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, applying, implied
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4

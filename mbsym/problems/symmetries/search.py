@@ -27,7 +27,7 @@ from mbsym.model.system import System
 from mbsym.problems import integrals
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.problems.in_speeds import Field
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION
