@@ -293,13 +293,11 @@ def _bound(count: int, what: str, node: Node, reading: Reading) -> None:
     if count > MAX_INPUTS:
         reading.error(
             "too-large",
-            Message(
-                "a system has at most [[most]] [[what]], not [[count]]",
-                most=MAX_INPUTS,
-                what=worded(what),
-                count=count,
-            ),
+            "a system has at most [[most]] [[what]], not [[count]]",
             node.span,
+            most=MAX_INPUTS,
+            what=worded(what),
+            count=count,
         )
 
 

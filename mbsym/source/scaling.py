@@ -158,8 +158,7 @@ def _known(name: str, span: Span, system: System, complaints: Complaints) -> boo
     there = ("t", *moving, *system.parameter_names)
     if name not in there:
         hint = did_you_mean(name, there) or listed("there are", there)
-        message = Message("there is nothing called [[name]] to scale", name=ascii_safe(name))
-        complaints.error("unknown-name", message, span, hint)
+        complaints.error("unknown-name", "there is nothing called [[name]] to scale", span, hint, name=ascii_safe(name))
         return False
     if name in {relation.name for relation in system.relations}:
         message = Message("'[[name]]' follows from a relation", name=name)

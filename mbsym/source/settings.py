@@ -186,9 +186,7 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[tuple[InitialValu
             position, velocity = fields.expression("position", allowed), fields.expression("velocity", allowed)
             if not fields.found:
                 reading.error(
-                    "missing-key",
-                    Message("[[what]] has neither 'position' nor 'velocity'", what=worded(fields.what)),
-                    span,
+                    "missing-key", "[[what]] has neither 'position' nor 'velocity'", span, what=worded(fields.what)
                 )
         else:
             position, velocity = reading.expression(entry.value, allowed), None
@@ -344,9 +342,7 @@ def _variables(node: Node | None, what: str, reading: Reading) -> Iterator[str]:
                 Message("variables are coordinates and speeds: [[known]]", known=known),
             )
         elif scalar.text in seen:
-            reading.error(
-                "repeated-name", Message("[[what]] is listed twice", what=ascii_safe(scalar.text)), scalar.span
-            )
+            reading.error("repeated-name", "[[what]] is listed twice", scalar.span, what=ascii_safe(scalar.text))
         else:
             seen.add(scalar.text)
             yield scalar.text

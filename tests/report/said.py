@@ -77,7 +77,7 @@ class Module(ast.NodeVisitor):
         elif name in ("Measure", "Unusable"):
             self._words(node.args[:1], node)
         elif name in ("error", "warning") and self.of_descriptions:
-            self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
+            self._complaint(node)
         elif name == "Unfit" and self.name.startswith("studies/"):
             self._words(self._unpacked(node.args)[2:4], node)
         elif name == "Unfit" and self.name == "report/runs/earlier_run.py":
@@ -133,6 +133,18 @@ class Module(ast.NodeVisitor):
             self.texts.append(Asked(text, self._at(node), gaps if text in nearest else None))
         for text in self._named(first):
             self.texts.append(Asked(text, self._at(node)))
+
+    def _complaint(self, node: ast.Call) -> None:
+        """A message and a hint, which share what fills their gaps; what is given and stands in neither is wrong."""
+        words = [*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")]
+        given = {x.arg for x in node.keywords if x.arg and x.arg not in ("hint", "span")}
+        if not given:
+            return self._words(words, node)
+        texts = [text for one in words if not isinstance(one, ast.Call) for text in self._literals(one)]
+        idle = given - {gap for text in texts for gap in GAP.findall(text)}
+        for text in texts:
+            self.texts.append(Asked(text, self._at(node), frozenset(given & set(GAP.findall(text)) | idle)))
+        return None
 
     def _words(self, values: list[ast.expr], node: ast.AST, depth: int = 0) -> None:
         for value in values:
