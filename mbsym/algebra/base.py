@@ -93,6 +93,10 @@ class Algebra(Generic[S]):
 
     # --- derived --------------------------------------------------------------------------------------------------
 
+    def ratio(self, x: S, y: S) -> S:
+        """x/y in normal form."""
+        return self.reduce(self.times(x, self.reciprocal(y)))
+
     def power(self, base: S, exponent: int) -> S:
         """base**exponent by repeated squaring; a negative exponent takes the reciprocal first."""
         if exponent < 0:

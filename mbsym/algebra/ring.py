@@ -259,6 +259,12 @@ class Ring(Algebra[Polynomial]):
         self.spend(100 * (len(a) + len(b)))
         return a.gcd(b)
 
+    def lowest_terms(self, x: Polynomial, y: Polynomial) -> tuple[Polynomial, Polynomial]:
+        """x and y without what they share, as far as that is found."""
+        common = self.common_factor(x, y)
+        top, bottom = self.quotient(x, common), self.quotient(y, common)
+        return (x, y) if top is None or bottom is None else (top, bottom)
+
     def vanishes(self, x: Polynomial) -> bool:
         return bool(x.is_zero())
 
@@ -660,7 +666,7 @@ class Ring(Algebra[Polynomial]):
             down = self.function("exp", -x)
             half = fmpq(1, 2)
             sinh, cosh = (up - down) * half, (up + down) * half
-            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(self.times(sinh, self.reciprocal(cosh)))
+            return {"sinh": sinh, "cosh": cosh}.get(name) or self.ratio(sinh, cosh)
         if name in ("abs", "sign"):
             return self._absolute(x) if name == "abs" else self._sign(x)
         if isinstance(name, Tabulated):

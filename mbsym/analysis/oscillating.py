@@ -536,7 +536,7 @@ def in_letters(
     if x.bottom.is_constant():
         return top  # the leading coefficient of every denominator is 1
     if denominators is None:
-        return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+        return ring.ratio(top, carried(x.bottom))
     constant, factors = x.bottom.factor()
     below = ring.number(rationals.fraction(constant))
     for factor, power in factors:

@@ -53,7 +53,7 @@ class Reduced:
             sine = ring.generator("sine", name)
             while (left := ring.quotient(below, ring.one - ring.generator("cosine", name) ** 2)) is not None:
                 found, below = ring.times(found, ring.reciprocal(sine) ** 2), left
-        return Formula(ring, ring.reduce(ring.times(found, ring.reciprocal(below))))
+        return Formula(ring, ring.ratio(found, below))
 
     def terms(self, x: Series) -> tuple[tuple[Formula, Formula], ...]:
         """The coefficients with powers of the small parameter, from the lowest on; they hold what it divides."""

@@ -428,9 +428,7 @@ class Formulas:
         """What the rate of a variable is equal to, in its new time and size."""
         factor = self.ring.quotient(self.carry(rate.polynomial), self.moving(rate).polynomial)
         assert factor is not None
-        return Formula(
-            self.ring, self.ring.reduce(self.ring.times(self.carry(value.polynomial), self.ring.reciprocal(factor)))
-        )
+        return Formula(self.ring, self.ring.ratio(self.carry(value.polynomial), factor))
 
     def row(self, x: Formula, constant: bool = False) -> Formula:
         """A constant multiple of a formula: without denominators of parameters, content and common names.

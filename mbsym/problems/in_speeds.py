@@ -200,7 +200,7 @@ class Field:
     def rate_in_lowest_terms(self, x: Polynomial) -> Formula:
         """dx/dt on the motion."""
         ring = self.form.ring
-        return Formula(ring, ring.reduce(ring.times(self.rate(x), ring.reciprocal(self.determinant))))
+        return Formula(ring, ring.ratio(self.rate(x), self.determinant))
 
 
 def integrals(form: SpeedForm, scene: Scene, energy: Energy, equations: SpeedEquations) -> tuple[Integral, ...]:

@@ -363,4 +363,4 @@ def _unequal(
 def _polynomial(ring: Ring, x: Quotient) -> Polynomial:
     if x.bottom.is_constant():
         return x.top / x.bottom.leading_coefficient()
-    return ring.reduce(ring.times(x.top, ring.reciprocal(x.bottom)))
+    return ring.ratio(x.top, x.bottom)

@@ -449,9 +449,8 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
                 candidates.append((above.derivative(k), below.derivative(k)))
     for top, bottom in candidates:
         try:
-            common = ring.common_factor(top, bottom)
-            shorter = ring.quotient(top, common), ring.quotient(bottom, common)
-            if any(x is None or _accelerations(ring, x) for x in shorter):
+            shorter = ring.lowest_terms(top, bottom)
+            if any(_accelerations(ring, x) for x in shorter):
                 continue
             left = ring.reduce(ring.times(above, shorter[1]) - ring.times(below, shorter[0]))
         except NoClosedForm:
@@ -465,7 +464,7 @@ def closest_multiple(derived: Derived, claim: Claim, claimed: Polynomial, truth:
         return None
     (top, bottom), left = best[1:]
     try:
-        factor = ring.reduce(ring.times(top, ring.reciprocal(bottom)))
+        factor = ring.ratio(top, bottom)
         difference = ring.reduce(claimed - ring.times(truth, factor))
     except Failure:
         return None
@@ -530,10 +529,9 @@ def constant_factor(derived: Derived, claimed: Polynomial, truth: Polynomial) ->
     if first.keys() != second.keys():
         return None
     key = min(second, key=lambda one: len(first[one]) + len(second[one]))
-    common = ring.common_factor(first[key], second[key])
-    top, bottom = ring.quotient(first[key], common), ring.quotient(second[key], common)
-    if top is None or bottom is None or len(top) > 1 or len(bottom) > 1:
+    top, bottom = ring.lowest_terms(first[key], second[key])
+    if len(top) > 1 or len(bottom) > 1:
         return None
     if not ring.is_zero(ring.times(claimed, bottom) - ring.times(truth, top)):
         return None
-    return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+    return Formula(ring, ring.ratio(top, bottom))

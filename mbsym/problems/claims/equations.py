@@ -74,13 +74,10 @@ class Dynamics:
                 top = determinant(ring, [row if k == i else mass[m] for m, k in enumerate(block)])
                 if ring.vanishes(top):
                     continue
-                top, bottom = _lowest(ring, top, whole)
+                top, bottom = ring.lowest_terms(top, whole)
                 coefficients.append((self.names[i], top, bottom))
                 # left/over - top/bottom L_i over the least denominator
-                common = ring.common_factor(over, bottom)
-                mine, other = ring.quotient(bottom, common), ring.quotient(over, common)
-                if mine is None or other is None:
-                    mine, other = bottom, over
+                mine, other = ring.lowest_terms(bottom, over)
                 left = ring.times(left, mine) - ring.times(ring.times(top, other), self.rows[i])
                 left, over = ring.reduce(left), ring.reduce(ring.times(over, mine))
         return Combination(tuple(coefficients), left, over)
@@ -118,7 +115,7 @@ class Dynamics:
                     replaced = [
                         [y if c == column else x for c, x in enumerate(row)] for row, y in zip(mass, right, strict=True)
                     ]
-                    solutions.append((i, *_lowest(ring, determinant(ring, replaced), whole)))
+                    solutions.append((i, *ring.lowest_terms(determinant(ring, replaced), whole)))
         return solutions
 
     def _blocks(self, wanted: set[int]) -> list[tuple[list[int], list[list[Polynomial]], Polynomial]]:
@@ -152,7 +149,7 @@ class Combination:
         ring = dynamics.ring
         told: list[str] = []
         for name, top, bottom in self.coefficients:
-            factor = str(Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom)))))
+            factor = str(Formula(ring, ring.ratio(top, bottom)))
             if len(factor) > LONGEST:
                 names = ", ".join(name for name, *_ in self.coefficients)
                 told = [Message("a combination of the equations of [[names]]", names=names)]
@@ -177,12 +174,6 @@ class Combination:
             row = dynamics.rows[dynamics.names.index(name)]
             total = total + ring.times(ring.times(top, ring.reciprocal(bottom)), row)
         return ring.reduce(total)
-
-
-def _lowest(ring: Ring, top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial]:
-    common = ring.common_factor(top, bottom)
-    first, second = ring.quotient(top, common), ring.quotient(bottom, common)
-    return (top, bottom) if first is None or second is None else (first, second)
 
 
 def along_motion(

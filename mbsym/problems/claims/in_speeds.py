@@ -123,7 +123,7 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
         return equations.equality(_speed(form, claim.of)).polynomial
     if claim.kind == "acceleration":
         top, bottom = Dynamics.of(derived).solved(_speed(form, claim.of))
-        return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
+        return form.ring.ratio(top, bottom)
     raise NoClosedForm("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind))
 
 
@@ -144,7 +144,7 @@ def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomi
         if ring.vanishes(first) or ring.vanishes(second) or held:
             continue
         if form.vanishes(ring.times(second, claimed) - ring.times(first, truth)) is True:
-            return ring.reduce(ring.times(first, ring.reciprocal(second)))
+            return ring.ratio(first, second)
     return None
 
 

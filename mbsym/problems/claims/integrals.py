@@ -131,11 +131,7 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
         found = rate_on_motion(derived.scene, equations, claimed)
         if found is None:
             return None
-        common = ring.common_factor(*found)
-        top, bottom = ring.quotient(found[0], common), ring.quotient(found[1], common)
-        if top is None or bottom is None:
-            top, bottom = found
-        return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+        return Formula(ring, ring.ratio(*ring.lowest_terms(*found)))
     except Failure:
         return None
 

@@ -33,7 +33,7 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return _equation(derived, claim.of)
     if kind == "acceleration":
         top, bottom = Dynamics.of(derived).solved(derived.system.coordinates.index(claim.of))
-        return ring.reduce(ring.times(top, ring.reciprocal(bottom)))
+        return ring.ratio(top, bottom)
     if kind in IN_MOMENTA:
         return in_velocities(derived, kind, claim.of)
     if kind == "linear matrix B":

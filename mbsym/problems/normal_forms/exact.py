@@ -250,7 +250,7 @@ def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:
         kind = tower.kind(index)
         return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
-    return ring.reduce(ring.times(carried(x.top), ring.reciprocal(carried(x.bottom))))
+    return ring.ratio(carried(x.top), carried(x.bottom))
 
 
 def common_factor(tower: Tower, even: Sequence[Element], odd: Sequence[Element]) -> list[Element]:

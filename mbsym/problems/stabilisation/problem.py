@@ -252,7 +252,7 @@ def _undamped(
         return None
     below, above = (whole.ring.project(x.polynomial) for x in (factor[0], factor[2]))
     ring = whole.ring.whole
-    square = ring.reduce(ring.times(factor[0].polynomial, ring.reciprocal(factor[2].polynomial)))
+    square = ring.ratio(factor[0].polynomial, factor[2].polynomial)
     kernel = annihilator(damping, whole.known, len(mass))[1]
     shape: Sequence[Any] | None = None
     if len(kernel) == 1:

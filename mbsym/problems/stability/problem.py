@@ -662,7 +662,7 @@ def _polynomial(
         common = ring.common_factor(common, x)
     if not common.is_zero() and not common.is_constant() and signs.sign(common) == "positive":
         scaled = [[[divmod(x, common)[0] for x in row] for row in matrix] for matrix in scaled]
-        factor = ring.reduce(ring.times(factor, ring.reciprocal(common)))
+        factor = ring.ratio(factor, common)
     made = [Matrix.of(ring, matrix) for matrix in scaled]
     return (made[0], made[1], made[2], made[3], made[4]), Formula(ring, factor)
 
