@@ -41,6 +41,44 @@ Shape = Union[str, list["Shape"], dict[str, "Shape"]]  # noqa: UP007 (a quoted n
 _ZERO_VECTOR = (ZERO, ZERO, ZERO)
 
 
+def system_shape(system: System) -> dict[str, Shape]:
+    """A whole description by its keys, in the order of the format; what says nothing is left out."""
+    compared: list[Shape] = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
+    bodies: list[Shape] = [*map(body_shape, system.bodies, inferred_coordinates(system))]
+    shape: dict[str, Shape] = {
+        "name": system.name,
+        "description": system.description,
+        "source": system.source,
+        "label": system.label,
+        "language": system.language,
+        "order": [*system.order],
+        "parameters": {one.name: parameter_shape(one) for one in system.parameters},
+        "prescribed": {one.name: prescribed_shape(one) for one in system.prescribed},
+        "inputs": {one.name: input_shape(one) for one in system.inputs},
+        "tables": {one.name: table_shape(one) for one in system.tables},
+        "units": {one.name: one.text for one in system.units.declared},
+        "bodies": bodies if system.linear is None else [],
+        "linear system": {} if system.linear is None else linear_shape(system.linear),
+        "loads": [dict([load_shape(load)]) for load in system.loads],
+        "constraints": [dict([constraint_shape(one)]) for one in system.constraints],
+        "dependent": [*system.dependent],
+        "reactions": [*system.reactions],
+        "relations": {one.name: text(one.value) for one in system.relations},
+        "motion": motion_shapes(system),
+        "notation": {one.name: text(one.value) for one in system.notation},
+        "outputs": {one.name: text(one.value) for one in system.outputs},
+        "assumptions": compared,
+        "dimensionless time": "" if system.time_scale is None else text(system.time_scale),
+        "small parameter": "" if system.small is None else small_shape(system.small),
+        "initial": {value.coordinate: initial_shape(value) for value in (*system.initial, *system.start)},
+        "limits": {limit.coordinate: [text(limit.lower), text(limit.upper)] for limit in system.limits},
+        "latex": {symbol.name: symbol.latex for symbol in system.symbols},
+        "abbreviations": {one.name: text(one.value) for one in system.abbreviations},
+        "claims": [claim_shape(claim, system) for claim in system.claims],
+    }
+    return {key: value for key, value in shape.items() if value or key == "name"}
+
+
 def vector_shape(vector: Vector) -> list[Shape]:
     return [text(component) for component in vector]
 

@@ -4,109 +4,51 @@ from __future__ import annotations
 
 import hashlib
 import re
+from collections.abc import Iterator
 
-from mbsym.expressions.tree import text
-from mbsym.model.linear import MATRICES, LinearModel
+from mbsym.model.linear import MATRICES
 from mbsym.model.system import System
 from mbsym.source.keys import VERSION
-from mbsym.source.shape import (
-    Shape,
-    assumption_text,
-    body_shape,
-    claim_shape,
-    constraint_shape,
-    inferred_coordinates,
-    initial_shape,
-    input_shape,
-    linear_shape,
-    load_shape,
-    motion_shapes,
-    parameter_shape,
-    prescribed_shape,
-    small_shape,
-    table_shape,
-)
+from mbsym.source.shape import Shape, system_shape
 
 _PLAIN = re.compile(r"[A-Za-z0-9(./-][A-Za-z0-9 _.()*/+'<>=!-]*\Z")
 _DANGEROUS_STARTS = ("- ", "---", "...")
 
 
+#: What stands in one line at the head of a file, and in one line further below.
+_HEAD = ("name", "description", "source", "label", "language", "order")
+_LINES = ("dependent", "reactions", "dimensionless time", "small parameter")
+
+
 def to_yaml(system: System) -> str:
     """The description of a system; reading it again gives an equal system."""
-    lines = [f"mbsym: {VERSION}", f"name: {scalar_text(system.name)}"]
-    if system.description:
-        lines.append(f"description: {scalar_text(system.description)}")
-    if system.source:
-        lines.append(f"source: {scalar_text(system.source)}")
-    if system.label:
-        lines.append(f"label: {scalar_text(system.label)}")
-    if system.language:
-        lines.append(f"language: {system.language}")
-    if system.order:
-        lines.append(f"order: [{', '.join(system.order)}]")
-    lines += _mapping("parameters", {parameter.name: parameter_shape(parameter) for parameter in system.parameters})
-    lines += _mapping("prescribed", {prescribed.name: prescribed_shape(prescribed) for prescribed in system.prescribed})
-    lines += _mapping("inputs", {one.name: input_shape(one) for one in system.inputs})
-    lines += _mapping("tables", {table.name: table_shape(table) for table in system.tables})
-    lines += _mapping("units", {one.name: one.text for one in system.units.declared})
-    lines += _bodies(system) if system.linear is None else _linear(system.linear)
-    lines += _list("loads", [_load(*load_shape(load)) for load in system.loads])
-    lines += _list("constraints", [_load(*constraint_shape(constraint)) for constraint in system.constraints])
-    if system.dependent:
-        lines += ["", f"dependent: [{', '.join(system.dependent)}]"]
-    if system.reactions:
-        lines += ["", f"reactions: {_flow(list(system.reactions))}"]
-    lines += _mapping("relations", {relation.name: text(relation.value) for relation in system.relations})
-    lines += _mapping("motion", motion_shapes(system))
-    lines += _mapping("notation", {notation.name: text(notation.value) for notation in system.notation})
-    lines += _mapping("outputs", {output.name: text(output.value) for output in system.outputs})
-    assumptions = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
-    lines += _list("assumptions", [scalar_text(assumption) for assumption in assumptions])
-    if system.time_scale is not None:
-        lines += ["", f"dimensionless time: {scalar_text(text(system.time_scale))}"]
-    if system.small is not None:
-        lines += ["", f"small parameter: {_flow(small_shape(system.small))}"]
-    lines += _mapping("initial", {value.coordinate: initial_shape(value) for value in (*system.initial, *system.start)})
-    lines += _mapping("limits", {limit.coordinate: [text(limit.lower), text(limit.upper)] for limit in system.limits})
-    lines += _mapping("latex", {symbol.name: symbol.latex for symbol in system.symbols})
-    lines += _mapping("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
-    lines += _list("claims", [_flow(claim_shape(claim, system)) for claim in system.claims])
+    lines = [f"mbsym: {VERSION}"]
+    for key, value in system_shape(system).items():
+        lines += [f"{key}: {_flow(value)}"] if key in _HEAD else ["", *_part(key, value)]
     return "\n".join(lines) + "\n"
 
 
-def _mapping(title: str, entries: dict[str, Shape]) -> list[str]:
-    if not entries:
-        return []
-    return ["", f"{title}:", *(f"  {key}: {_flow(value)}" for key, value in entries.items())]
-
-
-def _list(title: str, items: list[str]) -> list[str]:
-    return ["", f"{title}:", *(f"  - {item}" for item in items)] if items else []
-
-
-def _linear(linear: LinearModel) -> list[str]:
-    """Each matrix with a row a line."""
-    lines = ["", "linear system:"]
-    for key, value in linear_shape(linear).items():
-        if key in MATRICES and isinstance(value, list):
-            lines += [f"  {key}:", *(f"    - {_flow(row)}" for row in value)]
+def _part(key: str, value: Shape) -> Iterator[str]:
+    """The lines of a key with what it holds."""
+    if key in _LINES:
+        yield f"{key}: {_flow(value)}"
+        return
+    yield f"{key}:"
+    if isinstance(value, dict):
+        for name, one in value.items():
+            if name in MATRICES and key == "linear system" and isinstance(one, list):  # each matrix with a row a line
+                yield from (f"  {name}:", *(f"    - {_flow(row)}" for row in one))
+            else:
+                yield f"  {name}: {_flow(one)}"
+        return
+    for number, item in enumerate(value):
+        if key == "bodies" and isinstance(item, dict):
+            yield from [""] if number else []
+            yield from (f"  {' ' if k else '-'} {name}: {_flow(one)}" for k, (name, one) in enumerate(item.items()))
+        elif key in ("loads", "constraints") and isinstance(item, dict):
+            yield from (f"  - {kind}: {_flow(one)}" for kind, one in item.items())
         else:
-            lines.append(f"  {key}: {_flow(value)}")
-    return lines
-
-
-def _bodies(system: System) -> list[str]:
-    lines = ["", "bodies:"]
-    for number, (body, inferred) in enumerate(zip(system.bodies, inferred_coordinates(system), strict=True)):
-        if number:
-            lines.append("")
-        for index, (key, value) in enumerate(body_shape(body, inferred).items()):
-            lines.append(f"  {' ' if index else '-'} {key}: {_flow(value)}")
-    return lines
-
-
-def _load(kind: str, value: Shape) -> str:
-    return f"{kind}: {_flow(value)}"
+            yield f"  - {_flow(item)}"
 
 
 def _flow(value: Shape) -> str:
