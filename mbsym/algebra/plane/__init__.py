@@ -4,5 +4,3 @@ from mbsym.algebra.plane.fields import Point
 from mbsym.algebra.plane.line import Interval, Line, Zero, decompose_line
 from mbsym.algebra.plane.numbers import AlgebraicNumber
 from mbsym.algebra.plane.projection import Box, Budget
-
-__all__ = ["AlgebraicNumber", "Box", "Budget", "Interval", "Line", "Point", "Zero", "decompose_line"]

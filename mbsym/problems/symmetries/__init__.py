@@ -39,5 +39,3 @@ from mbsym.problems.symmetries.search import (
     blocks,
     symmetries,
 )
-
-__all__ = ["Blocks", "Gradients", "Symmetries", "Symmetry", "blocks", "symmetries"]
