@@ -24,8 +24,7 @@ from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Adjoined, Choice, Hurwitz, Outcome, ScaledField, SlowManifold, scaled
-from mbsym.problems.small_parameter.root import Root, Roots, adjoined, put
-from mbsym.problems.small_parameter.slow import steady_states
+from mbsym.problems.small_parameter.slow import Root, Roots, adjoined, put, steady_states
 from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:

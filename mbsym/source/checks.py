@@ -43,7 +43,7 @@ from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
-from mbsym.source.shape import inertia_shape
+from mbsym.source.yaml_writer import inertia_shape
 
 #: Relative error of a number that is computed in floats because it has no exact value.
 _FLOATS = Fraction(1, 10**12)

@@ -14,8 +14,8 @@ from mbsym.model.system import Body, System
 from mbsym.source.grammar import Named
 from mbsym.source.keys import ALIASES, LOADS
 from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, NUMBERED, SECTIONS
-from mbsym.source.shape import Shape as Data
-from mbsym.source.shape import body_shape, system_shape, vector_shape
+from mbsym.source.yaml_writer import Shape as Data
+from mbsym.source.yaml_writer import body_shape, system_shape, vector_shape
 
 Line = tuple[str, str]
 

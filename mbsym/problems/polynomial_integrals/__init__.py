@@ -42,8 +42,7 @@ Example:
     ([(2, '')], True)
 """
 
-from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
-from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
+from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_along, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.homogenised import (

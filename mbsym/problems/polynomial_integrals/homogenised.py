@@ -20,8 +20,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials
-from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
+from mbsym.problems.polynomial_integrals.darboux import darboux_along, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level

@@ -21,6 +21,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     ModularField,
     Terms,
     at_random,
+    echelon,
     kernel_of,
     lifted,
     monomials,
@@ -28,7 +29,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     times,
 )
 from mbsym.problems.polynomial_integrals.result import UNITY, Count, Generator, OnLevel, PolynomialIntegrals
-from mbsym.problems.polynomial_integrals.search import echelon, products, sparsest
+from mbsym.problems.polynomial_integrals.search import products, sparsest
 
 
 @dataclass(frozen=True)
