@@ -49,14 +49,8 @@ SIGN_SETS: dict[str, SignSet] = {
     "nonzero": frozenset({-1, 1}),
     "real": frozenset({-1, 0, 1}),
 }
-SIGN_WORDS: dict[SignSet, str] = {signs: word for word, signs in SIGN_SETS.items()} | {
-    SIGN_SETS["real"]: "unknown",
-}
-RELATIONS: dict[str, SignSet] = {
-    ">": SIGN_SETS["positive"],
-    ">=": SIGN_SETS["nonnegative"],
-    "!=": SIGN_SETS["nonzero"],
-}
+SIGN_WORDS: dict[SignSet, str] = {signs: word for word, signs in SIGN_SETS.items()} | {SIGN_SETS["real"]: "unknown"}
+RELATIONS: dict[str, SignSet] = {">": SIGN_SETS["positive"], ">=": SIGN_SETS["nonnegative"], "!=": SIGN_SETS["nonzero"]}
 
 ANY, ZERO, POSITIVE = SIGN_SETS["real"], SIGN_SETS["zero"], SIGN_SETS["positive"]
 

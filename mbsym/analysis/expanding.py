@@ -265,10 +265,7 @@ def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: 
     unknown = known.others + 2 * len(known.squares)
     if len(known.known) + unknown == 1:
         return found[0][0]
-    on, drawn = (
-        [x for x in found if x[0].manifold.steady is not None],
-        [x for x in found if _attracts(analysis, *x)],
-    )
+    on, drawn = ([x for x in found if x[0].manifold.steady is not None], [x for x in found if _attracts(analysis, *x)])
     listed, choice = (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (found, Choice.FIRST)
     taken, start = listed[0]
     others = [tuple(map(taken.formula, root.values)) for root in known.known if root is not start]

@@ -101,8 +101,4 @@ def _brackets(analysis: Analysis) -> Check | None:
     return check_brackets(found, analysis.hamilton, scene)
 
 
-CHECKS: dict[str, Callable[[Analysis], Check | None]] = {
-    REDUCED: _routh,
-    CANONICAL: _hamilton,
-    INVOLUTION: _brackets,
-}
+CHECKS: dict[str, Callable[[Analysis], Check | None]] = {REDUCED: _routh, CANONICAL: _hamilton, INVOLUTION: _brackets}

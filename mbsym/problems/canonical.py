@@ -332,11 +332,7 @@ def check_hamilton(truth: Oracles, found: Hamilton) -> Check:
                         carry(found.velocities[i].polynomial),
                         velocity,
                     ),
-                    (
-                        Message("the rate of [[momentum]]", momentum=found.momenta[i]),
-                        rate,
-                        oracle.residuals[name],
-                    ),
+                    (Message("the rate of [[momentum]]", momentum=found.momenta[i]), rate, oracle.residuals[name]),
                 ]
         return compared
 

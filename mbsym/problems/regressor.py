@@ -335,11 +335,7 @@ def _normal(ring: Ring, x: Quotient) -> Quotient:
 
 
 def _unequal(
-    ring: Ring,
-    columns: Mapping[Key, _Column],
-    name: Key,
-    row: Mapping[Key, Quotient],
-    known: Sequence[tuple[Any, ...]],
+    ring: Ring, columns: Mapping[Key, _Column], name: Key, row: Mapping[Key, Quotient], known: Sequence[tuple[Any, ...]]
 ) -> tuple[Any, ...] | None:
     """A monomial in which a column is not this combination of others; None where it is in all of them."""
     common = ring.one

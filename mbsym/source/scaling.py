@@ -17,15 +17,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ENDINGS, velocity_name
-from mbsym.expressions.tree import (
-    CONSTANTS,
-    ONE,
-    Expression,
-    Name,
-    names,
-    substitute,
-    walk,
-)
+from mbsym.expressions.tree import CONSTANTS, ONE, Expression, Name, names, substitute, walk
 from mbsym.model.reducing import Asked, Reducing
 from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
 from mbsym.model.system import System

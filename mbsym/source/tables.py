@@ -286,10 +286,7 @@ def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
             )
     if len(wrong) > MOST_COMPLAINTS:
         wrong[MOST_COMPLAINTS:] = [
-            (
-                Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS),
-                None,
-            )
+            (Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS), None)
         ]
     return Rows(() if wrong else tuple(point for _, point in found), tuple(wrong), digest)
 

@@ -70,10 +70,7 @@ class _Assembly:
     fibres: tuple[Fibre, ...]
 
     def arrangement(self) -> Arrangement:
-        self.edges = {
-            BOTTOM: self._edge(self.box.y0),
-            TOP: self._edge(self.box.y1),
-        }
+        self.edges = {BOTTOM: self._edge(self.box.y0), TOP: self._edge(self.box.y1)}
         cells = self._cells()
         intervals = self._intervals(cells)
         corners = {key: k for k, key in enumerate(self._corners())}

@@ -164,11 +164,7 @@ def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Verti
 
 
 def abscissas(
-    curves: Sequence[Curve],
-    verticals: Sequence[Vertical],
-    box: Box,
-    budget: Budget,
-    progress: Progress = nothing,
+    curves: Sequence[Curve], verticals: Sequence[Vertical], box: Box, budget: Budget, progress: Progress = nothing
 ) -> list[Abscissa]:
     """The critical abscissas within the box, ascending, its edges included.
 

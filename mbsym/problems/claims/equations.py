@@ -242,11 +242,7 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
             remark = made.words(dynamics, derived, claim.of)
         elif power_of(ring, x, _places(derived)) <= 1:
             remark = "at states, with the accelerations of the motion put in"
-        return replace(
-            plain,
-            outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL,
-            remark=remark,
-        )
+        return replace(plain, outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL, remark=remark)
     if outcome == Outcome.UNDECIDED and not refuted:
         return replace(plain, outcome=Outcome.UNDECIDED, remark="whether it vanishes on every motion is not decided")
     if not found.refuted:  # undecided as a multiple; refuted as what it is

@@ -9,18 +9,13 @@ from itertools import product as combinations_of
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import (
-    names,
-)
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
 from mbsym.problems.claims.comparison import MOST_SIGNS, decided, restriction, signs_under_roots
-from mbsym.problems.claims.counterexample import (
-    against_constancy,
-    rate_at_states,
-)
+from mbsym.problems.claims.counterexample import against_constancy, rate_at_states
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate

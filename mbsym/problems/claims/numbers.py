@@ -13,12 +13,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import (
-    Expression,
-    Name,
-    names,
-    text,
-)
+from mbsym.expressions.tree import Expression, Name, names, text
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.states import SEED
@@ -52,10 +47,7 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         if result is not None:
             return result
     return ClaimResult(
-        claim,
-        about,
-        Outcome.UNDECIDED,
-        remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1]),
+        claim, about, Outcome.UNDECIDED, remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1])
     )
 
 

@@ -456,10 +456,7 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     else:
         outcome, where = Outcome.DIFFERS if known is False else Outcome.UNDECIDED, ""
     return replace(
-        result,
-        outcome=outcome,
-        where=where,
-        difference=None if outcome == Outcome.EXACT else Formula(ring, difference),
+        result, outcome=outcome, where=where, difference=None if outcome == Outcome.EXACT else Formula(ring, difference)
     )
 
 

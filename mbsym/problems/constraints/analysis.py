@@ -256,10 +256,7 @@ class _Analysis:
         return dependent_sets(relations, independent)
 
     def _embedding(
-        self,
-        jacobian: Sequence[Sequence[Polynomial]],
-        sides: Sequence[tuple[Polynomial, Polynomial]],
-        pivots: Pivots,
+        self, jacobian: Sequence[Sequence[Polynomial]], sides: Sequence[tuple[Polynomial, Polynomial]], pivots: Pivots
     ) -> Embedding | None:
         """The dependent velocities in closed form; None where they outgrow the budget."""
         try:

@@ -13,13 +13,7 @@ from flint import arb, ctx, fmpq
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.terms import coefficients_in
 from mbsym.problems.invariant_sets.branches import Place, Rule
-from mbsym.problems.invariant_sets.result import (
-    Definiteness,
-    FirstApproximation,
-    Gap,
-    Relation,
-    SecondVariation,
-)
+from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Gap, Relation, SecondVariation
 
 #: Points that are tried, values of free multipliers at each of them, bits of balls.
 POINTS, CHOICES, BITS = 60, 60, 128

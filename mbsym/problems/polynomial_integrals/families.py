@@ -124,9 +124,7 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = i
     listed = list(families(field, positive))
     if len(listed) > MOST_FAMILIES:
         message = Message(
-            "[[count]] parameters have more than [[most]] families",
-            count=len(field.parameters),
-            most=MOST_FAMILIES,
+            "[[count]] parameters have more than [[most]] families", count=len(field.parameters), most=MOST_FAMILIES
         )
         raise NoClosedForm(message, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
     return _Search(usual, positive).found(listed, budget)

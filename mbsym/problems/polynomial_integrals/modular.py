@@ -336,9 +336,7 @@ def lifted(
     """
     if len(support) > MOST_SUPPORT:
         message = Message(
-            "an integral has [[count]] monomials, more than [[most]]",
-            count=len(support),
-            most=MOST_SUPPORT,
+            "an integral has [[count]] monomials, more than [[most]]", count=len(support), most=MOST_SUPPORT
         )
         raise NoClosedForm(message, limit=Limit.TERMS, remedy=SMALLER)
     order = [one for one in support if one != leading]

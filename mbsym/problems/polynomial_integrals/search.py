@@ -280,9 +280,7 @@ def products(
         reached = further
         if len(reached) > MOST_PRODUCTS:
             message = Message(
-                "the integrals have more than [[most]] products of weight [[weight]]",
-                most=MOST_PRODUCTS,
-                weight=weight,
+                "the integrals have more than [[most]] products of weight [[weight]]", most=MOST_PRODUCTS, weight=weight
             )
             raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
     return [terms for at, terms in reached if at == weight or not exactly]

@@ -301,12 +301,7 @@ def _controlled(
     control = tuple(_control(whole, linear, at, there) for at in blocks)
     least = () if whole is None else _least(whole, linear)
     if len(every) > MOST_COORDINATES:
-        return (
-            control,
-            least,
-            None,
-            Message("there are more than [[most]] coordinates", most=MOST_COORDINATES),
-        )
+        return (control, least, None, Message("there are more than [[most]] coordinates", most=MOST_COORDINATES))
     if there is None:
         return control, least, None, "the description gives no values of all parameters"
     with ctx.workprec(BITS):

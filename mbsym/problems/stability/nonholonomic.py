@@ -78,12 +78,7 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
 
 
 def enclosed(
-    form: NonholonomicForm,
-    matrices: Sequence[Any],
-    zero_power: int,
-    bits: int,
-    even: bool = False,
-    exact: bool = False,
+    form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int, even: bool = False, exact: bool = False
 ) -> Verdict:
     """The verdict with entries in balls, M, D, G, K, N.
 

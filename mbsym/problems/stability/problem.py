@@ -189,11 +189,7 @@ def with_verdict(found: Stability, verdict: Verdict) -> Stability:
 
 
 def stability(
-    scene: Scene,
-    balance: Balance,
-    linear: Linearisation,
-    equilibrium: Equilibrium,
-    signs: Signs,
+    scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
 ) -> Stability:
     """Judges every subsystem.
 
@@ -556,12 +552,7 @@ class ExactVerdicts:
     """The verdict at any exact parameter values; what does not depend on them is made once."""
 
     def __init__(
-        self,
-        scene: Scene,
-        balance: Balance,
-        linear: Linearisation,
-        equilibrium: Equilibrium,
-        signs: Signs,
+        self, scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
     ) -> None:
         self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
         self.balance = balance

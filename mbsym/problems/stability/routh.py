@@ -86,13 +86,7 @@ def momenta_are_constant(system: LinearSystem) -> bool:
 
 #: What Lagrange's theorem needs where K is that of ``besides_cyclic``.
 ENERGY_BESIDES = frozenset(
-    {
-        Fact.MASS_POSITIVE,
-        Fact.POTENTIAL,
-        Fact.STIFFNESS_POSITIVE,
-        Fact.DAMPING_SEMIDEFINITE,
-        Fact.ENERGY_NEVER_GROWS,
-    }
+    {Fact.MASS_POSITIVE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.ENERGY_NEVER_GROWS}
 )
 
 

@@ -487,8 +487,7 @@ def _requirements(
         if left_out:
             remarks.append(
                 Message(
-                    "Not written out, but in the coefficients, because of their length: [[labels]].",
-                    labels=left_out,
+                    "Not written out, but in the coefficients, because of their length: [[labels]].", labels=left_out
                 )
             )
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1), known)
@@ -692,10 +691,7 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         nonsingular = differs("det K", stiff[-1].polynomial, known)
         complete = facts | {Fact.DAMPING_POSITIVE}
         destroyed = complete | {Fact.STIFFNESS_NEGATIVE_SOMEWHERE, Fact.STIFFNESS_NONSINGULAR}
-        return (
-            Case(stiff, (), concluded(complete | minimum)),
-            Case((nonsingular,), negative, concluded(destroyed)),
-        )
+        return (Case(stiff, (), concluded(complete | minimum)), Case((nonsingular,), negative, concluded(destroyed)))
     if is_potential(system):
         growing = concluded({Fact.ROOT_RIGHT}, Reason(Because.REAL_ROOT))
         return Case(stiff, (), _conservative(minimum)), Case((), negative, growing)

@@ -322,12 +322,7 @@ THEOREMS = (
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
     _theorem(
-        CONVERSE,
-        None,
-        Because.NO_MINIMUM,
-        Fact.NO_MINIMUM_IN_LOWEST_FORM,
-        Fact.NO_OTHER_FORCES,
-        Fact.ENERGY_CONSERVED,
+        CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED
     ),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),

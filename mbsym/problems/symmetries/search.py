@@ -184,9 +184,7 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     unknowns = _unknowns(blocks)
     if len(unknowns) > MOST_UNKNOWNS:
         message = Message(
-            "a field of degree one has [[count]] constants, more than [[most]]",
-            count=len(unknowns),
-            most=MOST_UNKNOWNS,
+            "a field of degree one has [[count]] constants, more than [[most]]", count=len(unknowns), most=MOST_UNKNOWNS
         )
         raise NoClosedForm(message, limit=Limit.WORK)
     bound = _bound(system, blocks, unknowns)

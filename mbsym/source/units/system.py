@@ -15,9 +15,7 @@ from mbsym.expressions.table import Table
 from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, names, text
 from mbsym.model.claims import CLAIMS, Claim
 from mbsym.model.constraints import Coincide, Constraint, Distance, Parallel, Relation, Rolling, Velocity
-from mbsym.model.loads import (
-    Load,
-)
+from mbsym.model.loads import Load
 from mbsym.model.momenta import momentum_names
 from mbsym.model.speeds import OMEGA
 from mbsym.model.system import Body, Point, System, Vector, rational
