@@ -10,7 +10,7 @@ from msgspec import UNSET, UnsetType
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.oscillation_result import Harmonics
+from mbsym.problems.small_parameter.result import Harmonics
 from mbsym.report.documents import oscillations as doc
 from mbsym.report.documents.base import finite, written
 from mbsym.report.words.expansion_words import sum_of_powers

@@ -23,8 +23,8 @@ from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, exact, scenario
 from mbsym.numerics.states import scenario_in_states
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import UNSET, UnsetType, field
 
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.result import Amplitude
 from mbsym.report.documents.base import ASIDE, Format, From, Part, SystemName, Version, told_apart_by, version
 
 

@@ -10,7 +10,7 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics
 from mbsym.report.content import (
     Definitions,
     Gaps,

@@ -21,7 +21,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.oscillating import oscillating
 from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.result import Amplitude
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words.oscillation_words import measured_sentences, numerator, sentences
