@@ -246,8 +246,8 @@ def stewart() -> str:
             f"rotation: {{axes: [1, 2], angles: [a{k}, b{k}]}}, mass centre: [0, 0, {h}], "
             f"inertia about: mass centre, "
             f"inertia: [{j}, {j}, 0]}}",
-            f"{{name: upper{k}, attached to: lower{k}, connection point: [0, 0, s{k}], coordinates: [s{k}], mass: {m2}, "
-            f"mass centre: [0, 0, {-h2}], inertia about: mass centre, inertia: [{j2}, {j2}, 0]}}",
+            f"{{name: upper{k}, attached to: lower{k}, connection point: [0, 0, s{k}], coordinates: [s{k}], "
+            f"mass: {m2}, mass centre: [0, 0, {-h2}], inertia about: mass centre, inertia: [{j2}, {j2}, 0]}}",
         ]
         loads.append(f"spring: {{coordinate: s{k}, stiffness: {STIFFNESS}, rest: {LENGTH}}}")
         ends = f"[{{body: upper{k}, point: [0, 0, 0]}}, {{body: platform, point: [{top[0]}, {top[1]}, 0]}}]"
