@@ -41,6 +41,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     from mbsym.problems.normal_forms import InSymbols, Judged, Outcome, Theorem, Why, problem  # few ask for it
     from mbsym.problems.stabilisation.problem import on_motion
 
+    analysis = analysis.in_free_coordinates
     equilibrium, scene = analysis.equilibrium, analysis.parameters_scene
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     if len(equilibrium.conditions) > len(equilibrium.solved):
@@ -52,8 +53,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         divides = pole(analysis, values) is not None
         nothing = Why.POLE if divides else Why.NONE if on_motion(scene, equilibrium, values) else Why.NO_MOTION
     values = values if nothing is Why.NONE else None
-    conservative, cyclic = ignorable(analysis)
-    result = problem.normal_forms(scene, analysis.system, equilibrium, values, conservative, cyclic)
+    result = problem.normal_forms(scene, analysis.system, equilibrium, values, *expanded_with(analysis))
     judged = analysis.optional("stability")
     before = None if judged is None else judged.before_higher_order or judged.numerical
     first = None if before is None else before.word
@@ -84,8 +84,7 @@ def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:
     def at(values: Mapping[str, Any]) -> Judged | None:
         try:
             if not made:
-                manifold = on_manifold(analysis) if analysis.system.constraints else None
-                made.append(problem.judge(scene, analysis.system, equilibrium, *ignorable(analysis), manifold))
+                made.append(problem.judge(scene, analysis.system, equilibrium, *expanded_with(analysis)))
             return made[0](values)
         except (Failure, *NOT_THERE):
             return None
@@ -245,6 +244,11 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     ):
         raise NotExpanded("the constraints leave no manifold that is known")
     return lambda order: on_manifold(scene, analysis.signs, expansion, order)
+
+
+def expanded_with(analysis: Analysis) -> tuple[bool, frozenset[str], Callable[[int], OnManifold] | None]:
+    """What ``ignorable`` says, and the manifold that constraints leave; None without constraints."""
+    return *ignorable(analysis), on_manifold(analysis) if analysis.system.constraints else None
 
 
 def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
