@@ -149,13 +149,6 @@ class Analysis(Stages):
     def __repr__(self) -> str:
         return f"Analysis({self.system!r})"
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        cells = ((str(problem.number), problem.attribute, problem.title) for problem in self.asked)
-        rows = "".join("<tr>" + "".join(f"<td>{escape(x)}</td>" for x in row) + "</tr>" for row in cells)
-        return f"<b>{escape(self.system.name)}</b>: {escape(', '.join(self.system.coordinates))}<table>{rows}</table>"
-
     @property
     def asked(self) -> tuple[Problem[Any], ...]:
         """The problems that reports and self-checks are about."""
