@@ -176,50 +176,6 @@ def in_doubles(state: Sequence[arb]) -> Any:
     return np.array(heads, np.longdouble) + np.array(tails, np.longdouble)
 
 
-def reference(
-    dynamics: Dynamics,
-    times: Sequence[float],
-    tolerance: float = 1e-24,
-    budget: float = 120.0,
-    watch: Callable[[float], None] = lambda t: None,
-    scale: Any | None = None,
-) -> Reference:
-    """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
-
-    ``scale`` says what each component is measured by; by default its largest absolute value at the times.
-    Raises Breakdown where the solution does not exist up to the end, or where one of its two runs costs more than
-    ``budget`` (``mbsym.numerics.planning.prices``).
-    """
-    started = time.perf_counter()
-    runs = []
-    with ctx.workprec(BITS):
-        for columns, local in ((COLUMNS, tolerance), (COLUMNS - 3, tolerance * 1e3)):
-            run = Extrapolation(dynamics, local, columns, budget)
-            states = [list(run.state)]
-            for t in times[1:]:
-                run.advance(float(t))
-                states.append(list(run.state))
-                watch(float(t))
-            runs.append(states)
-        first, second = runs
-        states_ = np.array([[float(x) for x in state] for state in first]).T
-        if scale is None:
-            size = np.max(np.abs(states_), axis=1)
-            scale = np.where(size > 0, size, 1.0)
-        error = 0.0
-        for i, size in enumerate(map(float, scale)):
-            error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
-    seconds = time.perf_counter() - started
-    return Reference(
-        np.asarray(times, dtype=float),
-        states_,
-        error,
-        seconds,
-        Message("extrapolation, [[bits]] bits", bits=BITS),
-        scale,
-    )
-
-
 #: Places at which a reference is known, at least, and twice as many at most where its steps are many.
 PLACES = 4_000
 
