@@ -42,6 +42,7 @@ from mbsym.numerics.planning.plan import Accuracy, Plan  # noqa: E402
 from mbsym.numerics.planning.planning import planned  # noqa: E402
 from mbsym.numerics.planning.reduced import reduced  # noqa: E402
 from mbsym.numerics.scenario import Scenario, scenario  # noqa: E402
+from mbsym.numerics.separable import completing  # noqa: E402
 from mbsym.numerics.trade.trial import trial_of  # noqa: E402
 
 TRUTH = HERE.parent / "truth" / "independent"
@@ -197,7 +198,7 @@ class _Judge:
     @staticmethod
     def _whole(dynamics: Any, way: Way) -> Method:
         resting = reduced(dynamics)
-        return way.method if resting is None or not resting.proved else resting.method(way.method)
+        return way.method if resting is None or not resting.proved else completing(resting, way.method)
 
 
 def main() -> None:

@@ -592,3 +592,29 @@ def test_what_another_digit_costs_is_measured(angle: str) -> None:
         name, tolerance = other.label.split()
         run = mbsym.simulate(mbsym.loads(text, ()), 10, method=name, tolerance=float(tolerance), samples=501)
         assert np.max(np.abs(run["theta"] - pendulum_angle(run.times, 2.0))) / 2 <= other.target
+
+
+FALLING = """
+mbsym: 1
+name: falls by many powers of ten
+bodies:
+  - {name: b, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - spring: {coordinate: x, stiffness: 400}
+  - damper: {coordinate: x, coefficient: 2}
+initial: {x: 1000000000000}
+"""
+
+
+def test_what_steps_at_their_stability_err_by_is_not_laid_to_rounding() -> None:
+    """x falls to 1e-26 of what it was; steps are then as long as stability lets them, and errors what the tolerance is.
+
+    Two runs in different arithmetic differ by as much as each is wrong, 1e-8 of the size, where a rounding is 1e-16:
+    "its rounding is most of the error" was said of float64.
+    """
+    plan = planned(described(FALLING), Accuracy(1e-6), np.linspace(0, 60, 201))
+    assert plan.reached
+    (bound,) = plan.bounds
+    rounding = next(share for share in bound.shares if share.name == "arithmetic")
+    assert rounding.how is None or rounding.error < 1e-12
+    assert not any("rounding is most" in item.why for item in plan.items)

@@ -249,9 +249,7 @@ class Scene:
     @property
     def setting(self) -> Setting:
         """Fine enough to tell a model's error from that of the integration."""
-        finest = float(np.min(self.targets))
-        small = min(1.0, float(np.min(self.scale[:-1])))
-        return Setting(tolerance=min(1e-6, max(1e-3 * finest * small, 1e-13)))
+        return Setting(tolerance=min(1e-6, max(1e-3 * float(np.min(self.targets)), 1e-13)))
 
     @cached_property
     def truth(self) -> Any | None:

@@ -92,11 +92,14 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
-            both = apart + twin.errors
-            counted = (both > 0) & np.isfinite(both)
-            arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
-            measured, way = measured - arithmetic, Certainty.MEASURED
+            # Where stability rules the steps of two runs, these go their own ways, and so do their errors: runs that
+            # differ by about what either of them errs by tell nothing of rounding.
+            if not np.any(asked & (apart > twin.errors / 2) & (twin.errors > found.errors / 2)):
+                # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
+                both = apart + twin.errors
+                counted = (both > 0) & np.isfinite(both)
+                arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
+                measured, way = measured - arithmetic, Certainty.MEASURED
         except (Breakdown, Unusable):
             pass
     return (

@@ -45,7 +45,7 @@ from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import Reduced, reduced
 from mbsym.numerics.planning.sizes import scaled_by_another, usual_sizes
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.separable import Part, Separate, separated
+from mbsym.numerics.separable import Part, Separate, completing, separated
 from mbsym.numerics.trade.trial import Trial, trial_of
 
 # Which methods are tried for an accuracy, in which arithmetic, and from which setting on.
@@ -330,7 +330,7 @@ def _completing(
 
     def complete(method: Method) -> Method:
         inner = Separate(moving, several, [method] * len(several)) if several and not method.traits.fixed else method
-        return inner if resting is None else resting.method(inner)
+        return inner if resting is None else completing(resting, inner)
 
     return complete, several
 

@@ -245,12 +245,12 @@ def whole_reference(
         except Failure:
             raise
         except Exception as error:
-            failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0, np.empty(0))
+            failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0)
         else:
             return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
         finally:
             spent += search.spent
-    raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0, np.empty(0))
+    raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0)
 
 
 @dataclass
@@ -286,7 +286,7 @@ class _Search:
         some = max(allowed / 4, SOME)
         later = spent - 2 * FOLLOWED * LOOKED_AT  # steps are looked at in the beginning only
         if spent > allowed or (spent > some and later * self.end > far_too_long * allowed * t):
-            raise Breakdown(Cause.STEP_LIMIT, TOO_DEAR, t, np.empty(0))
+            raise Breakdown(Cause.STEP_LIMIT, TOO_DEAR, t)
 
     def next(self, meter: Callable[[], float]) -> None:
         """Begins another solution from 0 to the end, which costs what ``meter`` shows."""
@@ -383,7 +383,7 @@ def _explicit(search: _Search) -> Reference:
             return _agreeing(search, first, (METHODS[name], Setting(tolerance, longest=longest)), scalar, EXPLICIT)
         except Unusable:
             continue
-    raise Breakdown(Cause.STEP_LIMIT, "no second method", 0.0, np.empty(0))
+    raise Breakdown(Cause.STEP_LIMIT, "no second method", 0.0)
 
 
 def _implicit(search: _Search) -> Reference:

@@ -191,11 +191,10 @@ class _Judge:
 
     def _measure(self, method: Method, scalar: str, setting: Setting, limit: float) -> Measured:
         times = self.reference.times
-        self.starting = self._compiling(method, scalar)
-        self.spent += self.starting
-        until = self.spent + limit
         trial = trial_of(method, self.dynamics, setting, times, scalar, limit)
-        self.spent += trial.cost
+        self.starting = self._compiling(method, scalar)  # a method that does not apply has compiled nothing
+        until = self.spent + self.starting + limit
+        self.spent += self.starting + trial.cost
         if not trial.trouble and trial.cost <= SHORT:
             trial = self._repeated(trial, until)
         row = Measured(method, scalar, setting, trial.work, 0.0, trial.seconds, trouble=trial.trouble)

@@ -94,7 +94,7 @@ def trial_of(
 
     def reached(t: float) -> None:
         if t < times[-1] and spent() > limit:
-            raise Breakdown(Cause.STEP_LIMIT, "too dear to be measured", t, np.array(run.state, dtype=float))
+            raise Breakdown(Cause.STEP_LIMIT, "too dear to be measured", t, run.state)
 
     started = time.thread_time()
     states, ended, trouble = None, None, ""
