@@ -25,10 +25,8 @@ from mbsym.mechanics.variables import expressions
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
 from mbsym.problems.dissipation import EnergyLaw
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact, HigherOrder
 from mbsym.problems.stability.verdict import Verdict, concluded
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring

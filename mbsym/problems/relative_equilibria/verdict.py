@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -18,24 +18,27 @@ from mbsym.algebra.krawczyk import pivot_rows
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, symmetric
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.message import Message
+from mbsym.expressions.tree import number, substitute
+from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.rest import Rest
+from mbsym.mechanics.motion import motion_values
+from mbsym.mechanics.rest import Rest, at_numbers, rest
 from mbsym.mechanics.symmetry import free_spin
+from mbsym.model.system import System
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
-from mbsym.problems.conserved import Conserved, by_integrals, conserved
 from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
-from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.stability.bundle import Element, NumberField, by_potential
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, candidate_at, exact_rates
+from mbsym.problems.stability.bundle import Conserved, Element, NumberField, by_integrals, by_potential, conserved
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
+from mbsym.problems.stability.words import Because, Fact
 
 #: Matrices by their entries, which are numbers.
 Rows = list[list[list[Any]]]
@@ -307,3 +310,48 @@ def _rational_verdict(
         free=True,
     )
     return verdict_at(system, {}).verdict
+
+
+# Problem 6 where the first approximation leaves the verdict at the description's values open.
+#
+# The system is taken at its numbers, the unperturbed motion as one of its relative equilibria, and judged as
+# ``mbsym equilibria`` judges these: by an energy that the equations have though L knows the time, by terms of higher
+# order of the potential energy (``stability.degenerate``) and by combinations of first integrals
+# (``stability.bundle``).
+
+
+#: Larger systems are not derived again at their numbers.
+MOST_COORDINATES = 8
+
+
+def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Verdict:
+    """An open verdict at rational values of all parameters of an open tree, decided where that is possible."""
+    system = scene.system
+    if len(system.coordinates) > MOST_COORDINATES:
+        return verdict
+    try:
+        there = rest(at_numbers(system, values))
+        forms = _motion(system, there, values)
+        if forms is None:
+            return verdict
+        candidate = candidate_at(there, forms)
+        if not all(candidate.vanishes(x) for x in there.at_rest):
+            return verdict
+        place = candidate.place(there, exact_rates(there))
+        again = linear_at_rest(there).verdict(place)
+        return verdict if again.word.open else again
+    except NOT_THERE:
+        return verdict
+
+
+def _motion(system: System, there: Rest, values: Mapping[str, Fraction]) -> dict[str, LinearForm] | None:
+    """The constant coordinates on the unperturbed motion; None where one is no number and no multiple of pi."""
+    numbers = {name: number(x) for name, x in values.items()}
+    forms = {}
+    for name, (value, _) in motion_values(system).items():
+        if name in there.constant:
+            form = linear_form(substitute(value, numbers))
+            if form is None or form.coefficients:
+                return None
+            forms[name] = form
+    return forms

@@ -1,30 +1,4 @@
-"""The theorems of problem 6 as values: what each needs, and what it gives.
-
-For  M x'' + (D + G) x' + (K + N) x = 0,  the first approximation of a system whose energy is, near the motion,
-x'.M x'/2 + x.K x/2 + terms of higher order:
-
-* Lagrange-Dirichlet, Routh: K > 0, N = 0, and the energy **of the nonlinear system** does not grow (it is constant, or
-  dissipative forces take it away): stable.  D >= 0 is what the first approximation shows of that; it is asked for
-  besides, and does not replace it: a Rayleigh function without quadratic terms has D = 0, whatever its sign.
-* Kelvin-Chetaev: K > 0, D > 0, N = 0: asymptotically stable; D > 0, N = 0, det K != 0, K not > 0: unstable;
-  D = N = 0 and det K < 0: unstable, whatever G is.
-* Lyapunov's first method: all roots to the left, or one to the right.
-* Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.  Of nonholonomic systems
-  it is, with Lyapunov's first method, all there is: their first approximation has no Hamiltonian structure, and the
-  theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V; Karapetyan).
-* Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w) and
-  q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed with the
-  time: a centre where its roots are imaginary (bodies of revolution that roll on a plane).
-* Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or none
-  in a system of one coordinate, where the converse holds.
-* Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
-* Exactly linear equations (a Penning trap, a rotating saddle, whatever is given by its matrices): their solutions are
-  known.  No root to the right and those on the axis semisimple, zero ones too: stable; a Jordan block on the axis:
-  unstable, disturbances grow like a power of t (Gantmacher, The Theory of Matrices II, chapter XIV).  There is no
-  nonlinear system that this could leave open, and x'.M x'/2 + x.K x/2 is an energy where N = 0.
-
-A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
-"""
+"""The words of problem 6: what may be said of a motion."""
 
 from __future__ import annotations
 
@@ -32,7 +6,189 @@ from collections.abc import Set
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
 
-from mbsym.problems.stability.reasons import Because, Reason
+
+class Word(StrEnum):
+    """A verdict in the words that every output prints, tables and JSON included, in the order of lists."""
+
+    ASYMPTOTIC = "asymptotically stable"
+    #: A turned steady spin is a steady spin: it does not come back.
+    ASYMPTOTIC_BUT_TURNED = "asymptotically stable but for a rotation of space"
+    #: With cyclic coordinates nothing better can hold: they drift.
+    ASYMPTOTIC_BUT_CYCLIC = "asymptotically stable but for a drift of cyclic coordinates"
+    #: Steady motions of a family are near one another: what is disturbed may end in another one.
+    ASYMPTOTIC_BUT_STEADY = "asymptotically stable but for a change of the steady motion"
+    STABLE = "stable"
+    STABLE_BUT_CYCLIC = "stable but for a drift of cyclic coordinates"
+    GYROSCOPIC = "gyroscopically stabilised only"
+    CRITICAL = "stable in first approximation only"
+    #: No theorem applies.
+    UNDECIDED = "undecided"
+    #: It is different for different parameters: the cases say how.
+    DEPENDS = "depends on the parameters"
+    UNSTABLE = "unstable"
+    #: Of no point: for all parameters but those at which some condition is an equality, which have no inner point.
+    UNSTABLE_BUT_BORDERS = "unstable but for border cases"
+
+    def __repr__(self) -> str:
+        return repr(self.value)
+
+    @property
+    def asymptotic(self) -> bool:
+        """Whether it says that disturbed motions come back, be it but for drift, rotation, another speed."""
+        return self in (
+            Word.ASYMPTOTIC,
+            Word.ASYMPTOTIC_BUT_TURNED,
+            Word.ASYMPTOTIC_BUT_CYCLIC,
+            Word.ASYMPTOTIC_BUT_STEADY,
+        )
+
+    @property
+    def stable(self) -> bool:
+        """Whether it says that the motion itself is stable, be it asymptotically, or but for drift or rotation."""
+        return self.asymptotic or self in (Word.STABLE, Word.STABLE_BUT_CYCLIC)
+
+    @property
+    def open(self) -> bool:
+        """Whether it leaves the nonlinear system open, at one place."""
+        return self in (Word.GYROSCOPIC, Word.CRITICAL, Word.UNDECIDED)
+
+
+# Why a verdict is what it is, as codes with data; ``sentences`` puts them into words.
+
+
+class Because(Enum):
+    """A code; what stands in brackets are its data.  The order is that in which several are told."""
+
+    # of theorems
+    RIGHT_ROOTS = auto()  # (how many)
+    RIGHT_ROOT = auto()
+    REAL_ROOT = auto()
+    RIGHT_BY_TRACE = auto()
+    DESTROYED = auto()
+    ODD_DEGREE = auto()
+    ODD_DEGREE_REMAINS = auto()
+    COMPLETE = auto()
+    COMPLETE_BUT_CYCLIC = auto()
+    LEFT = auto()
+    LEFT_BUT_CYCLIC = auto()
+    TURNED_DECAYS = auto()
+    STEADY_DECAYS = auto()
+    OTHER_LEAF = auto()
+    FOLLOWS_ONE = auto()
+    MINIMUM = auto()
+    MINIMUM_AND_DISSIPATION = auto()
+    MINIMUM_BUT_CYCLIC = auto()
+    MINIMUM_AND_DISSIPATION_BUT_CYCLIC = auto()
+    UNDAMPED_MOTION = auto()  # (coordinates)
+    INTEGRALS = auto()  # (which)
+    LINEAR_BOUNDED = auto()
+    LINEAR_SHIFTED = auto()
+    LINEAR_GROWS = auto()
+    LINEAR_DRIFTS = auto()
+    LINEAR_GYROSCOPIC = auto()
+    HIGHER_MINIMUM = auto()  # (order)
+    NO_MINIMUM = auto()  # (order)
+    NO_FORCES = auto()
+    TERMS_OF_HIGHER_ORDER = auto()
+    # of what no theorem carries
+    GYROSCOPIC_ONLY = auto()
+    GYROSCOPIC_ENCLOSED = auto()
+    COINCIDENCE = auto()
+    NO_ENERGY = auto()
+    NO_ENERGY_BUT_CYCLIC = auto()
+    IMAGINARY = auto()
+    IMAGINARY_SIMPLE = auto()
+    ZERO_ROOT = auto()
+    IMAGINARY_BESIDES_TURNED = auto()
+    IMAGINARY_NONHOLONOMIC = auto()
+    UNLIKE_PARTS = auto()
+    HIGHER_ORDER = auto()
+    # of cyclic coordinates
+    COASTING = auto()
+    VELOCITIES = auto()
+    DRIFT = auto()
+    DRIFT_AT_GIVEN_MOMENTA = auto()
+    ELSEWHERE = auto()
+    DISPLACEMENTS = auto()  # (how coordinates move together, each a text)
+    OTHER_ANGLES = auto()  # (body, axes, angles)
+    PARTLY_CYCLIC = auto()
+    CONSTANT_MOMENTA = auto()
+    # of what is open
+    SEE_CASES = auto()
+    BORDERS_APART = auto()
+    CONDITIONS_UNWRITTEN = auto()
+    BORDER = auto()
+    ORDER_DECIDES = auto()  # (order, whatever is positive where it is stable, word there)
+    VALUES_DECIDE = auto()
+    NEAR_BORDER = auto()
+    JORDAN_BLOCK = auto()
+    LINEAR_OPEN = auto()
+    ZERO_OR_MULTIPLE_BESIDES_TURNED = auto()
+    CYCLIC_ZERO_ROOTS = auto()
+    NOT_CLOSED = auto()  # (coordinates)
+    MORE_ZERO_ROOTS = auto()  # (zero roots, dimensions of the family)
+    NOT_ENCLOSED = auto()
+    NO_CLOSED_FORM = auto()  # (why)
+    ALSO_ELSEWHERE = auto()  # (whatever which coordinates are)
+    DIFFERS_ALONG = auto()  # (which coordinates, word, other words)
+    NO_EQUATIONS = auto()  # (why)
+    MASS_SINGULAR = auto()
+    ORDER_LOWER = auto()
+    VARIES = auto()  # (with what)
+    RANK_LOST = auto()  # (rank there, rank near it)
+    NOT_THE_VALUE = auto()  # (of which parameter)
+    MOTION_NOT_THERE = auto()  # (condition, value)
+    MOTION_OPEN = auto()  # (condition)
+    POLE = auto()  # (divisor)
+
+
+@dataclass(frozen=True)
+class Reason:
+    """A code with its data."""
+
+    code: Because
+    data: tuple[object, ...] = ()
+
+    def __reduce__(self) -> tuple[type[Reason], tuple[Because, tuple[object, ...]]]:
+        """Formulas as their text: they belong to the rings of one process."""
+        return Reason, (self.code, tuple(x if isinstance(x, int | str) else str(x) for x in self.data))
+
+    def __hash__(self) -> int:
+        return hash(self.rank)
+
+    @property
+    def rank(self) -> tuple[int, tuple[str, ...]]:
+        """Where it stands among other reasons."""
+        return self.code.value, tuple(map(str, self.data))
+
+
+# The theorems of problem 6 as values: what each needs, and what it gives.
+#
+# For  M x'' + (D + G) x' + (K + N) x = 0,  the first approximation of a system whose energy is, near the motion,
+# x'.M x'/2 + x.K x/2 + terms of higher order:
+#
+# * Lagrange-Dirichlet, Routh: K > 0, N = 0, and the energy **of the nonlinear system** does not grow (it is constant,
+#   or dissipative forces take it away): stable.  D >= 0 is what the first approximation shows of that; it is asked for
+#   besides, and does not replace it: a Rayleigh function without quadratic terms has D = 0, whatever its sign.
+# * Kelvin-Chetaev: K > 0, D > 0, N = 0: asymptotically stable; D > 0, N = 0, det K != 0, K not > 0: unstable;
+#   D = N = 0 and det K < 0: unstable, whatever G is.
+# * Lyapunov's first method: all roots to the left, or one to the right.
+# * Lyapunov-Malkin: the roots that are not to the left are those of a family of steady motions.  Of nonholonomic
+#   systems it is, with Lyapunov's first method, all there is: their first approximation has no Hamiltonian structure,
+#   and the theorems on energy and on gyroscopic stabilisation are not about them (Neimark & Fufaev, chapter V;
+#   Karapetyan).
+# * Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w)
+#   and q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed
+#   with the time: a centre where its roots are imaginary (bodies of revolution that roll on a plane).
+# * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or
+#   none in a system of one coordinate, where the converse holds.
+# * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.
+# * Exactly linear equations (a Penning trap, a rotating saddle, whatever is given by its matrices): their solutions are
+#   known.  No root to the right and those on the axis semisimple, zero ones too: stable; a Jordan block on the axis:
+#   unstable, disturbances grow like a power of t (Gantmacher, The Theory of Matrices II, chapter XIV).  There is no
+#   nonlinear system that this could leave open, and x'.M x'/2 + x.K x/2 is an energy where N = 0.
+#
+# A theorem is named only where all its hypotheses have been shown: ``applying`` is the only way to one.
 
 
 class Fact(Enum):
@@ -166,12 +322,7 @@ THEOREMS = (
     _theorem(ROUTH, Ground.ENERGY, Because.MINIMUM_AND_DISSIPATION, *_MINIMUM, Fact.DAMPING_SEMIDEFINITE),
     _theorem(LAGRANGE, Ground.ENERGY, Because.HIGHER_MINIMUM, Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS),
     _theorem(
-        CONVERSE,
-        None,
-        Because.NO_MINIMUM,
-        Fact.NO_MINIMUM_IN_LOWEST_FORM,
-        Fact.NO_OTHER_FORCES,
-        Fact.ENERGY_CONSERVED,
+        CONVERSE, None, Because.NO_MINIMUM, Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED
     ),
     # A small ball is left by every geodesic through it (Whitehead), at the constant rate sqrt(2 T).
     _theorem(GEODESICS, None, Because.NO_FORCES, Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED),
