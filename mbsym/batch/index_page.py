@@ -97,8 +97,9 @@ def _reasons(row: Row) -> Iterator[str]:
         yield row.message
     yield from row.notes
     for complaint in row.complaints:
-        parts = [f"{complaint.line}:{complaint.column}"] if complaint.line else []
-        told = joined((*parts, worded(complaint.severity), worded(complaint.message)), ": ")
+        place = [f"{complaint.line}:{complaint.column}"] if complaint.line else []
+        text = "warning: [[message]]" if complaint.severity == "warning" else "error: [[message]]"
+        told = joined((*place, Message(text, message=worded(complaint.message))), ": ")
         yield Message("[[told]] ([[hint]])", told=told, hint=worded(complaint.hint)) if complaint.hint else told
 
 

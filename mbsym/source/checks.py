@@ -174,7 +174,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
     if doubt is not None:
         own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
-        advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+        advice = "with 'inertia about: mass centre' it would be possible" if about_joint and own is None else None
         reading.complaints.warning(
             "impossible-inertia", Message("no body has this inertia: [[doubt]]", doubt=doubt), span, advice
         )
@@ -202,7 +202,7 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
             message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(about, values)):
-        hint = "with inertia about: mass centre it would be possible"
+        hint = "with 'inertia about: mass centre' it would be possible"
         reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
         written = _written(inertia_shape(body.inertia))

@@ -45,8 +45,8 @@ def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Ite
     if found.whole:
         text = (
             "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of "
-            "weight up to [[degree]][[without]] (proved, but for algebraic numbers whose polynomials over the integers need "
-            "coefficients beyond 10^9[[length]])."
+            "weight up to [[degree]][[without]] (proved, but for algebraic numbers whose polynomials over the integers "
+            "need coefficients beyond 10^9[[length]])."
         )
     ends = {"all": all_values(found.values or found.undecided), "low": found.low, "high": found.high}
     yield Message(text, name=found.name, **ends, degree=usual.degree, without=without, length=length)
