@@ -505,13 +505,12 @@ def _text(value: Value) -> str:
 
 
 def root_text(root: RootNumbers) -> str:
-    """``-0.1 +- 2.3i (twice)``."""
+    """``-0.1 +- 2.3i``, as often as it occurs."""
     real = f"{root.real:.6g}"
     text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
     if root.imaginary and root.real:
         text = f"{real} +- {root.imaginary:.6g}i"
-    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
-    return text + times
+    return ", ".join([text] * root.multiplicity)
 
 
 def _latex(value: Value) -> str:

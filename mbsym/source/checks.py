@@ -331,11 +331,11 @@ def _check_use(system: System, reading: Reading) -> None:
     """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
     used = {relation.name for relation in system.relations}
     used |= set(_occurring([getattr(system, field.name) for field in fields(system)]))
-    declared = [("parameter", parameter.name, parameter.span) for parameter in system.parameters]
-    declared += [("prescribed motion", prescribed.name, prescribed.span) for prescribed in system.prescribed]
+    declared = [(Message("parameter"), parameter.name, parameter.span) for parameter in system.parameters]
+    declared += [(Message("prescribed motion"), prescribed.name, prescribed.span) for prescribed in system.prescribed]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
-        declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
+        declared += [(Message("input"), one.name, one.span) for one in system.inputs if one.name not in felt]
     for what, name, span in declared:
         if name not in used or what == "input":
             message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)

@@ -296,7 +296,7 @@ class Reading:
                     hint or "leave the key out",
                 )
             else:
-                self.shape_error(node, what, "a mapping (key: value)", _as_mapping(node) or hint)
+                self.shape_error(node, what, Message("a mapping (key: value)"), _as_mapping(node) or hint)
             return
         self._bounded(node, what, "[[what]] has at most [[most]] entries, not [[entries]]", entries=len(node.entries))
         seen: set[str] = set()
