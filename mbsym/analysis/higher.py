@@ -237,7 +237,9 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     expansion, about = analysis.reduced.expansion, analysis.reduced.about
     at_rest = not expansion.base.turning and all(x.is_zero() for x in expansion.base.rates)
     if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
-        raise NotExpanded("under constraints only rests of systems that do not know the time are expanded")
+        raise NotExpanded(
+            "under constraints only rests are expanded, of systems whose equations do not contain the time"
+        )
     if (
         not (about.holonomic or kept_by_velocities(analysis))
         or len(system.coordinates) - len(expansion.speeds) != tied.velocity_rank
