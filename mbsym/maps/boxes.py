@@ -37,7 +37,7 @@ from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: Boxes are halved so often at most, and there are so many of them at most.
 DEPTH, MOST = 12, 20_000

@@ -17,10 +17,11 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure, TooLargeError
 from mbsym.algebra.plane import AlgebraicNumber, Box, Point
-from mbsym.algebra.plane.line import Line, decompose_line, univariate
+from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import sign
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import SIGN_WORDS
+from mbsym.algebra.terms import univariate
 from mbsym.analysis import Analysis
 from mbsym.analysis.higher import FirstTerm, first_term
 from mbsym.analysis.judge import Judge as OneJudge

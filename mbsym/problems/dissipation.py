@@ -36,6 +36,7 @@ from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
+from mbsym.algebra.terms import apart
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import (
@@ -665,14 +666,7 @@ def _by_velocities(ring: Ring, x: Polynomial, coordinates: Sequence[str]) -> dic
     for k in used:
         if k not in indices and ring.dependencies(ring.context.gen(k), speeds):
             return None
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for monomial, coefficient in x.terms():
-        exponents = list(map(int, monomial))
-        key = tuple(exponents[index] for index in indices)
-        for index in indices:
-            exponents[index] = 0
-        parts.setdefault(key, {})[tuple(exponents)] = coefficient
-    return {key: ring.context.from_dict(part) for key, part in parts.items()}
+    return apart(x, indices)
 
 
 @dataclass(frozen=True)

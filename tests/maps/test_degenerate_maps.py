@@ -19,7 +19,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Map, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
 from mbsym.studies.map.answer import remarks
 from mbsym_cli.main import main

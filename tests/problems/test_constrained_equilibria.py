@@ -17,7 +17,7 @@ from mbsym.algebra.failures import Constrained
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.words import Because
 from mbsym.source import read
 
 HEAD = "mbsym: 1\nname: Tied\n"

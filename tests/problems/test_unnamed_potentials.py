@@ -9,7 +9,7 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 STATEMENTS = TESTS / "cases" / "statements"
 

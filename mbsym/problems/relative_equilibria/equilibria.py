@@ -68,8 +68,7 @@ from mbsym.problems.relative_equilibria.place import (
     exact_rates,
 )
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 __all__ = [
     "CERTIFIED",
@@ -220,11 +219,9 @@ def rank_of(first: Rest) -> int | None:
 
     if first.tied_in_motion:
         raise Constrained(
-            Message(
-                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
-                "looked for",
-                names=", ".join(first.tied_in_motion),
-            ),
+            "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+            "looked for",
+            names=", ".join(first.tied_in_motion),
             remedy="'mbsym run' judges such a motion where the description gives it",
         )
     plain = first.system.without_speeds

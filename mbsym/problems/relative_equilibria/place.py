@@ -15,6 +15,7 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, context, inverse_modulo
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.tree import number, substitute
 from mbsym.formulas.python import python_text
@@ -113,18 +114,8 @@ class Place:
             return fmpq_poly([0])
         if self.modulus is None:
             return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
-        total = fmpq_poly([0])
-        used = occurring([x])
-        generators = {k: self._generator(k) for k in used}
-        if any(value is None for value in generators.values()):
-            return None
-        for monomial, coefficient in x.terms():
-            term = fmpq_poly([coefficient])
-            for k in used:
-                for _ in range(int(monomial[k])):
-                    term = term * generators[k] % self.modulus
-            total += term
-        return total % self.modulus
+        generators = {k: self._generator(k) for k in occurring([x])}
+        return None if None in generators.values() else residue(x, generators, self.modulus)
 
     def _generator(self, index: int) -> Any:
         if index not in self._exact:

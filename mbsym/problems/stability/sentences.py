@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from mbsym.expressions.message import Message, enumerated, joined
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 HIGHER_ORDER = "Terms of higher order decide."
 

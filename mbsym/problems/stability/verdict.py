@@ -29,19 +29,20 @@ from enum import Enum, auto
 from mbsym.expressions.message import joined
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import (
+from mbsym.problems.stability.words import (
     LAGRANGE,
     LINEAR,
     MALKIN,
     ROUTH,
+    Because,
     Fact,
     Ground,
+    Reason,
+    Word,
     applying,
     implied,
     reason_of,
 )
-from mbsym.problems.stability.word import Word
 
 
 class Flaw(Enum):

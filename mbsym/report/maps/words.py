@@ -19,7 +19,7 @@ from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.content import exact
 
 #: Of several conditions that vanish on one curve, the first says most about it.

@@ -14,8 +14,7 @@ from fractions import Fraction
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
 from mbsym.model.admissibility import ROUNDING, inertia_violation
-from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
-from mbsym.source.robots.orientation import TURNING, Angles, orientation
+from mbsym.source.robots.geoms import TURNING, Angles, checked, is_solid, matter_of, orientation, shape_of, weighs
 from mbsym.source.robots.reader import (
     NOWHERE,
     Element,

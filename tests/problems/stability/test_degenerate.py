@@ -11,7 +11,7 @@ import mbsym
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 BLOCK = """
 mbsym: 1

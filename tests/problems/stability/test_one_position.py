@@ -16,9 +16,7 @@ from sympy import Matrix, Symbol, lambdify
 
 import mbsym
 from mbsym.problems.constraints.motion import oscillating_position
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import CHAPLYGIN
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import CHAPLYGIN, Because, Word
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 DISC = (SYSTEMS / "rolling-disc.yaml").read_text(encoding="utf-8")
