@@ -23,7 +23,7 @@ from mbsym.algebra.plane import Point
 from mbsym.analysis import Analysis, judge
 from mbsym.maps.admissible import Admissibility
 from mbsym.maps.axis import Axis
-from mbsym.maps.mapping import Judge, kept_in
+from mbsym.maps.mapping import ByFirstTerm, Judge, first_term_in, kept_in
 from mbsym.maps.result import Lack, Shape
 from mbsym.maps.section import Section, Unfit, unmade
 from mbsym.maps.verdicts import Judged
@@ -67,11 +67,15 @@ class StabilityMeasure:
         Column(EXACT.name, EXACT.meaning, whole=True),
     )
 
+    _by_first_term: ByFirstTerm | None = None
+
     def __init__(self, analysis: Analysis, section: Section) -> None:
         self.section = section
         #: What parameters have to keep; ``left_out`` of it could not be expressed in the axes.
         self.admissibility = kept_in(analysis, section)
+        self._by_first_term = first_term_in(analysis, section)
         further = [
+            *([] if self._by_first_term is None else [self._by_first_term.coefficient]),
             *section.undefined,
             *section.asked,
             *(demand.condition.polynomial for demand in self.admissibility.demands),
@@ -116,6 +120,8 @@ class StabilityMeasure:
             return WORDS.index(Word.UNDECIDED), -1
         except (ValueError, ZeroDivisionError):
             return WORDS.index(UNDEFINED), -1
+        if self._by_first_term is not None:
+            cell = self._by_first_term(cell)
         if cell.judged is None:
             return WORDS.index(NO_WORDS[cell.lack]), -1
         return WORDS.index(cell.judged.verdict.word.value), -1 if cell.right is None else cell.right

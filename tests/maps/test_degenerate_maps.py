@@ -258,3 +258,16 @@ def test_what_only_terms_of_higher_order_decide_is_not_denied() -> None:
     axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
     told = " ".join(remarks(exact_map(mbsym.loads(text), axes, {"c": Fraction(0)})))
     assert "terms of higher order may" in told
+
+
+def test_a_sweep_says_the_same(tmp_path: Path) -> None:
+    """V = a x^4 + b x^6: as a run and a map say, not undecided at every point."""
+    path = tmp_path / "system.yaml"
+    path.write_text(QUARTIC.replace("POTENTIAL", "a*x**4 + b*x**6") + "values: {a: 1, b: 1, c: 0}\n")
+    words = ["sweep", str(path), "--vary", "a=-1:1:4", "--vary", "b=-1:1:4", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, [*words, "--format", "csv"])
+    assert done.exit_code == 0, done.output
+    rows = [row.split(",") for row in (tmp_path / "out" / "sweep.csv").read_text().splitlines()]
+    at, said = rows[0].index("a"), rows[0].index("verdict")
+    assert len(rows) == 17
+    assert all(row[said] == ("stable" if float(row[at]) > 0 else "unstable") for row in rows[1:])
