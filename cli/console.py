@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from mbsym.expressions.place import Complaints
     from mbsym.model.system import System
+    from mbsym.report.language import Language
     from mbsym.report.plain_writer import Line
 
 
@@ -330,7 +331,12 @@ _LOOK = 1_000_000
 
 
 def speaking(*files: Path | str) -> Callable[[str], str]:
-    """Says messages in the language of these descriptions; in English where they differ, or are none."""
+    """Says messages in the language of these descriptions."""
+    return language_of_files(*files).say
+
+
+def language_of_files(*files: Path | str) -> Language:
+    """The language of these descriptions; English where they differ, or are none."""
     from mbsym.report.language import Language
     from mbsym.source.text_lines import language_of
 
@@ -343,7 +349,7 @@ def speaking(*files: Path | str) -> Callable[[str], str]:
                 languages.add(language_of(stream.read(_LOOK).decode("utf-8", "replace")))
         except (OSError, ValueError):
             languages.add("")
-    return Language(languages.pop() if len(languages) == 1 else "").say
+    return Language(languages.pop() if len(languages) == 1 else "")
 
 
 def complain(path: Path | str, text: str, say: Callable[[str], str] | None = None) -> None:
@@ -394,7 +400,7 @@ class OutPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if not str(value).strip():
-            self.fail("it is empty (an unset variable?); write . for this folder", param, ctx)
+            self.fail(Message("it is empty (an unset variable?); write . for this folder"), param, ctx)
         return super().convert(value, param, ctx)
 
 

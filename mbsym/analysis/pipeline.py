@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
+    from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
     from mbsym.problems.claims.counterexample import Trials
     from mbsym.problems.constraints import Constraints
@@ -148,13 +148,6 @@ class Analysis(Stages):
 
     def __repr__(self) -> str:
         return f"Analysis({self.system!r})"
-
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        cells = ((str(problem.number), problem.attribute, problem.title) for problem in self.asked)
-        rows = "".join("<tr>" + "".join(f"<td>{escape(x)}</td>" for x in row) + "</tr>" for row in cells)
-        return f"<b>{escape(self.system.name)}</b>: {escape(', '.join(self.system.coordinates))}<table>{rows}</table>"
 
     @property
     def asked(self) -> tuple[Problem[Any], ...]:

@@ -43,7 +43,7 @@ from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
-from mbsym.source.shape import inertia_shape
+from mbsym.source.yaml_writer import inertia_shape
 
 #: Relative error of a number that is computed in floats because it has no exact value.
 _FLOATS = Fraction(1, 10**12)
@@ -83,10 +83,7 @@ def _check_coordinates(system: System, body: Body, draft: Draft, reading: Readin
             else "use it in an angle or in the connection point"
         )
         reading.error(
-            "idle-coordinate",
-            Message("the coordinate '[[name]]' moves nothing in this joint", name=name),
-            scalar.span,
-            hint,
+            "idle-coordinate", "the coordinate '[[name]]' moves nothing in this joint", scalar.span, hint, name=name
         )
 
 
@@ -174,7 +171,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
     if doubt is not None:
         own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
-        advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+        advice = "with 'inertia about: mass centre' it would be possible" if about_joint and own is None else None
         reading.complaints.warning(
             "impossible-inertia", Message("no body has this inertia: [[doubt]]", doubt=doubt), span, advice
         )
@@ -202,7 +199,7 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
             message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(about, values)):
-        hint = "with inertia about: mass centre it would be possible"
+        hint = "with 'inertia about: mass centre' it would be possible"
         reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
         written = _written(inertia_shape(body.inertia))
@@ -260,9 +257,7 @@ def _check_single_moment(
     violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
         given = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
-        reading.error(
-            "bad-inertia", Message("no body has this inertia: [[violation]]", violation=violation), span, given
-        )
+        reading.error("bad-inertia", "no body has this inertia: [[violation]]", span, given, violation=violation)
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
@@ -331,11 +326,11 @@ def _check_use(system: System, reading: Reading) -> None:
     """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
     used = {relation.name for relation in system.relations}
     used |= set(_occurring([getattr(system, field.name) for field in fields(system)]))
-    declared = [("parameter", parameter.name, parameter.span) for parameter in system.parameters]
-    declared += [("prescribed motion", prescribed.name, prescribed.span) for prescribed in system.prescribed]
+    declared = [(Message("parameter"), parameter.name, parameter.span) for parameter in system.parameters]
+    declared += [(Message("prescribed motion"), prescribed.name, prescribed.span) for prescribed in system.prescribed]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
-        declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
+        declared += [(Message("input"), one.name, one.span) for one in system.inputs if one.name not in felt]
     for what, name, span in declared:
         if name not in used or what == "input":
             message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)
@@ -387,9 +382,7 @@ def _check_given(system: System, reading: Reading) -> None:
             continue  # without names it has been judged where it stands
         if (nothing := meaningless(expression, known)) is not None:
             node, why = nothing
-            reading.error(
-                "no-number", Message("with the given values this is no real number: [[why]]", why=why), node.span
-            )
+            reading.error("no-number", "with the given values this is no real number: [[why]]", node.span, why=why)
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:

@@ -252,10 +252,7 @@ class _Reader:
                 if key in self.fields.found:
                     hint = "add for example state: initial; formulas are compared exactly"
                     self.reading.error(
-                        "missing-key",
-                        Message("'[[key]]' is about numbers at a state", key=key),
-                        self.fields.key_span(key),
-                        hint,
+                        "missing-key", "'[[key]]' is about numbers at a state", self.fields.key_span(key), hint, key=key
                     )
 
     # --- what is claimed ---
@@ -304,7 +301,7 @@ class _Reader:
             message = Message(
                 "a claim about the [[word]] is about powers of a small parameter, and none is named", word=self.word
             )
-            hint = "add for example small parameter: eps"
+            hint = "add for example 'small parameter: eps'"
             self.reading.error("missing-key", message, self.fields.key_span("claim"), hint)
         if small is not None and small.name in names(equals):
             given = self.fields.get("equals")
@@ -371,10 +368,7 @@ class _Reader:
             hint = did_you_mean(words, known) or Message("one of: [[known]]", known=", ".join(known[:12]))
             wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
             self.reading.error(
-                "unknown-name",
-                Message("[[words]] is not [[wanted]]", words=ascii_safe(words), wanted=wanted),
-                scalar.span,
-                hint,
+                "unknown-name", "[[words]] is not [[wanted]]", scalar.span, hint, words=ascii_safe(words), wanted=wanted
             )
         return words
 

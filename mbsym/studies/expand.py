@@ -18,6 +18,7 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
+    refused,
 )
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
-        return Refusal(f"no expansion: {error}", Exit.BAD_INPUT)
+        return refused("no expansion", error, Exit.BAD_INPUT)
     return failed(error, "no expansion", True)
 
 
