@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial
     from mbsym.analysis.pipeline import Analysis
     from mbsym.model.system import System
-    from mbsym.problems.constraints import Constraints
     from mbsym.problems.constraints.motion import Embedded
     from mbsym.problems.first_order import FirstOrder
     from mbsym.problems.in_speeds import SpeedEquations
@@ -275,11 +274,6 @@ def first_order_of(analysis: Analysis) -> FirstOrder:
 def told_of(analysis: Analysis) -> ToldSystem:
     """The equations through named intermediates."""
     return told_system(analysis.system, analysis.ring, analysis.terms)
-
-
-def constraints_of(analysis: Analysis) -> Constraints:
-    """What is known of the constraints."""
-    return constrained.constraints_of(analysis)
 
 
 def equilibria_of(analysis: Analysis) -> Equilibria:

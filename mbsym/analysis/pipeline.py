@@ -171,7 +171,7 @@ class Analysis(Stages):
         """The value of a stage; one that does not know constraints, or speeds, has none where there are some."""
         knows = getattr(type(self), name).knows
         if self.system.constraints and Knows.CONSTRAINTS not in knows:
-            compute = self._without_constraints
+            compute = lambda: refuse_constraints(self.system, Message("not derived"))  # noqa: E731
         elif self.system.speeds and Knows.IN_COORDINATES in knows:
             from mbsym.analysis import deriving
 
@@ -181,9 +181,6 @@ class Analysis(Stages):
         elif self.system.linear is not None and Knows.MATRICES not in knows:
             compute = given.refuse
         return super().result(name, compute)
-
-    def _without_constraints(self) -> None:
-        refuse_constraints(self.system, Message("not derived"))
 
     # --- what everything stands on: the system over the ring, over its parameters alone, over jets, as a program ---
 
@@ -263,7 +260,9 @@ class Analysis(Stages):
         ("equations of motion", "constraints", "constrained motion"),
         knows=OF_EQUATIONS,
     )
-    constraints: Derived[Analysis, Constraints] = Derived(deriving.constraints_of, ("constraints",), knows=OF_EQUATIONS)
+    constraints: Derived[Analysis, Constraints] = Derived(
+        constrained.constraints_of, ("constraints",), knows=OF_EQUATIONS
+    )
     #: The same in generalised velocities, of a system in speeds.
     tied_in_coordinates: Derived[Analysis, Constraints] = Derived(
         constrained.constraints_in_coordinates, knows=OF_EQUATIONS

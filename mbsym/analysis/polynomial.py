@@ -73,6 +73,8 @@ class Setting:
     known: tuple[tuple[str, Any], ...]
     aside: tuple[str, ...] = ()
     rational: tuple[str, ...] = ()
+    #: Whether constraints tie positions that are variables.
+    tied: bool = False
     #: Whether a formula is a function of the integrals of problem 7, those that are none of ``known`` among them.
     follows: Callable[[Formula], bool] = lambda formula: False
 
@@ -130,7 +132,8 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     follows = None
     if len(known) < len(listed):
         follows = cache(partial(_following, analysis, dict(values or {}), transfer.images))
-    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside, rational)
+    tied = equations.constraints is not None and equations.constraints.position_rank > 0 and bool(whole.relations)
+    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside, rational, tied)
     return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
 
 
@@ -270,7 +273,8 @@ def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None 
         replace(one, name=FUNCTION) if not one.name and there.follows(there.formula(one.polynomial)) else one
         for one in integrals.generators
     )
-    return replace(integrals, aside=there.aside, rational=there.rational, generators=tuple(named))
+    found = replace(integrals, aside=there.aside, rational=there.rational, tied=there.tied)
+    return replace(found, generators=tuple(named))
 
 
 #: Problem 9 looks at integrals up to this weighted degree; ``mbsym integrals --degree`` at others.

@@ -10,6 +10,7 @@ and S = du/dq' from the spins that unit velocities give.  Neither Y nor any deri
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -70,6 +71,18 @@ def _speed(oracle: Oracle, speed: Speed) -> Series:
         own = moving.axes[speed.body]
         environment |= {name: _sum(own[k][i] * world[k] for k in range(3)) for i, name in enumerate(OMEGA)}
     return Lowering(TaylorSeries(oracle.numbers, environment), environment)(speed.form)
+
+
+def all_slopes(oracle: Oracle, names: Sequence[str]) -> list[list[Scalar]]:
+    """du_r/dq'_i of the speeds ``names``, velocities of coordinates among them, from the spins of the placed bodies."""
+    declared = {speed.name: speed for speed in oracle.system.speeds}
+    one, zero = oracle.numbers.one, oracle.numbers.zero
+    return [
+        slopes(oracle, declared[u])
+        if u in declared
+        else [one if velocity_name(name) == u else zero for name in oracle.system.coordinates]
+        for u in names
+    ]
 
 
 def slopes(oracle: Oracle, speed: Speed) -> list[Scalar]:

@@ -31,7 +31,7 @@ from mbsym.mechanics.kane import Kane
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.oracle import Oracle
 from mbsym.mechanics.speed_programs import speed_program
-from mbsym.mechanics.speed_states import slopes
+from mbsym.mechanics.speed_states import all_slopes
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.mechanics.states import Oracles
 from mbsym.model.speeds import Quaternion
@@ -346,14 +346,7 @@ def _against(
 ) -> list[Pair]:
     """e_i against sum_r E_r du_r/dq'_i, and s' against the rates at the state."""
     state, system = oracle.state, oracle.system
-    declared = {speed.name: speed for speed in system.speeds}
-    one, zero = state.numbers.one, state.numbers.zero
-    columns = [
-        slopes(oracle, declared[u])
-        if u in declared
-        else [one if velocity_name(name) == u else zero for name in system.coordinates]
-        for u in speeds
-    ]
+    columns, zero = all_slopes(oracle, speeds), state.numbers.zero
     compared: list[Pair] = []
     for i, name in enumerate(system.coordinates):
         total = sum((e * column[i] for e, column in zip(errors, columns, strict=True)), zero)

@@ -7,7 +7,7 @@ without multipliers), and what X holds of positions, by itself or in functions: 
 quaternions; the sine and cosine of an angle, with  s^2 + c^2 = 1;  exponentials, e' = e a' with a the exponent, and the
 relation between those whose exponents are dependent; square roots, r^2 = p, r' = r p'/(2 p), and with one of them alone
 1/p; phases that are driven at a rate.  Each variable brings in what its own derivative holds.  Positions on which
-nothing depends are left out.
+nothing depends are left out; constraints on positions are relations between those that are left, or give one by others.
 """
 
 from __future__ import annotations

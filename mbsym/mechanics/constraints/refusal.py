@@ -11,16 +11,6 @@ from mbsym.model.system import System
 def refuse_constraints(system: System, what: str) -> None:
     """Raises Constrained if there are constraints; ``what`` leaves them out, as in "the mass matrix alone"."""
     if system.constraints:
-        raise Constrained(refused(system, what), remedy=HINT)
-
-
-def refused(system: System, what: str) -> str:
-    """The sentence that says so."""
-    return Message(
-        "[[what]]: constraints are not taken into account here yet ([[constraints]])",
-        what=what,
-        constraints=listed(system.constraints),
-    )
-
-
-HINT = "without its constraints this would be another system"
+        message = "[[what]]: constraints are not taken into account here yet ([[constraints]])"
+        told = Message(message, what=what, constraints=listed(system.constraints))
+        raise Constrained(told, remedy="without its constraints this would be another system")

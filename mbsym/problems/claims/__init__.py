@@ -43,7 +43,11 @@ from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import examined_equation
 from mbsym.problems.claims.integrals import examined_integral
 from mbsym.problems.claims.numbers import examined_number
-from mbsym.problems.claims.quantities import derived_quantity, with_momenta
+from mbsym.problems.claims.quantities import (
+    derived_quantity,
+    is_of_first_approximation,
+    with_momenta,
+)
 from mbsym.problems.claims.result import (
     ClaimResult,
     Derived,
@@ -71,20 +75,22 @@ def examine(derived: Derived, claim: Claim) -> ClaimResult:
         from mbsym.problems.claims import normal_forms  # few claims are about terms of higher order
 
         return normal_forms.examined(derived, claim, about)
+    if claim.is_numerical:
+        return examined_number(derived, claim, about)
+    if claim.right is not None:
+        return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
+    symbols, scene = Symbols.of(derived), scene_of_claims(derived)
+    if is_of_first_approximation(claim):
+        claimed = symbols.polynomial(scene, claim)
+        return examined_formula(derived, claim, about, symbols, claimed, derived_quantity(derived, claim))
     if derived.system.constraints:
         from mbsym.problems.claims import constrained  # most systems have no constraints
 
         return constrained.examined(derived, claim, about)
-    if derived.system.speeds and not claim.is_numerical:
+    if derived.system.speeds:
         from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
 
         return in_speeds.examined(derived, claim, about)
-    if claim.is_numerical:
-        return examined_number(derived, claim, about)
-    if claim.right is not None:
-        return examined_condition(derived, claim, about)
-    symbols = Symbols.of(derived)
-    scene = scene_of_claims(derived)
     with_momenta(derived, scene, symbols)
     claimed = symbols.polynomial(scene, claim)
     if claim.kind == "first integral":

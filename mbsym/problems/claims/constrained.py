@@ -5,8 +5,6 @@ wherever the constraints hold.  An equation of motion is an expression that vani
 multipliers nor a choice of independent velocities matter; a first integral one whose rate does.  Both are tried at
 exact states on the constraints with the accelerations of the equations without multipliers, and proved in the ring
 (``mbsym.problems.constraints.integrals``).
-
-The first approximation is that of the independent coordinates; conditions are judged as those of other systems.
 """
 
 from __future__ import annotations
@@ -29,12 +27,10 @@ from mbsym.mechanics.oracle import State
 from mbsym.model.claims import SUMS, Claim
 from mbsym.model.system import System, acceleration_name
 from mbsym.problems.claims.comparison import examined_formula
-from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.counterexample import Counterexample, shown
 from mbsym.problems.claims.equations import NOTHING, power_of
 from mbsym.problems.claims.integrals import TOO_FEW_STATES, of_positions
-from mbsym.problems.claims.numbers import examined_number
-from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity, of_first_approximation
+from mbsym.problems.claims.quantities import IN_MOMENTA, derived_quantity
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.constraints.integrals import STATES, AlongMotion
@@ -51,10 +47,6 @@ FROM_CONSTRAINTS = "it follows from the constraints alone"
 
 def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim; raises NoClosedForm for what is not judged under constraints."""
-    if claim.is_numerical:
-        return examined_number(derived, claim, about)
-    if claim.right is not None:
-        return examined_condition(derived, claim, about)
     if claim.kind in IN_MOMENTA or claim.kind.startswith(("state matrix", "linear matrix B")):
         raise NoClosedForm("a claim about the [[kind]]: not judged under constraints", kind=Message(claim.kind))
     if claim.kind == "coefficient" and claim.of not in SUMS:
@@ -69,8 +61,6 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         return _equation(derived, ClaimResult(claim, about, Outcome.EXACT, Formula(ring, own - claimed)))
     if claim.kind == "equation of motion":
         return _equation(derived, ClaimResult(claim, about, Outcome.EXACT, Formula(ring, claimed)))
-    if claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")):
-        return examined_formula(derived, claim, about, symbols, claimed, of_first_approximation(derived, claim))
     if derived.system.speeds:
         from mbsym.problems.claims import in_speeds  # few systems have speeds of their own
 

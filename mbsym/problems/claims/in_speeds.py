@@ -19,17 +19,12 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.comparison import examined_formula
-from mbsym.problems.claims.conditions import examined_condition
 from mbsym.problems.claims.equations import NOT_LINEAR, NOTHING, SAME_ACCELERATIONS, Dynamics, along_motion
 from mbsym.problems.claims.integrals import of_positions, substituted
-from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
+from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.in_speeds import Field, SpeedEquations
-
-#: What is told in coordinates.
-_LINEAR = ("linear matrix", "subsystem matrix", "characteristic")
 
 #: Quantities that are the same whatever the variables are; those of one body among them.
 _QUANTITIES = (
@@ -41,10 +36,6 @@ _QUANTITIES = (
 def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim.  Raises NoClosedForm where it is about something that is not derived in speeds."""
     form = derived.form
-    if claim.right is not None:
-        return examined_condition(derived, claim, about)  # problem 6 is told in coordinates
-    if claim.kind.startswith(_LINEAR) and not claim.kind.endswith("B"):
-        return _linear(derived, claim, about)
     scene = scene_of_claims(derived)
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(scene, claim))
     if claim.kind == "first integral":
@@ -99,13 +90,6 @@ def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polyn
             result = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
             return replace(result, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
     return replace(found, outcome=Outcome.DIFFERS)
-
-
-def _linear(derived: Derived, claim: Claim, about: str) -> ClaimResult:
-    """An entry of the first approximation, which is told in coordinates; a row that bears a speed's name has none."""
-    symbols = Symbols.of(derived)
-    claimed = symbols.polynomial(derived.parameters_scene, claim)
-    return examined_formula(derived, claim, about, symbols, claimed, of_first_approximation(derived, claim))
 
 
 def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:

@@ -21,6 +21,8 @@ from mbsym.problems.claims.symbols import Symbols
 def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
     """What is claimed, derived; over the ring."""
     ring, kind = derived.ring, claim.kind
+    if is_of_first_approximation(claim):
+        return of_first_approximation(derived, claim)
     rows = [k - 1 for k in claim.entry]
     if kind in SUMS:
         return _sum(derived, kind)
@@ -42,17 +44,6 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return derived.linearisation.B[rows[0], rows[1]].polynomial
     if kind.startswith("state matrix"):
         return getattr(derived.state_space, kind[-1])[rows[0], rows[1]].polynomial
-    if kind.startswith("linear matrix"):
-        return getattr(derived.linearisation, kind[-1])[rows[0], rows[1]].polynomial
-    if kind.startswith("subsystem matrix"):
-        wanted = [derived.system.coordinates[k] for k in rows]
-        for part in derived.linearisation.subsystems:
-            if set(wanted) <= set(part.coordinates):
-                place = [part.coordinates.index(name) for name in wanted]
-                return getattr(part, kind[-1])[place[0], place[1]].polynomial
-        return ring.zero
-    if kind == "characteristic polynomial":
-        return _characteristic(derived, claim.of)
     if kind in ("position", "velocity"):
         return _in_inertial_axes(derived.scene, kind, claim.of)[rows[0]]
     body = derived.kinematics.body(claim.of)
@@ -62,15 +53,20 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
     return spin[rows[0]].polynomial
 
 
+def is_of_first_approximation(claim: Claim) -> bool:
+    """Whether it is about what is told in coordinates, of systems in speeds, too."""
+    return claim.kind.startswith(("linear matrix", "subsystem matrix", "characteristic")) and claim.kind[-1] != "B"
+
+
 def of_first_approximation(derived: Derived, claim: Claim) -> Polynomial:
-    """A characteristic polynomial, or an entry of a matrix whose rows are only some of the coordinates.
+    """A characteristic polynomial, or an entry of a matrix whose rows may be only some of the coordinates.
 
     Raises NoClosedForm for a coordinate that has no row there.
     """
     if claim.kind == "characteristic polynomial":
         there = [name for part in derived.stability.subsystems for name in part.coordinates]
         _need(there, [claim.of] if claim.of else [])
-        return derived_quantity(derived, claim)
+        return _characteristic(derived, claim.of)
     names = [derived.system.claimable[k - 1] for k in claim.entry]
     if claim.kind.startswith("subsystem"):
         _need([name for part in derived.linearisation.subsystems for name in part.coordinates], names)

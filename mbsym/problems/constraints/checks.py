@@ -27,9 +27,9 @@ from mbsym.mechanics.constraints.programs import ConstrainedPrograms
 from mbsym.mechanics.constraints.ranks import eliminated
 from mbsym.mechanics.constraints.states import PRECISION, Manifold, OnManifold
 from mbsym.mechanics.oracle import Oracle, State, TaylorSeries
-from mbsym.mechanics.speed_states import completed, slopes, variables
+from mbsym.mechanics.speed_states import all_slopes, completed, variables
 from mbsym.mechanics.speeds import SpeedForm
-from mbsym.model.system import acceleration_name, velocity_name
+from mbsym.model.system import acceleration_name
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, UNDECIDED, Check, Pair, _verdict
 from mbsym.problems.constraints.motion import Embedded
 from mbsym.problems.constraints.result import Constraints
@@ -54,7 +54,7 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
         state = completed(oracle)
         truth = oracle_rows(system, on_manifold.state)
         carry = Carrier(form.ring, state.numbers, state.values)
-        columns, zero = _columns(form, oracle), state.numbers.zero
+        columns, zero = all_slopes(oracle, [u.name for u in form.speeds]), state.numbers.zero
         second = [state.values[acceleration_name(name)] for name in system.coordinates]
         values = programs.tree.program.evaluate(nodes, on_manifold.state.values, on_manifold.state.numbers)
         compared: list[Pair] = []
@@ -175,18 +175,6 @@ def in_time(form: SpeedForm, state: State) -> Carrier:
     oracle = Oracle(form.system, state)
     series = {**oracle.in_time, **variables(oracle)}
     return Carrier(form.ring, TaylorSeries(state.numbers, series), series)
-
-
-def _columns(form: SpeedForm, oracle: Oracle) -> list[list[Any]]:
-    """du_r/dq'_i, from the spins of the placed bodies."""
-    declared = {speed.name: speed for speed in form.system.speeds}
-    one, zero = oracle.numbers.one, oracle.numbers.zero
-    return [
-        slopes(oracle, declared[u.name])
-        if u.name in declared
-        else [one if velocity_name(name) == u.name else zero for name in form.system.coordinates]
-        for u in form.speeds
-    ]
 
 
 def null_space(rows: Sequence[Sequence[Any]], n: int, numbers: Algebra) -> list[list[Any]]:

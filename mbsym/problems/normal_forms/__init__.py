@@ -2,6 +2,7 @@
 
 The Lagrangian and the applied forces are expanded about the unperturbed motion to order 4 (6 where that is needed)
 while they are built; cyclic coordinates without forces are left out with their momenta at the unperturbed values.
+Constraints on positions are expanded with them, about a rest: dependent coordinates as series in the independent ones.
 
 * Hamiltonian systems (no applied force beside the force function, or one with a generalized potential, as a magnetic
   field has by Helmholtz's conditions, proved: it is taken into the Lagrangian): Birkhoff's normal form

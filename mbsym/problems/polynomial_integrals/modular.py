@@ -11,7 +11,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from itertools import combinations
 from typing import Any
 
 from flint import nmod_mat
@@ -91,7 +90,7 @@ class ModularField:
             leading = max(terms)
             inverse = pow(-terms[leading], -1, self.prime)
             found.append((leading, {m: c * inverse % self.prime for m, c in terms.items() if m != leading}))
-        if any(a and b for (one, _), (other, _) in combinations(found, 2) for a, b in zip(one, other, strict=True)):
+        if not self.field.are_solved:
             raise NoClosedForm(
                 "unit vectors that are perpendicular to each other have relations that are not told apart, but for two "
                 "of them in quasi-homogeneous equations"

@@ -74,6 +74,7 @@ class PolynomialIntegrals:
     ``independent``: so many of them are, as functions (a lower bound).  ``aside``: positions of the system on which no
     equation depends: they are no variables of the field, and integrals that hold them are not looked for.
     ``rational``: integrals of problem 7 that are quotients of two polynomials in the variables, and no polynomials.
+    ``tied``: constraints tie positions, and may have several branches, all of which an integral is one of.
     """
 
     field: PolynomialField
@@ -84,6 +85,7 @@ class PolynomialIntegrals:
     independent: int
     aside: tuple[str, ...] = ()
     rational: tuple[str, ...] = ()
+    tied: bool = False
 
     @property
     def complete(self) -> bool:

@@ -140,6 +140,8 @@ def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
 
 def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
     """x' - B y, of a charge in a magnetic field, is not looked for, nor the area integral of a free body."""
+    if found.tied:
+        yield Said("Constraints may have several branches: those of one branch alone are not looked for.")
     if found.aside:
         text = "The equations do not contain [[names]]: integrals that do are not looked for here."
         yield say(text, names=named(found.aside))
