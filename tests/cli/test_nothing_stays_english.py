@@ -27,10 +27,10 @@ NAMES = {"sin", "cos", "sqrt", "exp", "log", "tanh", "det", "sum", "const", "dot
          "SciPy", "heyoka", "lsoda", "bdf", "phi", "hat", "text", "FILE", "run",
          "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz", "rad"}  # fmt: skip
 #: Not of words: quoted lines, codes, commands to be pasted, options, files, assignments.
-NO_WORDS = r"^ *\d* \|.*|(?:error|warning)\[[a-z-]+\]|mbsym [[a-z].*|--[a-z-]+|[\w./*-]+\.\w{1,7}\b|\b\w+/[\w./-]*"
+NO_WORDS = r"^ *\d* \|.*|(?:error|warning)\[[a-z-]+\]|mbsym [a-z\[].*|--[a-z-]+|[\w./*-]+\.\w{1,7}\b|\b\w+/[\w./-]*"
 #: They print a file, or codes and labels of one, or are about no description.
 OF_FILES = ("diff", "convert", "schema", "explain", "examples", "new", "lsp", "edit", "watch")
-FOR_PROGRAMS = {"--json", "--output-format", "--help", "-h", "--python", "--wolfram", "--version"}
+FOR_PROGRAMS = {"--json", "--output-format", "--help", "-h", "--latex", "--python", "--wolfram", "--version"}
 
 COMMANDS = [
     "check in",
