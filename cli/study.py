@@ -237,10 +237,10 @@ class _Run:
                 raise
             self._complaints((refusal.text, *refusal.more))
             return refusal.code
-        if self.among:
-            self.told = asked, request, found
-        elif self.as_json:
+        if self.as_json:
             click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
+        elif self.among:
+            self.told = asked, request, found
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)

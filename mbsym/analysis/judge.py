@@ -3,7 +3,7 @@
 Asked in this order, each only where those before leave the nonlinear system open:
 
 1. the first approximation, with the energy and exactly linear equations (``stability.ExactVerdicts``);
-2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
+2. the system at these numbers: its integrals, an energy of higher order (``relative_equilibria.verdict``);
 3. terms of higher order: normal forms, centre manifolds (problem 11); of one coordinate the first term of its potential
    energy, which need not be an algebraic number.
 
@@ -27,18 +27,16 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
 from mbsym.analysis import higher
-from mbsym.analysis.higher import ignorable
+from mbsym.analysis.constrained import in_free_coordinates
+from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
-from mbsym.model.constraints import Relation
-from mbsym.model.substitution import displaced, without_explicit_relations
+from mbsym.model.substitution import displaced
 from mbsym.model.system import System
 from mbsym.problems.stability.problem import ExactVerdicts
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import HigherOrder
 from mbsym.problems.stability.verdict import Flaw, Verdict, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -103,7 +101,7 @@ class Judge:
     @cached_property
     def _loses_energy(self) -> bool:
         try:
-            return installed("mbsym.problems.normal_forms") and not ignorable(self.analysis)[0]
+            return installed("mbsym.problems.normal_forms") and not higher.ignorable(self.analysis)[0]
         except Failure:
             return False
 
@@ -138,9 +136,10 @@ class Judge:
         if self.analysis.system.constraints:
             known = installed("mbsym.problems.normal_forms")
             return (higher.by_energy(self.analysis, values) if known else None) or verdict
-        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+        # What equilibria are judged by is not imported for nothing.
+        from mbsym.problems.relative_equilibria.verdict import decided_at
 
-        return open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+        return decided_at(verdict, self.analysis.parameters_scene, values)
 
     @cached_property
     def _in_others(self) -> Judge | None:
@@ -149,21 +148,11 @@ class Judge:
         Without constraints in those of which some are displacements that change no equation, where those given are not.
         """
         of = self.analysis
-        if not of.system.constraints:
-            system = self._displaced if self._displaces else None
-        elif not any(isinstance(constraint, Relation) for constraint in of.system.constraints):
+        plain = self._displaced if self._displaces and not of.system.constraints else None
+        system = in_free_coordinates(of.system) if of.system.constraints else plain
+        if system is None or system.constraints:
             return None
-        else:
-            system = without_explicit_relations(of.system)
-        if system is None:
-            return None
-        if system.constraints:
-            from mbsym.mechanics.constraints.rows import said_rows
-
-            if said_rows(type(of)(system, (), of.terms).scene):  # those that say 0 = 0 followed from what is put in
-                return None
-        plain = type(of)(replace(system, constraints=()), (), of.terms, suggests=False)
-        return Judge(plain, displaces=bool(of.system.constraints))
+        return Judge(type(of)(system, (), of.terms, suggests=False), displaces=bool(of.system.constraints))
 
     @property
     def _displaced(self) -> System | None:
@@ -237,15 +226,15 @@ def exceptional(
 ) -> Along:
     """All exceptional values of a parameter between two numbers, the others at ``values``.
 
-    Raises Unavailable where the system has constraints, is given by matrices or has no motion; NotAlong and what
-    expansions raise.
+    Raises Unavailable where the system is given by matrices or has no motion; NotAlong and what expansions raise.
     """
     from mbsym.problems.normal_forms.along import along
 
     if analysis.system.speeds:
         return exceptional(analysis.in_coordinates, name, interval, values)
-    if analysis.system.constraints or analysis.system.linear is not None:
-        reason = "it has constraints, or is given by its matrices: normal forms are of neither"
+    analysis = analysis.in_free_coordinates
+    if analysis.system.linear is not None:
+        reason = "it is given by its matrices, which have no terms of higher order"
         raise Unavailable("system", NoResult(reason, "", "not supported", "not-supported"))
     with analysis.strictly():
         equilibrium = analysis.equilibrium
@@ -257,11 +246,9 @@ def exceptional(
     if name in solved:
         reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
-    conservative, cyclic = ignorable(analysis)
     numbers = {key: value for key, value in values.items() if key != name and key not in solved}
-    listed = along(
-        analysis.parameters_scene, analysis.system, equilibrium, name, interval, numbers, conservative, cyclic
-    )
+    scene, told_with = analysis.parameters_scene, expanded_with(analysis)
+    listed = along(scene, analysis.system, equilibrium, name, interval, numbers, *told_with)
     return replace(listed, specials=tuple(_judged(analysis, numbers, name, special) for special in listed.specials))
 
 

@@ -48,7 +48,7 @@ from mbsym.problems.relative_equilibria.equilibria import (
     rank_of,
 )
 from mbsym.problems.relative_equilibria.place import Place
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.words import Because
 
 #: Parts of a range at which a parameter is tried, where nothing special happens.
 _TRIED = tuple(Fraction(k, 97) for k in (48, 21, 77, 5, 92))
@@ -455,7 +455,7 @@ def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | No
         q = q - step
         if not np.all(np.isfinite(q)):
             return None
-        if np.max(np.abs(step)) < SMALL * (1 + np.max(np.abs(q))):
+        if np.max(np.abs(step)) <= SMALL * max(np.max(np.abs(q)), np.max(np.abs(guess))):
             return q
     return None
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from mbsym.algebra.factors import content, irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
@@ -21,16 +21,16 @@ from mbsym.mechanics.energy import body_energy
 from mbsym.model.loads import Load, NewtonianGravity, UniformGravity
 from mbsym.model.system import INERTIAL
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
-from mbsym.report.conditions import Statement, label_meanings, statements
+from mbsym.report.conditions import Shown, Statement, is_letter, label_meanings, statements
 from mbsym.report.content import Number
-from mbsym.report.sections.equations import constraint_forces
+from mbsym.report.sections.equations import balances
 
 if TYPE_CHECKING:
     from mbsym.algebra.signs import Signs
     from mbsym.analysis import Analysis
     from mbsym.analysis.reducing import Reduced
     from mbsym.analysis.scaled import Formulas
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
 
 #: The languages in which a formula is written; the first is for people.
@@ -94,8 +94,8 @@ def _equations(analysis: Analysis) -> Iterator[Line]:
         return
     equations = analysis.equations
     tied = equations.constraints
-    for i, x in enumerate(equations.equalities(analysis.system.coordinates)):
-        yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in constraint_forces(equations, i)))
+    for x, forces in balances(equations, analysis.system):
+        yield Line("", x, right=tuple((factor, f"lambda{k}") for factor, k in forces))
     if equations.in_speeds:
         own = cast("SpeedEquations", equations)
         yield from (Line(Formula(x.ring, x.ring.generator("velocity", name)), x) for name, x in own.kinematic)
@@ -240,7 +240,7 @@ def _freed(ring: Ring, known: Signs, row: Iterable[tuple[Polynomial, ...]]) -> l
 
 
 def _conditions(analysis: Analysis) -> Iterator[Line]:
-    """What ``statements`` lists, with what each is needed for."""
+    """What ``statements`` lists, with what each is needed for; of a long one first the letters that it is told in."""
     for part in analysis.stability.subsystems:
         of = ", ".join(part.coordinates)
         labels = label_meanings(part.ring, part.theory.requirements)
@@ -251,8 +251,14 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
         if not items and part.theory.requirements:
             text = "conditions: [[wanted]]; none is left that might fail"
         yield Line("", Message(text, wanted=worded(part.theory.wanted)), "", of)
+        shown = Shown()
         for item in items:
-            yield Line("", item.formula or item.never or item.note, item.relation, _remark(item, of))
+            formula: Any = item.formula or item.never or item.note
+            if item.told is not None:
+                formula, letters = item.told.formula, shown.unshown(item.told)
+                yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
+            yield Line("", formula, item.relation, _remark(item, of))
+            shown.show(item)
 
 
 def _remark(item: Statement, of: str) -> str:

@@ -84,9 +84,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.report.words.expansion_measured import measured_or_why
 
     watch("slow manifold")
-    found = expansion(Analysis(asked.system), request.order, request.values)
+    analysis = Analysis(asked.system).in_free_coordinates
+    found = expansion(analysis, request.order, request.values)
     watch("measuring")
-    return Found(found, measured_or_why(asked.system, found, request.time, request.values))
+    return Found(found, measured_or_why(analysis.system, found, request.time, request.values))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
@@ -107,4 +108,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "no expansion", True)
 
 
-STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)
+STUDY = Study(
+    "expand", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None, letters=True
+)

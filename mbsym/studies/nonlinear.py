@@ -189,5 +189,5 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 STUDY = Study(
     "nonlinear", Request, derive, answer, refusal, unfit, as_json,
     json_help="Print JSON; without --vary that of problem 11.",
-    matrices=True, held=False, out=None, timed=True, letters=True,
+    constraints=True, matrices=True, held=False, out=None, timed=True, letters=True,
 )  # fmt: skip

@@ -199,10 +199,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.source.scaling import read_scaling
 
     watch("oscillations")
-    analysis = Analysis(asked.system)
+    analysis = Analysis(asked.system).in_free_coordinates
     found = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
     watch("measuring")
-    measured = orders_or_why(asked.system, found, request.values)
+    measured = orders_or_why(analysis.system, found, request.values)
     if request.integral is not None:
         rates = {name: item.value for name, item in _rates(request.integral, Complaints()).items()}
         found = with_integrals(found, analysis, rates)
@@ -279,5 +279,6 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
 
 STUDY = Study(
     "oscillations", Request, derive, answer, refusal, unfit, as_json, "Print JSON instead of text.",
-    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed, letters=True,
+    constraints=True, held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed,
+    letters=True,
 )  # fmt: skip

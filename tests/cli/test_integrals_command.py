@@ -218,7 +218,8 @@ def test_a_root_of_what_is_known_is_one_more():
 def test_the_norm_of_a_quaternion_is_not_denied():
     """Problem 7 lists it: up to degree four there is none but that, Jacobi's being of degree four in e."""
     text = " ".join(run("systems/gravity-gradient-quaternion.yaml", "--degree", "3").stdout.split())
-    assert "But for lengths of unit vectors, which are 1, there is none up to weighted degree 3" in text
+    none = "as lengths of unit vectors are, there is none up to weighted degree 3"
+    assert f"But for relations that every state keeps, {none}" in text
 
 
 def test_a_quaternion_may_be_varied():

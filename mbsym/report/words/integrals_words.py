@@ -174,9 +174,10 @@ _NONE = {
 }
 #: The length of a unit vector is constant, too: it is 1, and problem 7 may list it.
 _NONE_BUT_LENGTHS = {
-    True: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for "
-    "almost all values of the parameters).",
-    False: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).",
+    True: "But for relations that every state keeps, as lengths of unit vectors are, there is none up to weighted "
+    "degree [[degree]] (proved for almost all values of the parameters).",
+    False: "But for relations that every state keeps, as lengths of unit vectors are, there is none up to weighted "
+    "degree [[degree]] (proved).",
 }
 #: Those of vectors of one body are integrals of the kinematic equations alone.
 _TRIVIAL = "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0."
