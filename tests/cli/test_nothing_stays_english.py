@@ -173,6 +173,15 @@ def test_a_documented_command_speaks_the_language(line: str, folder: Path) -> No
     assert not untranslated(shlex.split(line), folder)
 
 
+def test_the_page_of_a_batch_speaks_the_language(folder: Path) -> None:
+    CliRunner().invoke(main, ["batch", "in", "--format", "json"])
+    page = (folder / "build" / "index.html").read_text(encoding="utf-8")
+    body = re.sub(r"<[^>]*>", "\n", page.partition("</head>")[2])
+    assert body.count("⟦") > 15
+    assert not outside(body, "mbsym batch key mas mass " + (folder / "in" / "good.yaml").read_text(encoding="utf-8"))
+    assert '<html lang="ru">' in page
+
+
 def test_complaints_about_wrong_descriptions_speak_the_language(marks: None) -> None:
     """All of tests/invalid, with hints; what a YAML reader says of its own is quoted."""
     say, left = Language("ru").say, []
