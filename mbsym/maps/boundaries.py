@@ -44,6 +44,7 @@ from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.matrices import added
 from mbsym.algebra.signs import Signs
+from mbsym.expressions.message import Message, worded
 from mbsym.maps.section import Section
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.linear_form import LinearSystem, is_potential, is_zero
@@ -263,7 +264,8 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
     def told(origin: Origin, polynomial: Polynomial) -> Condition:
         found = constant.reduced(polynomial)
         if found == 0:
-            raise TooLargeError(f"a {origin.value} that vanishes identically, with irrational numbers")
+            text = "this vanishes identically, with irrational numbers: [[what]]"
+            raise TooLargeError(Message(text, what=worded(origin.value)))
         return Condition(origin, found, part, "", reduced)
 
     raw = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))

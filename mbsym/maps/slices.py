@@ -33,6 +33,7 @@ from mbsym.algebra.plane import AlgebraicNumber, Point
 from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Number, between_simply, sign
 from mbsym.analysis import Analysis
+from mbsym.expressions.message import Message
 from mbsym.maps.admissible import Admissibility, Demand
 from mbsym.maps.boundaries import Boundaries, norm_of_factors
 from mbsym.maps.mapping import (
@@ -143,9 +144,14 @@ def stack(
     line = critical_levels(boundaries.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
-            f"{len(line.zeros)} values of {axes[2].name} at which the picture may change, more than {MOST_LEVELS}",
+            Message(
+                "values of [[name]] at which the picture may change: [[count]], more than [[most]]",
+                name=axes[2].name,
+                count=len(line.zeros),
+                most=MOST_LEVELS,
+            ),
             limit=Limit.WORK,
-            remedy=f"take a smaller interval of {axes[2].name}",
+            remedy=Message("take a smaller interval of [[name]]", name=axes[2].name),
         )
     slicing = _Slicing(analysis, there, admissibility, boundaries, of, watch)
     levels = levels_of(line)

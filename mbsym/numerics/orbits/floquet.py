@@ -41,9 +41,10 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from mbsym.algebra.derivative import jacobian
-from mbsym.algebra.failures import SingularPoint
+from mbsym.algebra.failures import SingularPoint, message_of
 from mbsym.algebra.program import Node
 from mbsym.algebra.rationals import ball
+from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.precise import enclosures
@@ -216,7 +217,8 @@ def jacobian_on_motion(dynamics: Dynamics) -> tuple[Code, bool]:
         accelerations = substituted(rhs.program, rhs.outputs[n:], fresh)
         entries = substituted(jacobian.program, jacobian.outputs, fresh)
     except SingularPoint as reason:
-        raise NotPeriodic(f"the equations are singular on the unperturbed motion: {reason}") from None
+        text = "the equations are singular on the unperturbed motion: [[why]]"
+        raise NotPeriodic(Message(text, why=message_of(reason))) from None
     rests = all(fresh.vanishes(node) for node in accelerations)
     if not rests:
         _require_rest(Code(fresh, ("t",), tuple(accelerations)), dynamics)
@@ -229,8 +231,15 @@ def _require_rest(code: Code, dynamics: Dynamics) -> None:
             for name, value in zip(dynamics.system.coordinates, series(code, arb_series([ball(at)])), strict=True):
                 size = abs(_coefficient(value, 0))
                 if not size < ball(AT_REST):
-                    told = f"at t = {float(at):g} {name} is accelerated by {float(size.mid()):.3g}"
-                    raise NotPeriodic(f"the unperturbed motion is none at these values: {told}")
+                    raise NotPeriodic(
+                        Message(
+                            "the unperturbed motion is none at these values: at t = [[time]] [[name]] has the "
+                            "acceleration [[size]]",
+                            time=f"{float(at):g}",
+                            name=name,
+                            size=f"{float(size.mid()):.3g}",
+                        )
+                    )
 
 
 def common_frequency(code: Code) -> Fraction:
@@ -325,7 +334,7 @@ def series(code: Code, time: arb_series) -> list[Any]:
             case ("sin" | "cos" | "sqrt" | "exp" | "log" | "atan") as name, [a]:
                 values[number] = getattr(a, name)()
             case name, _:
-                raise NotPeriodic(f"{name} has no power series here")
+                raise NotPeriodic(Message("[[name]] has no power series here", name=name))
     return [values[node.number] for node in code.outputs]
 
 
@@ -349,7 +358,8 @@ def _matrices(code: Code, time: arb, size: int, count: int) -> list[arb_mat]:
 def enclosed(code: Code, period: arb, size: int, order: int = ORDER) -> tuple[arb_mat, int]:
     """(a matrix of balls that contains Phi(T), how many steps were made), at the present working precision."""
     if size > MOST_STATES:
-        raise NotPeriodic(f"{size} coordinates and velocities are too many; at most {MOST_STATES}")
+        text = "coordinates and velocities: [[count]], too many; at most [[most]]"
+        raise NotPeriodic(Message(text, count=size, most=MOST_STATES))
     cap, ctx.cap = ctx.cap, order + 2
     try:
         steps = _steps(code, period, size)
@@ -374,7 +384,11 @@ def _steps(code: Code, period: arb, size: int) -> int:
     wanted = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
     if wanted > MOST_STEPS:
         raise NotPeriodic(
-            f"a period would take {wanted} steps; at most {MOST_STEPS}: frequencies far apart, or a long period"
+            Message(
+                "steps that a period would take: [[count]], at most [[most]]: frequencies far apart, or a long period",
+                count=wanted,
+                most=MOST_STEPS,
+            )
         )
     return max(wanted, 8)
 

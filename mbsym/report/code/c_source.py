@@ -15,6 +15,7 @@ from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -117,7 +118,11 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         tied, _, _ = tied_code(analysis, writer)
         if n + len(tied.rows if tied else ()) > MOST_UNKNOWNS:
             raise NoClosedForm(
-                f"more than {MOST_UNKNOWNS} accelerations and multipliers: C would need {SPACE} of stack"
+                Message(
+                    "more than [[most]] accelerations and multipliers: C would need [[space]] of stack",
+                    most=MOST_UNKNOWNS,
+                    space=SPACE,
+                )
             )
     functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, worded
 from mbsym.expressions.tree import Expression, names
 from mbsym.formulas.names import free_name, injective
 from mbsym.model.system import System
@@ -131,7 +131,8 @@ def render(analysis: Analysis, problems: Sequence[int], version: int) -> bytes:
         raise NoClosedForm("nothing moves: an FMU needs a state")
     known = solved(analysis)
     if known.forward is None and not (analysis.system.constraints and programs_of(analysis)[0]):
-        raise NoClosedForm(f"there are no accelerations: {known.no_forward or programs_of(analysis)[1]}")
+        why = worded(str(known.no_forward or programs_of(analysis)[1]))
+        raise NoClosedForm(Message("there are no accelerations: [[why]]", why=why))
     files = sources(analysis, version)
     library = _library(analysis, files, version)
     return _zip(files | library)

@@ -25,6 +25,9 @@ NOT_UNIFORM = "Under these weights the equations are not quasi-homogeneous."
 
 #: What is said behind a proof, where it holds for more, and of whom.
 ANY_LENGTH = Message("; unit vectors of any length")
+BUT_FOR_ALGEBRAIC = Message(
+    "proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9"
+)
 ALMOST = Message(", for almost all values of the parameters")
 NOTHING_KNOWN = "What there is for almost all [[name]] is not known to be all: of other values nothing is proved."
 NOT_LOOKED_FOR = Message(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import Message, joined
 from mbsym.report.words.integrals_words import (
     ANY_LENGTH,
+    BUT_FOR_ALGEBRAIC,
     NOTHING_KNOWN,
     all_values,
     case_title,
@@ -39,16 +40,17 @@ def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Ite
         yield Message(NOTHING_KNOWN, name=found.name)
         return
     text = (
-        "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there is "
-        "no further integral of weight up to [[degree]][[without]] (proved[[length]]); irrational values are undecided."
+        "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there is no further "
+        "integral of weight up to [[degree]][[without]] (proved[[length]]); irrational values are undecided."
     )
+    ends: dict[str, object] = {"low": found.low, "high": found.high}
     if found.whole:
         text = (
-            "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of "
-            "weight up to [[degree]][[without]] (proved, but for algebraic numbers whose polynomials over the integers "
-            "need coefficients beyond 10^9[[length]])."
+            "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of weight up "
+            "to [[degree]][[without]] ([[how]][[length]])."
         )
-    ends = {"all": all_values(found.values or found.undecided), "low": found.low, "high": found.high}
+        ends["how"] = BUT_FOR_ALGEBRAIC
+    ends["all"] = all_values(found.values or found.undecided)
     yield Message(text, name=found.name, **ends, degree=usual.degree, without=without, length=length)
 
 

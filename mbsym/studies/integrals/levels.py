@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
-from mbsym.report.words.integrals_words import ALMOST, ANY_LENGTH, NOT_LOOKED_FOR, title
+from mbsym.report.words.integrals_words import ALMOST, ANY_LENGTH, BUT_FOR_ALGEBRAIC, NOT_LOOKED_FOR, title
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -70,22 +70,16 @@ def _of(there: Setting, found: OtherLevels, other_level: OtherLevel) -> Iterator
         "almost": ALMOST if there.field.parameters else "",
         "length": ANY_LENGTH if vectors else "",
     }
+    text = (
+        "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
+        "[[degree]][[almost]] ([[how]][[length]])."
+    )
     if not other_level.by_rank:
-        text = (
-            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
-            "[[degree]][[almost]] (proved[[length]])."
-        )
+        known["how"] = Message("proved")
     elif there.field.parameters:
-        text = (
-            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
-            "[[degree]][[almost]] (verified at random parameters modulo a prime[[length]])."
-        )
+        known["how"] = Message("verified at random parameters modulo a prime")
     elif other_level.whole:
-        text = (
-            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
-            "[[degree]][[almost]] (proved, but for algebraic numbers whose polynomials over the integers need "
-            "coefficients beyond 10^9[[length]])."
-        )
+        known["how"] = BUT_FOR_ALGEBRAIC
     else:
         known["integral"] = value
         text = (
