@@ -1,4 +1,4 @@
-"""The analysis of constraints: rows over the ring, ranks at exact points of the manifold, pivots, integrability."""
+"""The analysis of constraints: rows over the ring, ranks at exact points of the manifold, pivots, integrability; in speeds, too."""
 
 from __future__ import annotations
 
