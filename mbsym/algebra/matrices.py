@@ -15,7 +15,7 @@ from itertools import combinations
 from typing import Any, Generic, overload
 
 from mbsym.algebra.base import Algebra, S
-from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.failures import Failure, Limit, NoClosedForm, TooLargeError
 
 Rows = Iterable[Iterable[S]]
 Table = Sequence[Sequence[S]]
@@ -348,6 +348,45 @@ def null_vectors(algebra: Algebra[S], reduced: Mapping[int, Sequence[S]], size: 
         vector[free] = algebra.one
         for column, row in reduced.items():
             vector[column] = -row[free]
+        basis.append(vector)
+    return basis
+
+
+def null_space_of_polynomials(
+    algebra: Algebra[Any], rows: Table[Any], size: int, certain: Callable[[Any], bool] = bool, most: int | None = None
+) -> list[list[Any]]:
+    """A basis of the vectors of ``size`` components that every row annuls, without fractions: times their pivots.
+
+    A pivot is the first entry, column by column, that is ``certain`` not to vanish.  Raises Failure where there is
+    none, TooLargeError where an entry on the way has more than ``most`` terms.
+    """
+    work, pivots = [[algebra.reduce(x) for x in row] for row in rows], list[int]()
+    while held := [
+        (r, c) for c in range(size) for r in range(len(pivots), len(work)) if not algebra.vanishes(work[r][c])
+    ]:
+        at, place = len(pivots), next(((r, c) for r, c in held if certain(work[r][c])), None)
+        if place is None:
+            raise Failure("no pivot is known to differ from zero")
+        (r, column), top = place, work[place[0]]
+        work[at], work[r] = top, work[at]
+        for r, row in enumerate(work):
+            if r != at and not algebra.vanishes(row[column]):
+                if most is not None and max(map(len, (*row, *top))) > most:
+                    raise TooLargeError
+                products = (
+                    (algebra.times(top[column], x), algebra.times(row[column], y))
+                    for x, y in zip(row, top, strict=True)
+                )
+                work[r] = [algebra.reduce(a - b) for a, b in products]
+        pivots.append(column)
+    basis = []
+    for free in (k for k in range(size) if k not in pivots):
+        involved = {c: row for c, row in zip(pivots, work, strict=False) if not algebra.vanishes(row[free])}
+        vector = [algebra.zero] * size
+        for k in (free, *involved):
+            factors = (row[c] for c, row in involved.items() if c != k)
+            product = reduce(lambda a, b: algebra.reduce(algebra.times(a, b)), factors, algebra.one)
+            vector[k] = product if k == free else algebra.reduce(-algebra.times(product, involved[k][free]))
         basis.append(vector)
     return basis
 

@@ -28,7 +28,6 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Generator, Polynomial, Ring
 from mbsym.algebra.terms import apart
 from mbsym.analysis.in_groups import in_groups, product
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import ENDINGS, velocity_name, without_velocity
 from mbsym.expressions.tree import (
     ONE,
@@ -284,10 +283,9 @@ def _renamed(part: Any, every: Mapping[str, str], vectors: Mapping[str, str]) ->
         wanted = tuple(every.get(name, name) for name in part.components)
         vector = replace(part, name=to)
         if vector.components != wanted:
-            message = Message(
+            raise NoDescription(
                 "components of one vector have the names of one vector: [[names]]", names=", ".join(part.components)
             )
-            raise NoDescription(message)
         return vector
     if not is_dataclass(part) or isinstance(part, type):
         return part

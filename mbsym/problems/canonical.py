@@ -1,4 +1,4 @@
-"""Problem 3 in other forms: Hamilton's canonical equations, and Routh's with cyclic coordinates left out.
+"""Problem 3 in other forms, and their second routes: Hamilton's equations, and Routh's without cyclic coordinates.
 
 With L = T + U, T = 1/2 q'.M q' + A1.q' + A0, and the momenta p = dL/dq' = M q' + A1,
 

@@ -17,7 +17,6 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
-from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.constraints.expansion import Row, echelon
 from mbsym.mechanics.kinematics import Scene
@@ -90,8 +89,7 @@ def _row(ring: Ring, x: Polynomial, unknowns: Sequence[str]) -> Row:
     row[_REST] = x - sum((ring.times(row[j], ring.context.gen(k)) for j, k in enumerate(places)), ring.zero)
     for part in row.values():
         if names := _within(ring, part, unknowns):
-            message = Message("[[names]]: not linear in the equations", names=", ".join(names))
-            raise NoClosedForm(message)
+            raise NoClosedForm("[[names]]: not linear in the equations", names=", ".join(names))
     return row
 
 

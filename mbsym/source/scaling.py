@@ -1,4 +1,4 @@
-"""Dimensionless variables as an author chooses them: ``x=L*x1,t=tau/omega0,k=m*omega0**2*kappa``.
+"""Dimensionless variables, and reductions, as an author chooses them: ``x=L*x1,t=tau/omega0,k=m*omega0**2*kappa``.
 
 Left of each sign of equality stands a name of the description, right of it what is put in for it: a variable is a
 factor times its new name, which comes last where several would do; a parameter is any expression.  Names that the

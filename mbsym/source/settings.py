@@ -1,4 +1,4 @@
-"""What is asked of a system: relations, assumptions, unperturbed motion, notation, initial state."""
+"""What is asked of a system: relations, assumptions, unperturbed motion, notation, initial state, small parameter."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Whether a formula vanishes where roots occur: sqrt(r**2) is r for r > 0 only."""
+"""A claimed formula against the derived one: equal, on the relations, up to a factor, or different by exactly this.
+
+Whether a difference vanishes is a question of signs where roots occur: sqrt(r**2) is r for r > 0 only.
+"""
 
 from __future__ import annotations
 
@@ -221,7 +224,7 @@ def _generator(x: Polynomial) -> int:
     return [int(e) for e in x.monomial(0)].index(1)
 
 
-# A claimed formula against the derived one: equal, on the relations, up to a factor, or different by exactly this.
+# The comparison.
 
 
 def examined_formula(

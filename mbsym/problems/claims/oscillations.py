@@ -383,10 +383,9 @@ class _InVariables:
         if any(k for k in series[0].waves):
             raise NoClosedForm("division by, or a root of, what changes with the phase: not compared")
         if series[0].is_zero:
-            zero = Message(
+            raise NoClosedForm(
                 "what is divided by, or stands under a root, is 0 where [[small]] = 0", small=self.found.small
             )
-            raise NoClosedForm(zero)
         return series[0].mean
 
     def _power_of(self, constant: Expression) -> int:

@@ -1,4 +1,4 @@
-"""The analysis of constraints: rows over the ring, ranks at exact points of the manifold, pivots, integrability."""
+"""Constraints, in coordinates and speeds: rows over the ring, ranks at exact points, pivots, integrability."""
 
 from __future__ import annotations
 

@@ -25,7 +25,6 @@ from mbsym.algebra.rationals import fraction
 from mbsym.algebra.terms import univariate
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
-from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Shown
 from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.kinematics import Scene
@@ -180,11 +179,10 @@ def _of_two_frequencies(
     except SingularMass:
         raise
     except ZeroDivisionError:
-        reason = Message(
+        raise NotAlong(
             "for all values of [[name]] a frequency is zero, two are equal, or one is two or three times another",
             name=name,
-        )
-        raise NotAlong(reason) from None
+        ) from None
     if name not in tower.parameters:
         raise NotAlong("the expansion does not depend on [[name]]", name=name)
     for key, x in named.items():

@@ -1,4 +1,4 @@
-"""Derivatives of monomials along a polynomial field, modulo a prime, as a sparse matrix: ranks and kernels of parts.
+"""Derivatives of monomials along a polynomial field, modulo a prime: ranks and kernels, and what is lifted from them.
 
 With parameters put in and reduced modulo p, a rank can only become smaller: the kernel over QQ(parameters) has at most
 the dimension that is found here, whatever the prime and the values are.  That is what absence is proved by.

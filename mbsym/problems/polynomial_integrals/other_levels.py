@@ -29,18 +29,9 @@ from flint import fmpq_mpoly_ctx, nmod_mat, nmod_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals import modular
 from mbsym.problems.polynomial_integrals.excess import Line, dropped, interpolated, others, rational, roots
 from mbsym.problems.polynomial_integrals.levels import Level, cofactors, kernel_on, levels, on_level, standard
-from mbsym.problems.polynomial_integrals.modular import (
-    PRIMES,
-    Exponents,
-    ModularField,
-    Terms,
-    count,
-    echelon,
-    remainder,
-    times,
-)
 from mbsym.problems.polynomial_integrals.result import (
     Generator,
     OtherLevel,
@@ -75,7 +66,7 @@ def _level(found: PolynomialIntegrals, fixed: Generator | None, generator: Gener
     most = max(weights)
     if most + rise < top:  # K is zero: F is an integral everywhere, and those are all known where the list is complete
         return OtherLevel(generator, power, complete=_general(found, most).complete)
-    if count(found.grading.weights, most) > MOST_COLUMNS:
+    if modular.count(found.grading.weights, most) > MOST_COLUMNS:
         return OtherLevel(generator, power, looked=False)
     try:
         usual = _general(found, most)
@@ -141,11 +132,11 @@ class _Search:
 
     def result(self) -> OtherLevel:
         source = Random("levels")
-        numbers = {name: source.randrange(1, PRIMES[0]) for name in self.usual.field.parameters}
-        line = Line(self.field, PRIMES[0], numbers | {self.name: 0}, dict.fromkeys(numbers, 0) | {self.name: 1})
-        total = nmod_poly([1], PRIMES[0])
+        numbers = {name: source.randrange(1, modular.PRIMES[0]) for name in self.usual.field.parameters}
+        line = Line(self.field, modular.PRIMES[0], numbers | {self.name: 0}, dict.fromkeys(numbers, 0) | {self.name: 1})
+        total = nmod_poly([1], modular.PRIMES[0])
         for weight in self.weights:
-            total = total * self._drops(line.at(source.randrange(1, PRIMES[0])), weight, source)
+            total = total * self._drops(line.at(source.randrange(1, modular.PRIMES[0])), weight, source)
             steps = weight // self.weight + 1
             total = total * dropped(line, lambda there, w=weight, s=steps: self._products(there, w, s), steps)  # type: ignore[misc]
         if total == 0:
@@ -159,7 +150,7 @@ class _Search:
 
     def _at_numbers(self, zeros: Sequence[int], factors: Sequence[Any], whole: bool, usual: bool) -> OtherLevel:
         values, undecided = [], []
-        for value in sorted(x for x in (rational(root, PRIMES[0]) for root in zeros) if x is not None):
+        for value in sorted(x for x in (rational(root, modular.PRIMES[0]) for root in zeros) if x is not None):
             if max(abs(value.numerator), value.denominator) > LARGEST:
                 continue
             there = self.at(value)
@@ -180,10 +171,10 @@ class _Search:
             return None
         return SpecialLevel(value, found.integrals, found.complete)
 
-    def _zero(self, there: ModularField) -> Level:
+    def _zero(self, there: modular.ModularField) -> Level:
         return Level(self.level, self.weight, there.terms(self.level))
 
-    def _drops(self, there: ModularField, weight: int, source: Random) -> nmod_poly:
+    def _drops(self, there: modular.ModularField, weight: int, source: Random) -> nmod_poly:
         """A polynomial in k that vanishes where the K with  K W  in the image of D become more.
 
         With N the linear relations of that image the K are the kernel of  N (x^b V^a) - k N (x^b U^b).
@@ -194,8 +185,8 @@ class _Search:
         multiples = cofactors(self.usual, weight, zero)
         parts = [there.derivative(m) for m in columns]
         upper, lower = (there.terms(p) for p in (self._up(self.top), self._up(self.bottom)))
-        tops = [times({b: 1}, upper, prime) for b in multiples]
-        bottoms = [times({b: 1}, lower, prime) for b in multiples]
+        tops = [modular.times({b: 1}, upper, prime) for b in multiples]
+        bottoms = [modular.times({b: 1}, lower, prime) for b in multiples]
         rows = {key: k for k, key in enumerate(dict.fromkeys(m for p in (*parts, *tops, *bottoms) for m in p))}
         if not multiples:
             return nmod_poly([1], prime)
@@ -221,29 +212,29 @@ class _Search:
             drops = drops.gcd(interpolated(values, shift, prime))
         return drops
 
-    def _products(self, there: ModularField, weight: int, steps: int) -> list[Terms]:
+    def _products(self, there: modular.ModularField, weight: int, steps: int) -> list[modular.Terms]:
         """Products of integrals modulo W, times a power of its leading coefficient."""
         zero = self._zero(there)
         pairs = [(own, there.terms(f)) for own, f in self.known]
         spanned = products(pairs, weight, True, there.prime, len(self.field.variables), lambda terms: terms)
         scale = pow(zero.terms[zero.leading], steps, there.prime)
-        rests = [remainder(one, zero.terms, there.prime) for one in spanned]
+        rests = [modular.remainder(one, zero.terms, there.prime) for one in spanned]
         return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
     def _usual_is_complete(self, line: Line, source: Random) -> bool:
         """Whether for almost all k there is nothing beyond products."""
-        there = line.at(source.randrange(1, PRIMES[0]))
+        there = line.at(source.randrange(1, modular.PRIMES[0]))
         zero = self._zero(there)
         for weight in self.weights:
             columns = standard(self.usual.grading.weights, weight, zero)
             most = kernel_on(there, columns, cofactors(self.usual, weight, zero), zero)
-            rows, _ = echelon(self._products(there, weight, 1), columns, there.prime)
+            rows, _ = modular.echelon(self._products(there, weight, 1), columns, there.prime)
             if len(most) > len(rows):
                 return False
         return True
 
 
-def _matrix(columns: Sequence[Terms], rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+def _matrix(columns: Sequence[modular.Terms], rows: Mapping[modular.Exponents, int], prime: int) -> nmod_mat:
     entries = [0] * (len(rows) * len(columns))
     for k, column in enumerate(columns):
         for key, value in column.items():
@@ -251,7 +242,7 @@ def _matrix(columns: Sequence[Terms], rows: Mapping[Exponents, int], prime: int)
     return nmod_mat(len(rows), len(columns), entries, prime)
 
 
-def _identity(rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+def _identity(rows: Mapping[modular.Exponents, int], prime: int) -> nmod_mat:
     return nmod_mat([[int(i == j) for j in range(len(rows))] for i in range(len(rows))], prime)
 
 

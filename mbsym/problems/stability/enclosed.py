@@ -1,6 +1,6 @@
 """Verdicts of problem 6 at a point that is known by enclosures: algebraic numbers, or boxes with a certified root.
 
-The theorems are those of ``theorems``; what is strict (a sign, a half-plane) is read off balls, and nothing is
+The theorems are those of ``words``; what is strict (a sign, a half-plane) is read off balls, and nothing is
 claimed that a ball leaves open.  Two facts make purely imaginary roots provable.  Without dissipation and circulation
 the spectrum of  M x'' + G x' + K x = 0  is symmetric about both axes: an isolated simple root whose ball meets the
 imaginary axis has its mirror image -conj(lambda) in the same ball, so it lies on the axis.  And with G = 0 the roots

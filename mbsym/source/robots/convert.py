@@ -1,4 +1,4 @@
-"""A robot as a description in YAML: one body a link, massless frames where one does not suffice, nothing invented.
+"""A robot's file as a description in YAML: one body a link, massless frames where one does not suffice.
 
 * Links without inertia are massless bodies: frames that formulas and reports can name.  A joint that moves no inertia
   is held still at zero, as no equation determines it.

@@ -1,4 +1,4 @@
-"""The ways in which MJCF turns axes, as passive turns in the order of turning."""
+"""Elements of MJCF: how they are turned, as passive turns in the order of turning; geoms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The dimension of an expression; what is added or compared must be alike, what a function takes must be a number."""
+"""Dimensions of expressions and of whole descriptions.
+
+What is added or compared must be alike, what a function takes must be a number.
+"""
 
 from __future__ import annotations
 
