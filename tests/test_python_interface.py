@@ -126,3 +126,13 @@ def test_studies_are_tables_of_arrays() -> None:
         parser.feed(item._repr_html_())
         assert parser.open == []
         assert len(repr(item)) < 400
+
+
+def test_a_notebook_shows_what_was_found() -> None:
+    """The drawing, the equation, the verdict at the given values and the condition, with a style of their own."""
+    told = mbsym.load(SHIPPED / "bead-on-hoop.yaml")._repr_html_()
+    for part in ("Bead on a rotating hoop", "<svg", "<style>.mbsym", 'class="bad"', "Kelvin-Chetaev", "all 2 hold"):
+        assert part in told
+    assert "<script" not in told
+    nothing = mbsym.load(SHIPPED / "bead-on-hoop.yaml", ())._repr_html_()
+    assert "Kelvin" not in nothing, "what is not asked for is not derived"

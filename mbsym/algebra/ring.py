@@ -88,6 +88,11 @@ class Generator:
     denominator: int = 1
     argument: Polynomial = None
 
+    @property
+    def kinked(self) -> bool:
+        """Whether it is a sign, modulus or table, which is not analytic."""
+        return self.kind == "function" and (self.name in ("abs", "sign") or isinstance(self.name, Tabulated))
+
 
 @dataclass(slots=True)
 class Spent:
@@ -737,10 +742,7 @@ class Ring(Algebra[Polynomial]):
         """Whether formulas hold a sign, modulus or table that may have either side: they may vanish on one side alone,
         so that no number of states shows that they vanish.
         """
-        return any(
-            g.kind == "function" and (g.name in ("abs", "sign") or isinstance(g.name, Tabulated))
-            for g in self.generators[: self.spare]
-        )
+        return any(g.kinked for g in self.generators[: self.spare])
 
     def _absolute(self, x: Polynomial) -> Polynomial:
         """|x| with |x|^2 = x^2 and d|x| = sign(x) dx."""

@@ -214,8 +214,10 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
         return {}
     ring, names = analysis.ring, analysis.system.coordinates
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
+    rests = bool(position) and ring.reduce(at[ring.index("velocity", position)]).is_zero()
     return {
-        "oscillating": oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded),
+        "oscillating": position if rests else "",
         "steady": steady_motions(ring, embedded, names, about.idle, at, analysis.signs),
     }
 
@@ -225,7 +227,11 @@ MOST_CHOICES = 4
 
 
 def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
-    """The position that velocities follow, told in others: x' of a body that turns brings in a heading, u does not."""
+    """The position that velocities follow, told in others: x' of a body that turns brings in a heading, u does not.
+
+    These may be singular on the motion itself (s' = q u at q = 0): no coupling with q' in either mass matrix, that the
+    one equation is even in q' and the others q' A(q, w) hold in regular velocities around it then, and so at it, too.
+    """
     from mbsym.problems.constraints.motion import felt_coordinates, oscillating_position
 
     idle, system = {*analysis.reduced.about.idle}, analysis.system

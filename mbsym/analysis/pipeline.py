@@ -149,13 +149,6 @@ class Analysis(Stages):
     def __repr__(self) -> str:
         return f"Analysis({self.system!r})"
 
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        cells = ((str(problem.number), problem.attribute, problem.title) for problem in self.asked)
-        rows = "".join("<tr>" + "".join(f"<td>{escape(x)}</td>" for x in row) + "</tr>" for row in cells)
-        return f"<b>{escape(self.system.name)}</b>: {escape(', '.join(self.system.coordinates))}<table>{rows}</table>"
-
     @property
     def asked(self) -> tuple[Problem[Any], ...]:
         """The problems that reports and self-checks are about."""
@@ -235,6 +228,14 @@ class Analysis(Stages):
         from mbsym.analysis import deriving
 
         return deriving.analysis(self)
+
+    @cached_property
+    def in_free_coordinates(self) -> Analysis:
+        """The same motions in the coordinates that explicit relations leave; this one where other constraints stay."""
+        system = constrained.in_free_coordinates(self.system) if self.system.constraints else self.system
+        if system is self.system or system.constraints:
+            return self
+        return type(self)(system, self.problems, self.terms, self.suggests, self.angles)
 
     def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
@@ -352,7 +353,7 @@ class Analysis(Stages):
         later("mbsym.analysis.higher", "normal_forms_of"),
         (*JUDGED, "normal forms"),
         says=True,
-        knows=Knows.IN_COORDINATES,
+        knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES,
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
@@ -397,10 +398,10 @@ class Analysis(Stages):
         later("mbsym.analysis.judging", "trials"), JUDGED, says=True, knows=OF_MOTIONS
     )
     claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
-        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=Knows.SPEEDS
+        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=OF_EQUATIONS
     )
     claimed_manifold: Derived[Analysis, Expansion] = Derived(
-        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=Knows.SPEEDS
+        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=OF_EQUATIONS
     )
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks, knows=OF_ALL)
 

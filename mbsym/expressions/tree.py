@@ -36,8 +36,17 @@ SIGNATURES = {"pulse": "pulse(x, start, end)"}
 CONSTANTS = ("pi",)
 
 
+class _Written:
+    """What is written as a description has it, in a sentence, too."""
+
+    __slots__ = ()
+
+    def __str__(self) -> str:
+        return text(self)  # type: ignore[arg-type]
+
+
 @dataclass(frozen=True, slots=True)
-class Number:
+class Number(_Written):
     """An exact rational number; ``0.1`` is 1/10."""
 
     value: Fraction
@@ -45,7 +54,7 @@ class Number:
 
 
 @dataclass(frozen=True, slots=True)
-class Name:
+class Name(_Written):
     """A parameter, a coordinate, a velocity ``theta_dot``, ``pi`` or the time ``t``."""
 
     name: str
@@ -53,7 +62,7 @@ class Name:
 
 
 @dataclass(frozen=True, slots=True)
-class Negative:
+class Negative(_Written):
     """``-operand``."""
 
     operand: Expression
@@ -61,7 +70,7 @@ class Negative:
 
 
 @dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(_Written):
     """``left operator right`` with operator one of ``+ - * / **``."""
 
     operator: str
@@ -71,7 +80,7 @@ class Operation:
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class Call(_Written):
     """``function(argument, *more)`` with a function of :data:`FUNCTIONS`, or a ``table``'s ``order``-th derivative."""
 
     function: str

@@ -8,11 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from fractions import Fraction
+from math import gcd
 from typing import Any
+
+from flint import fmpq
 
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.guessing import GuessesNames
-from mbsym.formulas.latex import latex_text
+from mbsym.formulas.latex import latex_matrix, latex_text
 from mbsym.formulas.letters import lettered
 from mbsym.formulas.python import python_text, readable_text
 from mbsym.formulas.shape import terms_read
@@ -66,16 +69,10 @@ def _latex(value: Any) -> str:
     if isinstance(value, Formula):
         return value.latex() if value.terms <= LONGEST else f"\\text{{({value.terms} terms)}}"
     if isinstance(value, Matrix):
-        rows = " \\\\ ".join(" & ".join(_latex(x) for x in row) for row in value)
-        return f"\\begin{{pmatrix}} {rows} \\end{{pmatrix}}"
+        return latex_matrix([list(map(_latex, row)) for row in value])
     if isinstance(value, (tuple, list)) and value and all(isinstance(x, Formula) for x in value):
-        return _column(value)
+        return latex_matrix([[_latex(x)] for x in value])
     return f"\\text{{{_tex(_short(value))}}}"
-
-
-def _column(values: Any) -> str:
-    body = " \\\\ ".join(map(_latex, values))
-    return f"\\begin{{pmatrix}} {body} \\end{{pmatrix}}"
 
 
 _ESCAPES = {
@@ -270,8 +267,18 @@ class Matrix(GuessesNames):
         return SymPyMatrix([[x.to_sympy() for x in row] for row in self.rows])
 
     def latex(self) -> str:
-        body = " \\\\ ".join(" & ".join(x.latex() for x in row) for row in self.rows)
-        return f"\\begin{{pmatrix}} {body} \\end{{pmatrix}}"
+        return latex_matrix([[x.latex() for x in row] for row in self.rows])
+
+    @property
+    def number_and_rest(self) -> tuple[int, Matrix]:
+        """The whole number that stands in front of several entries, and what is left: 3 (b - a, f; f, f)."""
+        coefficients = [c for row in self.rows for x in row for c in x.polynomial.coeffs()]
+        several = sum(not x.is_zero for row in self.rows for x in row) > 1
+        number = gcd(*(int(c.p) for c in coefficients)) if several and all(c.q == 1 for c in coefficients) else 1
+        if number == 1:
+            return 1, self
+        inverse = fmpq(1, number)
+        return number, Matrix.of(self.rows[0][0].ring, [[x * inverse for x in row] for row in self.polynomials])
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex()}$"

@@ -357,6 +357,8 @@ def latex_table(name: Tabulated) -> str:
 
 
 def latex_matrix(rows: Sequence[Sequence[str]]) -> str:
-    """A pmatrix of finished entries."""
+    """A pmatrix of finished entries; one alone stands without brackets."""
+    if len(rows) == len(rows[0]) == 1:
+        return rows[0][0]
     body = " \\\\ ".join(" & ".join(row) for row in rows)
     return f"\\begin{{pmatrix}} {body} \\end{{pmatrix}}"

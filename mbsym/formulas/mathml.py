@@ -91,7 +91,9 @@ def row(items: Sequence[str]) -> str:
 
 
 def table(rows: Sequence[Sequence[str]]) -> str:
-    """A matrix in brackets."""
+    """A matrix in brackets; an entry alone stands without them."""
+    if len(rows) == len(rows[0]) == 1:
+        return rows[0][0]
     body = "".join("<mtr>" + "".join(f"<mtd>{x}</mtd>" for x in line) + "</mtr>" for line in rows)
     return bracketed(f"<mtable>{body}</mtable>")
 

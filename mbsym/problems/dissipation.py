@@ -126,7 +126,15 @@ class Balance:
 
     @cached_property
     def law(self) -> EnergyLaw:
-        """The law of the energy."""
+        """The law of the energy, of all values there may be if it is one."""
+        return self._law()
+
+    @cached_property
+    def conserves(self) -> bool:
+        """Whether the energy is constant: at values it may be where it does not grow at all of them."""
+        return self._law() is EnergyLaw.CONSERVED
+
+    def _law(self) -> EnergyLaw:
         try:
             if self._knows_the_time or not self._turns_freely:
                 return EnergyLaw.UNKNOWN

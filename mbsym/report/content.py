@@ -8,7 +8,7 @@ content and nothing of results.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -453,6 +453,17 @@ class Beside:
 
 
 @dataclass(frozen=True)
+class Lettered:
+    """Blocks in letters of the author, and what these stand for, which is known when the blocks have been written.
+
+    In reports that stands in front of them, on the terminal behind what was found.
+    """
+
+    blocks: tuple[Block, ...]
+    meanings: Callable[[], tuple[Block, ...]]
+
+
+@dataclass(frozen=True)
 class Drawing:
     """The drawing of a system, and what is said below it; a terminal is without it."""
 
@@ -503,6 +514,7 @@ Block = (
     | Facts
     | Cited
     | Beside
+    | Lettered
     | Drawing
     | Folded
     | Intermediates

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from mbsym.formulas.letters import Letters, letters_as
 from mbsym.model.system import System
-from mbsym.report.content import Beside, Block, Definitions, Name, Relation, Said
+from mbsym.report.content import Beside, Block, Definitions, Heading, Lettered, Name, Relation, Said
 
 #: In place of letters, for none.
 NONE = "none"
@@ -35,12 +35,18 @@ def in_letters(system: System, asked: tuple[str, ...] | None) -> Iterator[set[st
 def with_meanings(
     blocks: Iterable[Block], system: System, used: Collection[str], told: Collection[str] = ()
 ) -> Iterator[Block]:
-    """The blocks, and then what the letters in them stand for, which is known when the blocks have been written.
+    """The blocks with what the letters in them stand for; the heading, if there is one, is the first.
 
     ``told``: letters of which the blocks say it themselves.
     """
-    yield from blocks
-    meant = [definition for definition in letters_of(system).definitions(used) if definition[0] not in told]
-    if meant:
+
+    def meanings() -> tuple[Block, ...]:
+        meant = [definition for definition in letters_of(system).definitions(used) if definition[0] not in told]
         items = tuple(Relation(Name(name), "=", value) for name, value in meant)
-        yield Beside(tuple(x.name for x in system.abbreviations), (Definitions(Said("Letters used here"), items),))
+        names = tuple(x.name for x in system.abbreviations)
+        return (Beside(names, (Definitions(Said("Letters used here"), items),)),) if items else ()
+
+    listed = list(blocks)
+    if listed and isinstance(listed[0], Heading):
+        yield listed.pop(0)
+    yield Lettered(tuple(listed), meanings)

@@ -319,6 +319,8 @@ class Writer:
         widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
         if len(left) + 5 + sum(widths) + 2 * len(widths) > self.width - 2:
             return []
+        if len(rows) == len(rows[0]) == 1:
+            return [Line(((f"  {left} {rows[0][0]}", ""),), whole=True)]
         middle = (len(rows) - 1) // 2
         before = [left if k == middle else " " * len(left) for k in range(len(rows))]
         cells = ["  ".join(map(str.center, row, widths)) for row in rows]
@@ -423,6 +425,11 @@ class Writer:
     @block.register
     def _(self, value: content.Beside) -> Iterator[Line]:
         return self.document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Lettered) -> Iterator[Line]:
+        yield from self.document(value.blocks)
+        yield from self.document(value.meanings())
 
     @block.register
     def _(self, value: content.Drawing) -> Iterator[Line]:

@@ -81,8 +81,8 @@ def laws_of(system: System, inputs: Mapping[str, Fraction | float | str] | None)
 def _analysis(
     system: System | None, complaints: Complaints, text: str, name: str, problems: Iterable[int] | None
 ) -> Analysis:
-    from mbsym.analysis import Analysis
     from mbsym.source import render
+    from mbsym.studies.notebook import Analysis
 
     if system is not None and (system.constraints or system.linear):
         from mbsym.analysis.soundness import complain as complain_of

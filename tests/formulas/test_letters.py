@@ -298,7 +298,7 @@ def test_what_is_wrong_in_a_claim_is_not_told_in_the_letters_of_the_claim(tmp_pa
 def test_what_was_found_is_in_letters_that_were_asked_for_alone(asked: list[str], held: str, tmp_path: Path) -> None:
     """The finding stands by itself; labels of conditions are those of problem 6, in whatever letters that is.
 
-    Of a condition that is long the finding has the label alone, and says of what: a coefficient of Lambda.
+    Of a condition that is long the finding has the label alone, and the polynomial whose coefficients these are.
     """
     words = ["run", str(SHIPPED / "satellite.yaml"), "--format", "latex,html", "--out", str(tmp_path / "out"), *asked]
     done = CliRunner().invoke(main, words, env={"COLUMNS": "1000"})
@@ -306,7 +306,5 @@ def test_what_was_found_is_in_letters_that_were_asked_for_alone(asked: list[str]
     finding, _, meanings = done.output.partition("Letters used here")
     assert held in finding
     assert ("v0 = " in meanings) == bool(asked)
-    labels = re.compile(
-        r"(?:v\d|discriminant) [<>] 0(?:,| or|$)|(?:v\d|discriminant|, )+(?=: of the char)", re.MULTILINE
-    )
+    labels = re.compile(r"(?:v\d|discriminant) [<>] 0(?:,| or|$)|(?<=characteristic polynomial) [^(]+", re.MULTILINE)
     assert bool(asked) == ("v0" in labels.sub("", finding))

@@ -608,6 +608,8 @@ def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]
             found.setdefault(
                 match[1], _numbered([[_times(match[2], latex(" ".join(y.split()))) for y in r] for r in rows])
             )
+        for name, alone in re.findall(r"\n([MDGKN]) = ((?:(?!pmatrix).)+)\n\\end\{equation\}", section):
+            found.setdefault(name, {(1, 1): latex(alone)})
         for match in re.finditer(r"eq:linear:([MDGKN]):\d+\]\{[MDGKN]_\{(\d)(\d)\} = ", section):
             formula = next(x for kind, x in _latex_pieces(section[section.rindex("\\longformula", 0, match.end()) :])
                            if kind == "formula")  # fmt: skip
@@ -625,6 +627,8 @@ def matrices(surface: str, text: str) -> dict[str, dict[tuple[int, int], Value]]
             elif name is not None and (table := [x for kind, x in tokens if kind == "table"]):
                 front = str(tokens[2][1]) if tokens[2][0] == "mn" else ""
                 found[name[1]] = _numbered([[_times(front, mathml(y)) for y in row] for row in table[0]])
+            elif name is not None and tokens[2:] != [("mn", "0")]:
+                found[name[1]] = {(1, 1): mathml(tokens[2:])}
     return found
 
 
@@ -647,6 +651,9 @@ def _drawn(text: str) -> dict[str, dict[tuple[int, int], Value]]:
         entry = re.fullmatch(r"  ([MDGKN])\[(\d)(\d)\] = (.*)", line)
         if entry is not None:
             found.setdefault(entry[1], {})[int(entry[2]), int(entry[3])] = readable(entry[4])
+        alone = re.fullmatch(r"  ([MDGKN]) = ((?!\[ ).*)", line)
+        if alone is not None and alone[2] != "0":
+            found[alone[1]] = {(1, 1): readable(alone[2])}
     return found
 
 

@@ -127,7 +127,8 @@ def test_vectors_and_matrices_are_whole_where_they_fit_and_zero_where_they_are(a
     ring = analysis.ring
     energy = analysis.energy.kinetic_energy
     nothing = Formula(ring, ring.zero)
-    for value, whole in ((Matrix.of(ring, [[ring.zero]]), "= 0"), (Matrix.of(ring, [[energy.polynomial]]), "pmatrix")):
+    two = [[energy.polynomial, ring.zero]]
+    for value, whole in ((Matrix.of(ring, [[ring.zero]]), "= 0"), (Matrix.of(ring, two), "pmatrix")):
         assert whole in in_latex(analysis).block(content.Matrices(Symbol("M"), value, True, "M"))
     vector: Column = (energy, nothing, nothing)
     text = in_latex(analysis).block(content.Components(Symbol("V", "O1"), vector, "V"))
@@ -163,7 +164,9 @@ def test_matrices_stand_side_by_side_where_they_fit(analysis: mbsym.Analysis) ->
         for letter, value in (("M", m), ("D", nothing), ("K", m))
     )
     written = in_latex(analysis).block(content.SideBySide(three, "part"))
-    assert r"M_{1} = \begin{pmatrix} m \end{pmatrix},\quad K_{1} = \begin{pmatrix} m \end{pmatrix}" in written
+    assert r"M_{1} = m,\quad K_{1} = m" in written, "an entry alone stands without brackets"
+    assert "mtable" not in in_html(analysis).block(three[0])
+    assert [line.text for line in plain_writer.Writer().block(three[0])] == ["  M1 = m"]
     assert written.count("\\label{mbsym:pendulum:eq:part:matrices:1}") == 1
     assert "\\longformula[mbsym:pendulum:eq:D]{D_{1} = 0}" in written
     assert in_html(analysis).block(content.SideBySide(three, "part")).count('class="formula"') == 3

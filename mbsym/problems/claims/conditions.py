@@ -34,7 +34,7 @@ from mbsym.expressions.tree import subtract, text
 from mbsym.model.claims import NECESSARY, SUFFICIENT, Claim
 from mbsym.problems.claims.counterexample import IN_FIRST, Counterexample, Tried
 from mbsym.problems.claims.regions import Inequality, Region, is_certain
-from mbsym.problems.claims.remarks import Remark, Said, said, words
+from mbsym.problems.claims.remarks import Remark, Said, named, said, words
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
 from mbsym.problems.claims.symbols import Symbols
 from mbsym.problems.stability.sentences import with_theorem
@@ -179,7 +179,7 @@ def _unstable_without(region: Region, rows: Sequence[Sequence[Inequality]], bodi
 def _for_exponential(derived: Derived, need: Need) -> Remark:
     assert need.exponential is not None
     parts = derived.stability.subsystems
-    whose = "" if len(parts) == 1 else ", ".join(need.exponential)
+    whose = "" if len(parts) == 1 else named(need.exponential)
     zeros = any(part.theory.zero_power for part in parts if part.coordinates == need.exponential)
     return said(Said.FOR_DECAY if zeros else Said.FOR_EXPONENTIAL, whose, need.note)
 

@@ -23,7 +23,7 @@ from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.remarks import Remark, Said, said
+from mbsym.problems.claims.remarks import Remark, Said, letter, named, said
 from mbsym.problems.claims.result import Derived, in_parameters, on_relations
 from mbsym.problems.knowledge import signs as signs_now
 from mbsym.problems.stability import SubsystemStability
@@ -177,7 +177,7 @@ class Region:
         With its label stands what it is, where a list of the open conditions of problem 6 does not hold it.
         """
         for part in self.parts:
-            whose = ", ".join(part.coordinates)
+            whose = named(part.coordinates)
             sufficient = () if "sufficient" in left_out else part.sufficient
             # Of a motion that is proved to be stable no condition is listed.
             listed = () if part.theory.verdict.stable else part.conditions
@@ -188,7 +188,7 @@ class Region:
                 for label, formula, relation in found:
                     seen = (label, formula, relation) in listed or len(f"{formula} {relation} 0") > _LONGEST
                     of = whose if seen else Message(_OF, whose=whose, formula=formula, relation=relation)
-                    yield said(Said.IS, label, of, note), Inequality(self.cleared(formula.polynomial), relation)
+                    yield said(Said.IS, letter(label), of, note), Inequality(self.cleared(formula.polynomial), relation)
 
     def labels(self, of: Sequence[str] = ()) -> str | tuple[Remark, ...]:
         """The conditions that an implication rests on, those of one part where its coordinates are given."""
@@ -196,7 +196,7 @@ class Region:
         found = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
         if not 0 < sum(len(labels) for labels, _ in found) <= _MOST_LABELS:
             return Message("the conditions of problem 6")
-        return tuple(said(Said.LABELS, tuple(labels), ", ".join(names)) for labels, names in found if labels)
+        return tuple(said(Said.LABELS, tuple(map(letter, labels)), named(names)) for labels, names in found if labels)
 
     # --- sets ---
 

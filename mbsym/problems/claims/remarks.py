@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
 
 from mbsym.expressions.message import Message, enumerated, joined
+from mbsym.expressions.tree import Expression, Name
 
 
 class Said(Enum):
@@ -52,6 +54,16 @@ class Remark:
 
 def said(code: Said, *data: object) -> Remark:
     return Remark(code, data)
+
+
+def named(coordinates: Iterable[str]) -> Message:
+    """Coordinates one after another, each as a name."""
+    return joined(map(Name, coordinates), ", ")
+
+
+def letter(label: str) -> str | Name:
+    """The label of a coefficient (v4, a0) as a name; the others are words."""
+    return Name(str(label)) if re.fullmatch(r"[av]\d+", label) else label
 
 
 def _several(one: str, more: str) -> Callable[..., str]:
@@ -139,13 +151,13 @@ def sentence(remark: Remark) -> Message:
     return Message(found, **{str(k): _told(x) for k, x in enumerate(remark.data, start=1) if f"[[{k}]]" in found})
 
 
-def _told(value: object) -> str:
+def _told(value: object) -> str | Expression:
     if isinstance(value, Remark):
         return sentence(value)
     if isinstance(value, tuple):
-        several = any(isinstance(x, Remark) for x in value)
-        return enumerated([_told(x) for x in value]) if several else joined(map(_told, value), ", ")
-    return value if isinstance(value, str) else str(value)
+        remarks = [sentence(x) for x in value if isinstance(x, Remark)]
+        return enumerated(remarks) if remarks else joined(map(_told, value), ", ")
+    return value if isinstance(value, str | Expression) else str(value)
 
 
 def words(remarks: Iterable[Remark]) -> Message:

@@ -11,13 +11,13 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
 from mbsym.algebra.terms import grouped
-from mbsym.expressions.message import Message
-from mbsym.expressions.tree import ZERO, text
+from mbsym.expressions.message import Message, joined
+from mbsym.expressions.tree import ZERO, Name, text
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.programs import Programs
-from mbsym.model.claims import CLAIMS, SUMS, Claim, index_names
+from mbsym.model.claims import CLAIMS, COORDINATE, SUMS, Claim, index_names
 from mbsym.model.system import System
 from mbsym.problems.claims.counterexample import Counterexample, Trials
 from mbsym.problems.dissipation import Balance
@@ -177,25 +177,26 @@ CONDITION = "[[title]] [[that]]"
 def title(claim: Claim, system: System) -> Message:
     """What a claim is about: ``mass matrix [theta, delta]``."""
     kind = CLAIMS[claim.kind]
-    of = claim.of if claim.of_expression is None else text(claim.of_expression)
+    of = claim.of_expression or (Name(claim.of) if claim.of and kind.of == COORDINATE else claim.of)
     said = Message(f"{claim.kind} of [[of]]", of=of) if of else Message(claim.kind)
     if claim.kind == "coefficient":
-        whole = Message(claim.of) if claim.of in SUMS else Message("the equation of [[name]]", name=claim.of)
-        said = Message("coefficient of [[at]] in [[whole]]", at=text(claim.at or ZERO), whole=whole)
+        whole = Message(claim.of) if claim.of in SUMS else Message("the equation of [[name]]", name=Name(claim.of))
+        said = Message("coefficient of [[at]] in [[whole]]", at=claim.at or ZERO, whole=whole)
     if kind.order:
         said = Message("[[title]], order [[order]]", title=said, order=claim.order)
     if claim.entry:
         counted = zip(claim.entry, index_names(kind, system), strict=True)
-        entry = ", ".join(str(k) if kind.axes else names[k - 1] for k, names in counted)
-        said = Message(ENTRY, title=said, entry=entry)
+        indices = {f"i{n}": k if kind.axes else Name(names[k - 1]) for n, (k, names) in enumerate(counted)}
+        together = ",\\, ".join(f"[[{index}]]" for index in indices)
+        said = Message(ENTRY, title=said, entry=Message(f"${together}$", **indices))
     if claim.right is not None:
         that = f"{text(claim.equals)} {claim.relation} {text(claim.right)}"
         said = Message(CONDITION, title=said, that=that)
     if claim.at_initial:
         return Message("[[title]] at the initial state", title=said)
     if claim.state:
-        at = ", ".join(f"{name} = {text(value)}" for name, value in claim.state)
-        return Message("[[title]] at [[at]]", title=said, at=at)
+        state = (Message("$[[name]] = [[value]]$", name=Name(name), value=value) for name, value in claim.state)
+        return Message("[[title]] at [[at]]", title=said, at=joined(state, ", "))
     return said
 
 

@@ -18,27 +18,23 @@ from mbsym.algebra.krawczyk import pivot_rows
 from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, symmetric
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
-from mbsym.expressions.angles import LinearForm, linear_form
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import number, substitute
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest, at_numbers, rest
-from mbsym.mechanics.symmetry import free_spin
-from mbsym.model.system import System
+from mbsym.mechanics.symmetry import constantly_curved, free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
 from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, candidate_at, exact_rates
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, candidate_at, described_place, exact_rates
 from mbsym.problems.stability.bundle import Conserved, Element, NumberField, by_integrals, by_potential, conserved
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
-from mbsym.problems.stability.words import Because, Fact
+from mbsym.problems.stability.verdict import Verdict, by_geodesics, coasting, combine, drifting, undecided
+from mbsym.problems.stability.words import Because
 
 #: Matrices by their entries, which are numbers.
 Rows = list[list[list[Any]]]
@@ -96,7 +92,7 @@ class LinearAtRest:
         stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
         forces = (x for row in (*stiffness, *self.matrices[2]) for x in row)
         if self.law is EnergyLaw.CONSERVED and all(ring.is_zero(x) is True for x in forces):
-            return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
+            return coasting(Because.ALIKE) if self._alike else by_geodesics()
         of = [names[i] for i in kept]
 
         def derivative(i: int, j: int, *further: int) -> Element | None:
@@ -113,6 +109,14 @@ class LinearAtRest:
         conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
         verdict = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
+
+    @property
+    def _alike(self) -> bool:
+        """Whether all positions are alike for the kinetic energy."""
+        try:
+            return constantly_curved(self.found.ring, self.matrices[0], self.found.system.coordinates)
+        except Failure:
+            return False
 
     @property
     def conservative(self) -> bool:
@@ -331,7 +335,7 @@ def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Ver
         return verdict
     try:
         there = rest(at_numbers(system, values))
-        forms = _motion(system, there, values)
+        forms = described_place(system, there, values)
         if forms is None:
             return verdict
         candidate = candidate_at(there, forms)
@@ -342,16 +346,3 @@ def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Ver
         return verdict if again.word.open else again
     except NOT_THERE:
         return verdict
-
-
-def _motion(system: System, there: Rest, values: Mapping[str, Fraction]) -> dict[str, LinearForm] | None:
-    """The constant coordinates on the unperturbed motion; None where one is no number and no multiple of pi."""
-    numbers = {name: number(x) for name, x in values.items()}
-    forms = {}
-    for name, (value, _) in motion_values(system).items():
-        if name in there.constant:
-            form = linear_form(substitute(value, numbers))
-            if form is None or form.coefficients:
-                return None
-            forms[name] = form
-    return forms

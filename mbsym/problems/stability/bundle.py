@@ -24,7 +24,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from fractions import Fraction
 from functools import cached_property
 from itertools import combinations, pairwise
@@ -47,7 +46,7 @@ from mbsym.problems import equations as lagrange
 from mbsym.problems import integrals as first_integrals
 from mbsym.problems.energy import Energy
 from mbsym.problems.integrals import ENERGIES, Integral
-from mbsym.problems.stability.verdict import Verdict, concluded, drifting
+from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, concluded, drifting
 from mbsym.problems.stability.words import Because, Fact, Reason
 
 Element = Any  # flint.fmpq_poly, an element of QQ[t]/modulus
@@ -204,14 +203,6 @@ MOST_ORDER = 10
 _TRIED = [Fraction(k, 4) for k in range(-16, 17)]
 
 
-class Extremum(Enum):
-    """What is proved of a stationary point of the potential energy."""
-
-    MINIMUM = "strict minimum"
-    NONE = "no minimum"
-    OPEN = "open"
-
-
 def by_potential(
     size: int, derivative: Derivative, field: NumberField, conserved: bool, only: bool, gyroscopic: bool
 ) -> Verdict | None:
@@ -227,13 +218,7 @@ def by_potential(
     except NotRational:
         return None
     extremum = _extremum(order, form, field)
-    if extremum is Extremum.MINIMUM:
-        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
-        return concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
-    if extremum is Extremum.NONE and only and conserved and not (gyroscopic and size > 1):
-        facts = {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED}
-        return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
-    return None
+    return by_extremum(order, extremum, conserved and only and not (gyroscopic and size > 1))
 
 
 def _extremum(order: int, form: Sequence[Element], field: NumberField) -> Extremum:

@@ -146,6 +146,12 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
+    Because.ALIKE: (
+        "Nothing acts, and for the kinetic energy all positions and directions are alike (constant curvature): "
+        "displacements that change no equation lead to every position near by, as cyclic coordinates do. Velocities, "
+        "measured by the kinetic energy, stay near theirs; positions drift away if they are disturbed, so that with "
+        "them counted the motion is unstable."
+    ),
     Because.VELOCITIES: (
         "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "
         "stay near theirs."

@@ -105,6 +105,7 @@ class Because(Enum):
     HIGHER_ORDER = auto()
     # of cyclic coordinates
     COASTING = auto()
+    ALIKE = auto()
     VELOCITIES = auto()
     DRIFT = auto()
     DRIFT_AT_GIVEN_MOMENTA = auto()
@@ -179,7 +180,7 @@ class Reason:
 #   Karapetyan).
 # * Routh, by Chaplygin's integrals: of a nonholonomic system with one position q beside velocities w, w' = q' A(q, w)
 #   and q'' = F(q, q'^2, w), w is a function of q along every motion, and what is left, q'' = f(q, q'^2), is reversed
-#   with the time: a centre where its roots are imaginary (bodies of revolution that roll on a plane).
+#   with the time: a centre where q rests and its roots are imaginary (bodies of revolution that roll on a plane).
 # * Lagrange-Dirichlet where K is only semidefinite: terms of higher order make a strict minimum (``degenerate``), or
 #   none in a system of one coordinate, where the converse holds.
 # * Chetaev: a combination of integrals has a strict minimum where they keep their values (``bundle``): stable.

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from math import gcd
 
-from flint import fmpq
 from markupsafe import Markup, escape
 
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -157,24 +155,14 @@ def matrix(value: Matrix, long: frozenset[int] = frozenset(), spelled: bool = Fa
     """A matrix in brackets, or nothing if that would be too wide or holds one of the ``long`` formulas."""
     if any(id(x) in long or x.terms > 60 for line in value for x in line):
         return Markup("")
-    number, attributes = _common_number(value), spellings(value, spelled)
-    if number > 1:
-        value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in line] for line in value.polynomials])
-    if sum(max(map(extent, column)) for column in zip(*value, strict=True)) > WIDEST:
+    attributes = spellings(value, spelled)
+    number, rest = value.number_and_rest
+    if sum(max(map(extent, column)) for column in zip(*rest, strict=True)) > WIDEST:
         return Markup("")
-    written = table([[mathml_text(x.ring, x.polynomial) for x in line] for line in value])
+    written = table([[mathml_text(x.ring, x.polynomial) for x in line] for line in rest])
     if number != 1:
         written = mn(number) + TIMES + written
     return Markup(f"<mrow{attributes}>{written}</mrow>" if attributes else written)
-
-
-def _common_number(value: Matrix) -> int:
-    """The whole number that stands in front of a matrix of several entries."""
-    entries = [x.polynomial for line in value for x in line if not x.is_zero]
-    if len(entries) < 2:
-        return 1
-    coefficients = [c for x in entries for c in x.coeffs()]
-    return gcd(*(int(c.p) for c in coefficients)) if all(c.q == 1 for c in coefficients) else 1
 
 
 def entries(value: Matrix, symmetric: bool = False) -> list[tuple[str, Formula]]:

@@ -19,6 +19,7 @@ from mbsym.model.system import System
 from mbsym.problems import NUMBERS
 from mbsym.report.code.interconnection import Interconnection, Joint, Kind, Node, interconnection
 from mbsym.report.content import Said
+from mbsym.report.environment import templates
 from mbsym.report.html.environment import fragment, page
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import Language
@@ -263,3 +264,10 @@ def part_html(analysis: Analysis, part: str | int, problems: Sequence[int]) -> s
         raise KeyError(part)
     known, values = context(analysis, problems, part in ("summary", "claims", "checks"), spelled=True)
     return fragment("part.html.j2", known, part=part, **values)
+
+
+def finding_html(analysis: Analysis) -> str:
+    """What was found of all its problems, with a style of its own: a part of somebody's page that has none."""
+    style = "".join((templates() / "html" / name).read_text("utf-8") for name in ("notebook.css", "pictures.css"))
+    found = part_html(analysis, "summary", analysis.problems)
+    return f'<div class="mbsym"><style>{style}</style><b>{escape(analysis.system.name)}</b>{found}</div>'

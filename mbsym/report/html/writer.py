@@ -53,6 +53,12 @@ _SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f
 _COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
 
 
+def _with_comma(written: Markup) -> Markup:
+    """What stands before others in a list; no line begins with the comma behind a formula."""
+    alone = written.startswith("<math") and written.count("<math") == 1
+    return Markup('<span class="together">{},</span>' if alone else "{},").format(written)
+
+
 @dataclass(frozen=True)
 class Writer:
     """``names`` of the system; formulas among the ``long`` ones, by their identity, are counted.
@@ -84,7 +90,8 @@ class Writer:
 
     def _gap(self, value: Inline | Sequence[Inline]) -> Markup:
         if isinstance(value, Sequence) and not isinstance(value, str):
-            return Markup(", ").join(map(self._gap, value))
+            items = list(map(self._gap, value))
+            return Markup(" ").join((*map(_with_comma, items[:-1]), *items[-1:]))
         return self.inline(value)
 
     def _notation(self, text: str, sentence: Said) -> Markup:
@@ -427,6 +434,11 @@ class Writer:
     @block.register
     def _(self, value: content.Beside) -> Markup:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
+
+    @block.register
+    def _(self, value: content.Lettered) -> Markup:
+        written = self.document(value.blocks)
+        return Markup("\n").join(filter(None, (self.document(value.meanings()), written)))
 
     @block.register
     def _(self, value: content.Drawing) -> Markup:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from math import gcd
-
-from flint import fmpq
 
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.formulas.formula import Column, Formula, Matrix
@@ -45,10 +42,8 @@ def measured_matrix(value: Matrix) -> tuple[str, float]:
     """The pmatrix and its width; "" if an entry is too long for any page."""
     if any(x.terms > 60 for row in value for x in row):
         return "", 0.0
-    number = _common_number(value)
-    if number > 1:
-        value = Matrix.of(value[0, 0].ring, [[x * fmpq(1, number) for x in row] for row in value.polynomials])
-    rows = [[x.latex() for x in row] for row in value]
+    number, rest = value.number_and_rest
+    rows = [[x.latex() for x in row] for row in rest]
     wide = sum(max(map(width, column)) + 1.2 for column in zip(*rows, strict=True))
     text = latex_matrix(rows) if number == 1 else f"{number} {latex_matrix(rows)}"
     return text, wide
@@ -69,16 +64,6 @@ def matrix(
         return ""
     text, wide = measured(value)
     return text if wide <= widest else ""
-
-
-def _common_number(value: Matrix) -> int:
-    """The whole number that stands in front of a matrix of several entries: 3 (b - a, f; f, f)."""
-    entries = [x.polynomial for row in value for x in row if not x.is_zero]
-    if len(entries) < 2:
-        return 1
-    coefficients = [c for x in entries for c in x.coeffs()]
-    whole = all(c.q == 1 for c in coefficients)
-    return gcd(*(int(c.p) for c in coefficients)) if whole else 1
 
 
 def tensor(value: Sequence[Sequence[Expression]], names: LatexNames, widest: float) -> str:

@@ -375,6 +375,11 @@ class Writer:
         return replace(self, names=self.names.beside(value.names)).document(value.blocks)
 
     @block.register
+    def _(self, value: content.Lettered) -> str:
+        written = self.document(value.blocks)
+        return "\n".join(filter(None, (self.document(value.meanings()), written)))
+
+    @block.register
     def _(self, value: content.Drawing) -> str:
         said = " ".join(map(self.said, value.caption))
         caption = f"\\par\\smallskip\n{{\\small {said}\\par}}\n" if said else ""

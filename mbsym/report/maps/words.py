@@ -28,6 +28,7 @@ _TELLING = (
     Origin.MEETING,
     *(Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.UNDEFINED, Origin.MASS, Origin.LEADING),
     *(Origin.DAMPING, Origin.UNDAMPED, Origin.POTENTIAL, Origin.NOT_GYROSCOPIC, Origin.CYCLIC, Origin.ENERGY),
+    Origin.HIGHER_ORDER,
     *(Origin.SINGULAR, Origin.LEAVING),
 )
 
@@ -46,6 +47,7 @@ _CONDITIONS = {
     Origin.NOT_GYROSCOPIC: "no gyroscopic forces: G = 0",
     Origin.CYCLIC: "cyclic coordinates set free",
     Origin.ENERGY: "sign that the energy depends on",
+    Origin.HIGHER_ORDER: "first term of the potential energy",
     Origin.ASSUMPTION: "assumption",
     Origin.SIGN: "declared sign",
     Origin.INERTIA: "triangle inequality",

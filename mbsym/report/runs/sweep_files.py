@@ -160,9 +160,9 @@ def sentences(
     yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:
-        told = "[[values]] (rank correlation with [[column]])"
+        told = "[[values]] (rank correlation with [[column]]: 0, none; 1 or -1, it alone decides)"
         if columns[0].words:
-            told = "[[values]] (distance of stable points from unstable ones)"
+            told = "[[values]] (0: it makes no difference, 1: it alone decides; distance of stable points from others)"
         values = ", ".join(f"{name} {value:.2f}" for name, value in pairs)
         gaps = {} if columns[0].words else {"column": columns[0].name}
         yield Message("depends on"), Message(told, values=values, **gaps)

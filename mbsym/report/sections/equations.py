@@ -144,13 +144,20 @@ def short_equations(found: Equations, system: System) -> tuple[Relation, ...]:
     """M q'' - f = 0, under constraints J^T lambda on the right; none where they are too long to be read at a glance."""
     if len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS:
         return ()
-    left = found.equalities(system.coordinates)
-    forces = [constraint_forces(found, i) for i in range(len(left))]
+    left, forces = zip(*balances(found, system), strict=True)
     beside = [x for relation in ties(found) for x in relation.parts if isinstance(x, Formula)]
     if not are_short([*left, *beside, *(x for row in forces for x, _ in row)]):
         return ()
     right = [[(x, Symbol("lambda", str(k))) for x, k in row] for row in forces]
     return tuple(Relation(x, "=", *combination(row)) for x, row in zip(left, right, strict=True))
+
+
+def balances(found: Equations, system: System) -> Iterator[tuple[Formula, tuple[tuple[Formula, int], ...]]]:
+    """(M q'' - f)_i and (J^T lambda)_i; where nothing stands on the right the left is without a common number."""
+    for i, left in enumerate(found.equalities(system.coordinates)):
+        forces = constraint_forces(found, i)
+        number = 1 if forces or left.is_zero else abs(content_of(left.polynomial))
+        yield left if number == 1 else Formula(left.ring, left.polynomial / number), forces
 
 
 def ties(found: Equations) -> tuple[Relation, ...]:

@@ -40,10 +40,10 @@ from mbsym.report.content import (
     Number,
     Numbered,
     Phrase,
+    Power,
     Relation,
     Said,
     Symbol,
-    Text,
     Unit,
     joined,
     named,
@@ -133,7 +133,7 @@ def _facts(results: Results) -> Iterator[Fact]:
         if found[6].numerical is not None and not _is_everywhere(found[6]):
             yield Fact(Said("At given values"), (_at_values(found[6], system),))
         lines = tuple(_stability(found[6], results))
-        yield Fact(Said("Stability"), (*lines, *_coefficients(lines), *_meanings(lines, system)))
+        yield Fact(Said("Stability"), (*lines, *_meanings(lines, system)))
     if 8 in found and found[8].control:
         yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(found[8])))
     if 7 in found:
@@ -161,6 +161,8 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     if tied is not None:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
+        if tied.demanded.satisfied is False:
+            said += [" ", Said("(at values of the parameters that satisfy further relations; the given ones do not)")]
     cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:
@@ -244,6 +246,7 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     if len(found.subsystems) == 1:
         first, *further = _part(found.subsystems[0], 1, "verdict")
         yield Phrase((*presumed, first))
+        yield from _coefficients(found.subsystems[0], further, results.variable)
         yield from further
         yield from _what_would_decide(found)
         return
@@ -253,9 +256,10 @@ def _stability(found: Stability, results: Results) -> Iterator[Inline]:
     yield from _what_would_decide(found)
     if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in told):
         return
-    for part, (first, *further) in zip(found.subsystems, told, strict=True):
-        yield Phrase((named(part.coordinates), ": ", first))
-        yield from further
+    for part, lines in zip(found.subsystems, told, strict=True):
+        lines[:0] = _coefficients(part, lines, results.variable)
+        yield Phrase((named(part.coordinates), ": ", lines[0]))
+        yield from lines[1:]
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
     reasons = (one for part in found.subsystems for one in part.theory.verdict.reasons)
     for reason in dict.fromkeys(one for one in reasons if one.code is Because.OTHER_ANGLES):  # the names mean others
@@ -269,13 +273,22 @@ def _what_would_decide(found: Stability) -> Iterator[Inline]:
             yield worded(sentence(reason))
 
 
-def _coefficients(lines: Iterable[Inline]) -> Iterator[Inline]:
-    """Where the coefficients and discriminants stand that the conditions call by a letter or a word."""
-    relations = [part for part in _within(tuple(lines)) if isinstance(part, Relation)]
-    letters = dict.fromkeys(part.parts[0] for part in relations if isinstance(part.parts[0], Symbol | Text))
-    if any(isinstance(letter, Symbol) for letter in letters):
-        text = "[[letters]]: of the characteristic polynomial ([[place]])"
-        yield say(text, letters=tuple(letters), place=Elsewhere("conditions", 6))
+def _coefficients(part: SubsystemStability, lines: Iterable[Inline], variable: str) -> Iterator[Inline]:
+    """The characteristic polynomial in the letters by which conditions call its coefficients, and where these stand."""
+    relations = (x for x in _within(tuple(lines)) if isinstance(x, Relation))
+    letters = [x.parts[0] for x in relations if isinstance(x.parts[0], Symbol)]
+    if not letters:
+        return
+    place = Elsewhere("conditions", 6)
+    if len(part.theory.factors) > 1:
+        text = "[[letters]]: coefficients of factors of the characteristic polynomial ([[place]])"
+        yield say(text, letters=tuple(dict.fromkeys(letters)), place=place)
+        return
+    powers = (k for k in reversed(range(len(part.characteristic))) if not part.characteristic[k].is_zero)
+    rates = {0: (), 1: (Symbol(variable),)}
+    terms = ((Symbol(letters[0].letter, str(k)), *rates.get(k, (Power(Symbol(variable), k),))) for k in powers)
+    parts: list[Math | str] = [x for term in terms for x in ("+", *term)]
+    yield say("characteristic polynomial [[polynomial]] ([[place]])", polynomial=Relation(*parts[1:]), place=place)
 
 
 def _meanings(lines: Iterable[Inline], system: System) -> Iterator[Inline]:

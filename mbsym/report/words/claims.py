@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 
-from mbsym.expressions.message import Message, worded
-from mbsym.expressions.tree import text
+from mbsym.expressions.message import worded
 from mbsym.formulas.formula import Formula
-from mbsym.model.claims import Claim
 from mbsym.model.system import System
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.claims import ClaimResult, Outcome, Part
@@ -18,7 +16,7 @@ from mbsym.problems.claims.result import ENTRY
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.verdict import Verdict
 from mbsym.problems.stability.words import Word
-from mbsym.report.content import Inline, Phrase, Relation, Said, Strong, joined, say
+from mbsym.report.content import Inline, Name, Number, Phrase, Relation, Said, Strong, joined, say
 from mbsym.report.plain_writer import Writer
 
 #: Differences longer than this are counted, not printed.
@@ -31,7 +29,7 @@ HELD, REFUTED, OPEN = "held", "refuted", "undecided"
 class ClaimLine:
     """One claim: its place, what it is about, the outcome in a few words, and the lines that say by what it differs.
 
-    ``said`` is the outcome as reports say it, ``about`` what the title says of formulas, as mathematics: by its gaps.
+    ``said`` is the outcome as reports say it, ``about`` the title with its formulas as mathematics.
     """
 
     place: str
@@ -40,7 +38,7 @@ class ClaimLine:
     word: str
     lines: tuple[str, ...] = ()
     said: tuple[Inline, ...] = ()
-    about: Mapping[str, Inline] = field(default_factory=dict)
+    about: Said = Said("")
 
 
 def claim_line(result: ClaimResult) -> ClaimLine:
@@ -48,17 +46,11 @@ def claim_line(result: ClaimResult) -> ClaimLine:
     word = HELD if result.holds else REFUTED if result.refuted else OPEN
     said = tuple(_outcome(result))
     outcome = "".join(map(Writer().inline, said))
-    about = dict(_about(result.claim))
-    return ClaimLine(result.claim.place, result.title, outcome, word, tuple(_differences(result)), said, about)
-
-
-def _about(claim: Claim) -> Iterator[tuple[str, Inline]]:
+    claim = result.claim
+    about: Said = worded(result.title)
     if claim.right is not None:
-        yield "that", Relation(claim.equals, claim.relation, claim.right)
-    if claim.kind == "coefficient" and claim.at is not None:
-        yield "at", claim.at
-    if claim.of_expression is not None:
-        yield "of", claim.of_expression
+        about = say(about.text, **{**about.gaps, "that": Relation(claim.equals, claim.relation, claim.right)})
+    return ClaimLine(claim.place, result.title, outcome, word, tuple(_differences(result)), said, about)
 
 
 def _outcome(result: ClaimResult) -> Iterator[Inline]:
@@ -75,7 +67,7 @@ def _outcome(result: ClaimResult) -> Iterator[Inline]:
     if result.value and result.holds:
         yield f" ({result.value})"
     elif result.value:
-        claimed = result.claim.printed or text(result.claim.equals)
+        claimed = result.claim.printed or result.claim.equals
         yield from (": ", say("claimed [[claimed]], derived [[value]]", claimed=claimed, value=result.value))
     if result.digits is not None and result.digits != result.printed_digits:
         right, printed = str(result.digits), str(result.printed_digits)
@@ -108,25 +100,16 @@ def names_in(claims: Iterable[ClaimResult], system: System) -> tuple[str, ...]:
 
 def titles(lines: Iterable[ClaimLine]) -> Inline:
     """What several claims are about: ``mass matrix [theta, theta], [theta, delta]; angular velocity of A [1]``."""
-    stems: dict[str, list[str]] = {}
-    shown: dict[str, Inline] = {}
+    entries: dict[str, list[Inline]] = {}
+    stems: dict[str, Inline] = {}
     for line in lines:
-        stem, entries = line.title, list[str]()
-        if isinstance(stem, Message) and stem.text == ENTRY:
-            stem, entries = stem.gaps["title"], [f"[{stem.gaps['entry']}]"]
-        shown[stem] = _typeset(stem, line.about)
-        stems.setdefault(stem, []).extend(entries)
-    phrases = (
-        Phrase((shown[stem], *((" ", ", ".join(indices)) if indices else ()))) for stem, indices in stems.items()
-    )
-    return joined(phrases, "; ")
-
-
-def _typeset(title: str, about: Mapping[str, Inline]) -> Said:
-    """A title with its formulas as mathematics."""
-    said = worded(title)
-    gaps = {name: _typeset(x, about) if isinstance(x, Message) else about.get(name, x) for name, x in said.gaps.items()}
-    return say(said.text, **gaps)
+        is_entry = line.about.text == ENTRY
+        stem: Said = line.about.gaps["title"] if is_entry else line.about
+        key = str(stem) if is_entry else line.title
+        stems[key] = stem
+        entries.setdefault(key, []).extend([Phrase(("[", line.about.gaps["entry"], "]"))] if is_entry else ())
+    listed = {key: (Phrase((" ", joined(indices, ", "))),) if indices else () for key, indices in entries.items()}
+    return joined((Phrase((stem, *listed[key])) for key, stem in stems.items()), "; ")
 
 
 def _differences(result: ClaimResult) -> Iterator[str]:
@@ -143,7 +126,7 @@ def _differences(result: ClaimResult) -> Iterator[str]:
 
 def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
     """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
-    at = ", ".join(f"{name} = {value}" for name, value in found.at)
+    at = [Relation(Name(name), "=", Number(value)) for name, value in found.at]
     shows = [
         say("the motion is [[verdict]]", verdict=worded(value)) if what == THE_MOTION else f"{what} = {value}"
         for what, value in found.shows
