@@ -143,17 +143,11 @@ def simulate(
         system=dynamics.system,
         method=method.traits.name,
         setting=setting,
-        times=run.times,
-        states=run.states,
         energy=energy,
         generalized_energy=generalized,
         change=change,
         kinetic=kinetic,
-        work=run.work,
-        seconds=run.seconds,
-        breakdown=run.breakdown,
-        interrupted=run.interrupted,
-        passed=run.passed,
+        **vars(run),
     )
 
 

@@ -58,6 +58,9 @@ class Breakdown(Exception):
         self.told = Message(text, kind=Message(kind), time=f"{self.time:.9g}", message=self.message)
         super().__init__(str(self.told))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.message, self.time, self.state, self.filled)
+
 
 @dataclass(frozen=True)
 class Setting:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any
@@ -361,18 +361,18 @@ def _rounding(bound: Bound) -> str:
 
 def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
     """The best of every other method: what it cost where it was good enough, else how wrong it was."""
-    best: dict[str, Trial] = {}
-    for trial in settled.bench.trials:
-        name = trial.method.traits.name
-        known = best.get(name)
-        if trial.scalar == FLOAT64 and (known is None or _rank(trial) < _rank(known)):
-            best[name] = trial
     own = settled.found.method.traits.name
-    return tuple(
-        Refused(trial.label, _told(settled, trial), _priced(settled, trial))
-        for name, trial in best.items()
-        if name != own
-    )
+    others = [trial for trial in settled.bench.trials if trial.scalar == FLOAT64 and trial.method.traits.name != own]
+    return tuple(_best(settled, others, lambda trial: trial.method.traits.name, lambda trial: trial.label))
+
+
+def _best(
+    settled: Settled, trials: Sequence[Trial], kind: Callable[[Trial], str], label: Callable[[Trial], str]
+) -> Iterator[Refused]:
+    """The best trial of each kind, in the order in which the kinds were tried."""
+    for name in dict.fromkeys(map(kind, trials)):
+        trial = min((one for one in trials if kind(one) == name), key=_rank)
+        yield Refused(label(trial), _told(settled, trial), _priced(settled, trial))
 
 
 def _priced(settled: Settled, trial: Trial) -> float:
@@ -400,11 +400,7 @@ def _told(settled: Settled, one: Trial | Tried) -> float | None:
 
 
 def _other_scalars(settled: Settled) -> Iterator[Refused]:
-    best: dict[str, Trial] = {}
-    for trial in settled.bench.trials:
-        known = best.get(trial.scalar)
-        coarser = DIGITS.index(trial.scalar) < DIGITS.index(settled.found.scalar)
-        if coarser and (known is None or _rank(trial) < _rank(known)):
-            best[trial.scalar] = trial
-    for scalar, trial in best.items():
-        yield Refused(scalar, _told(settled, trial), _priced(settled, trial))
+    """The best in arithmetic of fewer digits."""
+    fewer = DIGITS[: DIGITS.index(settled.found.scalar)]
+    trials = [trial for trial in settled.bench.trials if trial.scalar in fewer]
+    return _best(settled, trials, lambda trial: trial.scalar, lambda trial: trial.scalar)
