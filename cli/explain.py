@@ -85,8 +85,7 @@ def _near(word: str) -> list[str]:
 
 def known_words() -> list[str]:
     """Whatever can be explained, but for the numbers of problems."""
-    from mbsym.problems.stability.theorems import THEOREMS, HigherOrder
-    from mbsym.problems.stability.word import Word
+    from mbsym.problems.stability.words import THEOREMS, HigherOrder, Word
     from mbsym.source.topics import words
     from mbsym_cli.main import COMMANDS
 
@@ -107,7 +106,7 @@ def _command(word: str) -> Iterator[str]:
 
 def _verdict(word: str) -> Iterator[str]:
     """What a verdict of problem 6 says, in the words of docs/theory.md."""
-    from mbsym.problems.stability.word import Word
+    from mbsym.problems.stability.words import Word
 
     meaning = {
         Word.ASYMPTOTIC: "disturbed motions stay near and come back",
@@ -146,7 +145,7 @@ def _verdict(word: str) -> Iterator[str]:
 
 def _theorem(word: str) -> Iterator[str]:
     """What a theorem needs and gives, each time it stands in the table of those of problem 6."""
-    from mbsym.problems.stability.theorems import THEOREMS, Ground, HigherOrder
+    from mbsym.problems.stability.words import THEOREMS, Ground, HigherOrder
 
     for theorem in THEOREMS:
         if theorem.name.casefold() == word.casefold():

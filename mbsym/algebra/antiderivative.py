@@ -47,12 +47,31 @@ def antiderivative(ring: Ring, x: Polynomial, name: str) -> Polynomial | None:
     if len(x) > MOST_TERMS:
         return None
     try:
-        return _found(ring, x, name)
+        found = _found(ring, x, name, ring.one)
+        if found is not None:
+            return found
+        for rate in _rates(ring, x, name):  # of sin(w x), by that of w sin(w x)
+            found = _found(ring, x, name, rate)
+            if found is not None:
+                return ring.reduce(ring.times(found, ring.reciprocal(rate)))
+        return None
     except Failure:
         return None
 
 
-def _found(ring: Ring, x: Polynomial, name: str) -> Polynomial | None:
+def _rates(ring: Ring, x: Polynomial, name: str) -> list[Polynomial]:
+    """The positive constants w of functions of w x + ... in x, each once."""
+    arguments = (ring.generators[k].argument for k in sorted(occurring([x])))
+    slopes = [ring.derivative(argument, name) for argument in arguments if argument is not None]
+    rates: list[Polynomial] = []
+    for slope in slopes:
+        if ring.is_positive(slope) and not slope.is_constant() and not ring.depends_on(slope, name):
+            rates += [] if slope in rates else [slope]
+    return rates
+
+
+def _found(ring: Ring, x: Polynomial, name: str, rate: Polynomial) -> Polynomial | None:
+    """W with dW/d(name) = rate x."""
     place = ring.index("coordinate", name)
     tried: dict[Exponents, Polynomial] = {}
     frontier = _exponents(x)
@@ -63,7 +82,7 @@ def _found(ring: Ring, x: Polynomial, name: str) -> Polynomial | None:
             return None
         for one in new:
             tried[one] = ring.derivative(ring.reduce(ring.context.from_dict({one: 1})), name)
-        solved = _solved(ring, x, tried)
+        solved = _solved(ring, ring.reduce(ring.times(x, rate)), tried)
         if solved is not None:
             return solved
         frontier = {exponent for slope in tried.values() for exponent in _exponents(slope)}

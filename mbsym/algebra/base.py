@@ -21,7 +21,6 @@ from typing import Any, Generic, Protocol, Self, TypeVar
 
 from mbsym.algebra.failures import NoClosedForm, NoValue
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import is_rate
 from mbsym.expressions.table import Table
 from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Operation, children, curve_name
@@ -93,6 +92,10 @@ class Algebra(Generic[S]):
         return bool(x == 0)
 
     # --- derived --------------------------------------------------------------------------------------------------
+
+    def ratio(self, x: S, y: S) -> S:
+        """x/y in normal form."""
+        return self.reduce(self.times(x, self.reciprocal(y)))
 
     def power(self, base: S, exponent: int) -> S:
         """base**exponent by repeated squaring; a negative exponent takes the reciprocal first."""
@@ -286,7 +289,7 @@ class Lowering(Generic[S]):
             return self.algebra.power(self(base), value.numerator)
         if value.denominator == 2:
             return self.algebra.power(self.algebra.square_root(self(base)), value.numerator)
-        raise NoClosedForm(Message("the power [[value]]: only whole and half exponents are supported", value=value))
+        raise NoClosedForm("the power [[value]]: only whole and half exponents are supported", value=value)
 
 
 def _label(expression: Expression) -> Any:

@@ -75,7 +75,7 @@ class _Counted(Operators[Polynomial]):
     def spend(self, work: int) -> None:
         self._left -= OVERHEAD + work
         if self._left < 0:
-            raise TooLargeError(Message("a determinant of order [[order]] with too many terms", order=self._order))
+            raise TooLargeError("a determinant of order [[order]] with too many terms", order=self._order)
 
 
 def _eliminated(matrix: Matrix, budget: int) -> tuple[Polynomial, ...] | None:
@@ -132,7 +132,7 @@ def characteristic_polynomial(m: Matrix, c: Matrix, k: Matrix) -> Coefficients:
     lam = _Variable(m[0][0].context())
     value = determinant(_pencil(lam, m, c, k))
     if len(value) > LONGEST:
-        raise TooLargeError(Message("a characteristic polynomial of [[count]] terms", count=len(value)))
+        raise TooLargeError("a characteristic polynomial of [[count]] terms", count=len(value))
     return lam.coefficients(value, 2 * n)
 
 

@@ -85,7 +85,7 @@ def eliminate(ring: Ring, definitions: Sequence[Definition], candidates: Sequenc
             continue
         _, _, index, slope = min(options, key=lambda option: option[:2])
         rest = relation - ring.times(slope, gens[index])
-        value = ring.reduce(ring.times(-rest, ring.reciprocal(slope)))
+        value = ring.ratio(-rest, slope)
         images = {k: ring.substitute(image, {index: value}) for k, image in images.items()}
         images[index] = value
     return Elimination(ring, images)

@@ -51,13 +51,13 @@ MORE_TERMS = "the straight-line program is available; raise --terms for more"
 
 
 class Failure(Exception):
-    """Something that was asked for is not there; the message says what and why."""
+    """Something that was asked for is not there; the message, whose ``gaps`` are those of ``Message``, says why."""
 
     code = "failure"
     severity = Severity.ANSWER
 
-    def __init__(self, message: str = "", *, limit: Limit | None = None, remedy: str = "") -> None:
-        super().__init__(worded(message))
+    def __init__(self, message: str = "", *, limit: Limit | None = None, remedy: str = "", **gaps: object) -> None:
+        super().__init__(Message(message, **gaps) if gaps else worded(message))
         self.limit = limit
         self.remedy = worded(remedy or (MORE_TERMS if limit is Limit.TERMS else ""))
 
@@ -115,7 +115,7 @@ class Defect(Failure):
     def of(cls, error: Exception) -> Failure:
         """What to say of it, once it is logged; running out of memory, or lacking a part, is nobody's mistake."""
         if part := missing(error):
-            return NotInstalled(Message("[[part]] is not installed", part=part))
+            return NotInstalled("[[part]] is not installed", part=part)
         if isinstance(error, MemoryError):
             defect = cls("out of memory", limit=Limit.MEMORY, remedy="lower --terms, or ask for fewer --problems")
         else:

@@ -267,7 +267,7 @@ class Jets(Algebra[Jet]):
             up, down = self.function("exp", x), self.function("exp", -x)
             sinh, cosh = self.times(up - down, Jet(half)), self.times(up + down, Jet(half))
             if name == "tanh":
-                return self.reduce(self.times(sinh, self.reciprocal(cosh)))
+                return self.ratio(sinh, cosh)
             return sinh if name == "sinh" else cosh
         if name in ("abs", "sign"):
             return self._off_the_kink(name, x)
@@ -333,7 +333,7 @@ class Jets(Algebra[Jet]):
             name.curve.kinked_at(knot) and ball.contains(rationals.exact(knot)) for knot in name.curve.knots
         ):
             raise NoClosedForm(
-                Message("the table [[table]] has a kink at the motion that is expanded about", table=name.table.name)
+                "the table [[table]] has a kink at the motion that is expanded about", table=name.table.name
             )
         coefficients, curve = [], name
         for k in range(self.order + 1):

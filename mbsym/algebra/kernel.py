@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 from math import prod
-from typing import Any
 
 from mbsym.algebra.factors import occurring, rational_ratio
 from mbsym.algebra.matrices import PrimitiveRows
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import grouped
 
 #: Terms of one entry while that is solved.
 MOST_ENTRY = 2000
@@ -49,12 +49,8 @@ def coefficients(ring: Ring, x: Polynomial) -> dict[Key, Polynomial]:
     fixed = [d > 0 and not ring.dependencies(ring.context.gen(k), moving) for k, d in enumerate(degrees)]
     for k, g in enumerate(ring.generators[: len(fixed)]):
         fixed[k] = fixed[k] and g.kind not in (*MOVING, "velocity", "acceleration")
-    parts: dict[Key, dict[Key, Any]] = {}
-    for monomial, c in x.to_dict().items():
-        own = tuple(int(a) if one else 0 for a, one in zip(monomial, fixed, strict=True))
-        rest = tuple(0 if one else int(a) for a, one in zip(monomial, fixed, strict=True))
-        parts.setdefault(rest, {})[own] = c
-    return {key: ring.context.from_dict(terms) for key, terms in parts.items()}
+    moved = [k for k, constant in enumerate(fixed) if not constant]
+    return grouped(x, lambda m: tuple(0 if constant else int(a) for a, constant in zip(m, fixed, strict=True)), moved)
 
 
 def independent(ring: Ring, columns: Sequence[Polynomial]) -> bool:

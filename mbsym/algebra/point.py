@@ -19,7 +19,6 @@ from mbsym.algebra import rationals
 from mbsym.algebra.base import Algebra, Scalar
 from mbsym.algebra.failures import NotRational, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.message import Message
 from mbsym.expressions.table import Curve, Tabulated
 
 #: Multiples of an angle up to this one are formed from its sine and cosine.
@@ -73,7 +72,7 @@ class Rationals(Algebra[fmpq]):
         if isinstance(name, Tabulated):
             value = name.curve(rationals.fraction(x))
             return rationals.exact(value)
-        raise NotRational(Message("[[name]] of a rational number", name=name))
+        raise NotRational("[[name]] of a rational number", name=name)
 
 
 def sine_and_cosine(half_tangent: fmpq) -> tuple[fmpq, fmpq]:
@@ -185,9 +184,7 @@ class BallsAtRationals(Balls):
             multiple = coefficient * self.denominators[name]
             if multiple.denominator != 1:
                 raise NotRational(
-                    Message(
-                        "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
-                    )
+                    "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
                 )
             point *= acb(arb(cosine), arb(sine)) ** int(multiple)
         return point.imag, point.real

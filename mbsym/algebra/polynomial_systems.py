@@ -30,6 +30,7 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm, message_of
 from mbsym.algebra.matrices import echelon
+from mbsym.algebra.terms import residue, univariate
 from mbsym.expressions.message import Message
 
 Polynomial = Any  # a flint.fmpz_mpoly
@@ -142,28 +143,6 @@ def _known_roots(coefficients: tuple[Any, ...], bits: int) -> list[Any]:
     return real_roots(fmpq_poly(list(coefficients)), bits)
 
 
-def residue(x: Polynomial, values: Sequence[Univariate], modulus: Univariate) -> Univariate:
-    """x at the values, modulo ``modulus``."""
-    total = fmpq_poly([0])
-    powers: dict[tuple[int, int], Univariate] = {}
-
-    def power(index: int, exponent: int) -> Univariate:
-        if exponent == 1:
-            return values[index]
-        key = (index, exponent)
-        if key not in powers:
-            powers[key] = power(index, exponent - 1) * values[index] % modulus
-        return powers[key]
-
-    for monomial, coefficient in x.terms():
-        term = fmpq_poly([fmpq(coefficient)])
-        for index, exponent in enumerate(monomial):
-            if exponent:
-                term = term * power(index, int(exponent)) % modulus
-        total += term
-    return total % modulus
-
-
 def solve(
     equations: Iterable[Polynomial],
     nonzero: Iterable[Polynomial] = (),
@@ -272,7 +251,7 @@ class _Solver:
         degrees = x.degrees()
         used = [k for k in range(self.nvars) if degrees[k] > 0]
         if len(used) == 1:
-            roots = real_roots(_univariate(x, used[0]))
+            roots = real_roots(univariate(x, used[0]))
             if used[0] in self.bounded:
                 roots = [r for r in roots if not abs(r) > 1]
             return bool(roots)
@@ -516,13 +495,6 @@ def _sum_of_squares(x: Polynomial) -> list[Polynomial]:
     if len(monomials) < 2 or any(e % 2 for m in monomials for e in m) or len({c > 0 for c in x.coeffs()}) > 1:
         return []
     return [x.context().from_dict({tuple(int(e > 0) for e in m): fmpz(1)}) for m in monomials]
-
-
-def _univariate(x: Polynomial, index: int) -> Univariate:
-    coefficients = [fmpq(0)] * (int(x.degrees()[index]) + 1)
-    for monomial, coefficient in x.terms():
-        coefficients[int(monomial[index])] = fmpq(coefficient)
-    return fmpq_poly(coefficients)
 
 
 def _in_variable(p: Univariate, index: int, where: Any) -> Polynomial:

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm, NoValue, SingularPoint
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import is_velocity
 from mbsym.expressions.table import Tabulated
 
@@ -115,10 +114,7 @@ class Program(Algebra[Node]):
         longest = max(exact.numerator.bit_length(), exact.denominator.bit_length())
         if longest > MOST_BITS:
             raise NoClosedForm(
-                Message(
-                    "a number of [[digits]] digits, beyond the range of floating point",
-                    digits=int(longest * 0.30103),
-                )
+                "a number of [[digits]] digits, beyond the range of floating point", digits=int(longest * 0.30103)
             )
         node = self._node("constant", (), exact)
         if isinstance(value, int):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import apart
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 
@@ -42,7 +42,8 @@ class Quotient:
             top, bottom = top / unit, bottom / unit
         if len(top) > MOST_TERMS or len(bottom) > MOST_TERMS:
             raise NoClosedForm(
-                Message("a coefficient of the expansion has more than [[most]] terms", most=MOST_TERMS),
+                "a coefficient of the expansion has more than [[most]] terms",
+                most=MOST_TERMS,
                 limit=Limit.TERMS,
                 remedy=LOWER,
             )
@@ -236,18 +237,11 @@ class Composition:
         """Exponents of the fast variables -> coefficient, free of them."""
         if id(p) in self._sorted:
             return self._sorted[id(p)][1]
-        parts: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], Any]]] = {}
+        parts: dict[tuple[int, ...], dict[int, Quotient]] = {}
         for k, q in p.items():
-            for monomial, c in q.to_dict().items():
-                exponents = tuple(monomial[place] for place in self.places)
-                rest = list(monomial)
-                for place in self.places:
-                    rest[place] = 0
-                parts.setdefault(exponents, {}).setdefault(k, {})[tuple(rest)] = c
-        found = {
-            exponents: Series(self.context, {k: Quotient.of(self.context.from_dict(t)) for k, t in graded.items()})
-            for exponents, graded in parts.items()
-        }
+            for exponents, part in apart(q, self.places).items():
+                parts.setdefault(exponents, {})[k] = Quotient.of(part)
+        found = {exponents: Series(self.context, graded) for exponents, graded in parts.items()}
         self._sorted[id(p)] = p, found  # held: its identity is not used again
         return found
 

@@ -9,6 +9,8 @@ from typing import Any
 
 from flint import arb, fmpq, fmpq_mpoly
 
+from mbsym.algebra.terms import evaluated
+
 
 def fraction(x: fmpq) -> Fraction:
     """Python's."""
@@ -33,14 +35,7 @@ def middle(value: arb) -> fmpq:
 
 def value_at(p: fmpq_mpoly, point: Sequence[Any], kind: type) -> Any:
     """A polynomial at numbers in balls, real or complex (``kind``: arb, acb)."""
-    total = kind(0)
-    for monomial, coefficient in p.terms():
-        term = kind(coefficient)
-        for x, exponent in zip(point, monomial, strict=True):
-            if exponent:
-                term *= x ** int(exponent)
-        total += term
-    return total
+    return evaluated(p, lambda k, exponent: point[k] ** exponent, kind)
 
 
 def rounded(x: float, digits: int) -> fmpq:

@@ -34,7 +34,6 @@ from mbsym.algebra.factors import irreducible_factors, occurring, rational_ratio
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.point import enclosed
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import ENDINGS, acceleration_name, velocity_name
 from mbsym.expressions.table import Tabulated
 
@@ -88,6 +87,11 @@ class Generator:
     name: str
     denominator: int = 1
     argument: Polynomial = None
+
+    @property
+    def kinked(self) -> bool:
+        """Whether it is a sign, modulus or table, which is not analytic."""
+        return self.kind == "function" and (self.name in ("abs", "sign") or isinstance(self.name, Tabulated))
 
 
 @dataclass(slots=True)
@@ -217,7 +221,8 @@ class Ring(Algebra[Polynomial]):
         self.work += work
         if self.work > self.work_budget:
             raise NoClosedForm(
-                Message("more than [[most]] steps of polynomial arithmetic in all", most=self.work_budget),
+                "more than [[most]] steps of polynomial arithmetic in all",
+                most=self.work_budget,
                 limit=Limit.WORK,
             )
 
@@ -231,7 +236,9 @@ class Ring(Algebra[Polynomial]):
     def _check(self, x: Polynomial) -> None:
         if len(x) > self.most_terms:
             raise NoClosedForm(
-                Message("[[count]] terms are beyond the budget of [[most]]", count=len(x), most=self.most_terms),
+                "[[count]] terms are beyond the budget of [[most]]",
+                count=len(x),
+                most=self.most_terms,
                 limit=Limit.TERMS,
             )
 
@@ -239,11 +246,9 @@ class Ring(Algebra[Polynomial]):
         """The content of x and its irreducible factors with their exponents, if x is not too long to be factored."""
         if len(x) > MOST_FACTORED:
             raise NoClosedForm(
-                Message(
-                    "a denominator or root of [[count]] terms: at most [[most]] are factored",
-                    count=len(x),
-                    most=MOST_FACTORED,
-                ),
+                "a denominator or root of [[count]] terms: at most [[most]] are factored",
+                count=len(x),
+                most=MOST_FACTORED,
                 limit=Limit.FACTORS,
             )
         self._check(x)
@@ -258,6 +263,12 @@ class Ring(Algebra[Polynomial]):
             return self.one
         self.spend(100 * (len(a) + len(b)))
         return a.gcd(b)
+
+    def lowest_terms(self, x: Polynomial, y: Polynomial) -> tuple[Polynomial, Polynomial]:
+        """x and y without what they share, as far as that is found."""
+        common = self.common_factor(x, y)
+        top, bottom = self.quotient(x, common), self.quotient(y, common)
+        return (x, y) if top is None or bottom is None else (top, bottom)
 
     def vanishes(self, x: Polynomial) -> bool:
         return bool(x.is_zero())
@@ -278,11 +289,9 @@ class Ring(Algebra[Polynomial]):
         degrees = x.degrees()
         if max(degrees) > MOST_DEGREE:
             raise NoClosedForm(
-                Message(
-                    "a formula of degree [[degree]]: at most [[most]] is supported",
-                    degree=_size(int(max(degrees))),
-                    most=MOST_DEGREE,
-                ),
+                "a formula of degree [[degree]]: at most [[most]] is supported",
+                degree=_size(int(max(degrees))),
+                most=MOST_DEGREE,
                 limit=Limit.DEGREE,
             )
         _check_number(x.leading_coefficient())
@@ -338,9 +347,7 @@ class Ring(Algebra[Polynomial]):
             multiple = coefficient * self.angles.get(name, 0)  # 0: no sine or cosine of it was foreseen
             if multiple.denominator != 1 or not multiple:
                 raise NoClosedForm(
-                    Message(
-                        "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
-                    )
+                    "sin and cos of [[coefficient]]*[[name]] were not foreseen", coefficient=coefficient, name=name
                 )
             s, c = self.multiple_angle(self.generator("sine", name), self.generator("cosine", name), int(multiple))
             sine, cosine = self.sum_of_angles(sine, cosine, s, c)
@@ -362,11 +369,9 @@ class Ring(Algebra[Polynomial]):
         """sin(n x) and cos(n x) from s = sin x and c = cos x, by doubling."""
         if abs(n) > MOST_MULTIPLE:
             raise NoClosedForm(
-                Message(
-                    "sin and cos of [[n]] times an angle: at most [[most]] times is supported",
-                    n=_size(n),
-                    most=MOST_MULTIPLE,
-                )
+                "sin and cos of [[n]] times an angle: at most [[most]] times is supported",
+                n=_size(n),
+                most=MOST_MULTIPLE,
             )
         sine, cosine = self.zero, self.one
         for digit in f"{abs(n):b}":
@@ -552,7 +557,7 @@ class Ring(Algebra[Polynomial]):
     def _adjoin(self, kind: str, argument: Polynomial, name: str = "") -> int:
         if self._free < 0:
             raise NoClosedForm(
-                Message("more than [[most]] reciprocals, roots and functions", most=self.spare), limit=Limit.FUNCTIONS
+                "more than [[most]] reciprocals, roots and functions", most=self.spare, limit=Limit.FUNCTIONS
             )
         index = self._free
         self._free -= 1
@@ -666,7 +671,7 @@ class Ring(Algebra[Polynomial]):
             down = self.function("exp", -x)
             half = fmpq(1, 2)
             sinh, cosh = (up - down) * half, (up + down) * half
-            return {"sinh": sinh, "cosh": cosh}.get(name) or self.reduce(self.times(sinh, self.reciprocal(cosh)))
+            return {"sinh": sinh, "cosh": cosh}.get(name) or self.ratio(sinh, cosh)
         if name in ("abs", "sign"):
             return self._absolute(x) if name == "abs" else self._sign(x)
         if isinstance(name, Tabulated):
@@ -737,10 +742,7 @@ class Ring(Algebra[Polynomial]):
         """Whether formulas hold a sign, modulus or table that may have either side: they may vanish on one side alone,
         so that no number of states shows that they vanish.
         """
-        return any(
-            g.kind == "function" and (g.name in ("abs", "sign") or isinstance(g.name, Tabulated))
-            for g in self.generators[: self.spare]
-        )
+        return any(g.kinked for g in self.generators[: self.spare])
 
     def _absolute(self, x: Polynomial) -> Polynomial:
         """|x| with |x|^2 = x^2 and d|x| = sign(x) dx."""
@@ -870,11 +872,9 @@ class Ring(Algebra[Polynomial]):
             powers *= comb(degree + length - 1, degree) if degree + length < 64 or length == 1 else 2**64
         if grown > MOST_DEGREE:
             raise NoClosedForm(
-                Message(
-                    "a substitution makes a formula of degree [[grown]]: up to [[most]] is supported",
-                    grown=_size(grown),
-                    most=MOST_DEGREE,
-                )
+                "a substitution makes a formula of degree [[grown]]: up to [[most]] is supported",
+                grown=_size(grown),
+                most=MOST_DEGREE,
             )
         if terms * powers <= SMALL:
             return
@@ -892,11 +892,9 @@ class Ring(Algebra[Polynomial]):
             candidates = sum(min(dense, _expanded(monomial, lengths)) for monomial in x.monoms())
         if candidates > PRODUCT_BUDGET or min(candidates, dense) * _bytes(x, max(spans)) > MEMORY_BUDGET:
             raise NoClosedForm(
-                Message(
-                    "a substitution into [[terms]] terms may lead to [[candidates]]",
-                    terms=terms,
-                    candidates=_size(candidates),
-                ),
+                "a substitution into [[terms]] terms may lead to [[candidates]]",
+                terms=terms,
+                candidates=_size(candidates),
                 limit=Limit.WORK,
             )
         self.spend(candidates)
@@ -1104,7 +1102,9 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     candidates = len(a) * len(b)
     if candidates > PRODUCT_BUDGET:
         raise NoClosedForm(
-            Message("a product of [[count]] by [[other]] terms is beyond the budget", count=len(a), other=len(b)),
+            "a product of [[count]] by [[other]] terms is beyond the budget",
+            count=len(a),
+            other=len(b),
             limit=Limit.TERMS,
         )
     spans = [max(0, int(d)) + max(0, int(e)) for d, e in zip(a.degrees(), b.degrees(), strict=True)]
@@ -1114,7 +1114,9 @@ def _check_product(a: Polynomial, b: Polynomial) -> int:
     first, second = _words(a), _words(b)
     if dense * (_bytes(a, max(spans)) + 8 * (first + second)) > MEMORY_BUDGET:
         raise NoClosedForm(
-            Message("a product of [[count]] by [[other]] terms may need too much memory", count=len(a), other=len(b)),
+            "a product of [[count]] by [[other]] terms may need too much memory",
+            count=len(a),
+            other=len(b),
             limit=Limit.MEMORY,
         )
     return 1 + first * second // 64
@@ -1135,7 +1137,8 @@ def _check_number(value: fmpq) -> None:
     bits = int(value.p).bit_length() + int(value.q).bit_length()
     if bits > MOST_COEFFICIENT_BITS:
         raise NoClosedForm(
-            Message("a formula with a number of [[digits]] digits", digits=int(bits * 0.30103)),
+            "a formula with a number of [[digits]] digits",
+            digits=int(bits * 0.30103),
             limit=Limit.DIGITS,
         )
 
@@ -1189,7 +1192,8 @@ def _primes(n: int, distinct: bool = True) -> list[int]:
             elif int(factor).bit_length() > MOST_BITS:
                 digits = int(int(factor).bit_length() * 0.30103) + 1
                 raise NoClosedForm(
-                    Message("the square root of a number whose [[digits]] digits cannot be factored", digits=digits),
+                    "the square root of a number whose [[digits]] digits cannot be factored",
+                    digits=digits,
                     limit=Limit.DIGITS,
                 )
             else:

@@ -28,7 +28,6 @@ from mbsym.algebra.base import Algebra
 from mbsym.algebra.failures import NoClosedForm, SingularPoint
 from mbsym.algebra.program import Node, Program
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.message import Message
 
 #: The unit roundoff of float64, and what the rounding of the bounds is covered by.
 UNIT, SLACK = Fraction(1, 2**53), 1 + 1e-6
@@ -149,7 +148,7 @@ class RunningErrors(Algebra[Approximate]):
         return Approximate(program, sine, error), Approximate(program, cosine, error)
 
     def function(self, name: str, x: Approximate) -> Approximate:
-        raise NoClosedForm(Message("[[name]] has no bound of its rounding here", name=name))
+        raise NoClosedForm("[[name]] has no bound of its rounding here", name=name)
 
 
 def outputs(found: Mapping[str, Approximate]) -> dict[str, tuple[Node, Node]]:

@@ -37,7 +37,8 @@ from mbsym.algebra.plane.numbers import (
     roots_between,
     sign,
 )
-from mbsym.algebra.signs import MOST_TERMS, RELATIONS, ContradictionError, Polynomial, Signs, coefficients_in
+from mbsym.algebra.signs import MOST_TERMS, RELATIONS, ContradictionError, Polynomial, Signs
+from mbsym.algebra.terms import coefficients_in, univariate
 
 #: Pieces of a set, parameters and degree of what is decomposed, cells and branches that are looked at.
 MOST_PIECES, MOST_PARAMETERS, MOST_DEGREE, MOST_CELLS, MOST_BRANCHES = 200, 4, 24, 2_000, 60
@@ -343,7 +344,7 @@ class _Search:
     # --- one parameter ---
 
     def _on_line(self, atoms: list[Atom], x: int) -> dict[int, Any] | None:
-        polynomials = [_univariate(one.polynomial, x) for one in atoms]
+        polynomials = [univariate(one.polynomial, x) for one in atoms]
         zeros = _zeros(polynomials)
         for value in (*_between(zeros), *zeros):
             self._cell()
@@ -426,7 +427,7 @@ class _Search:
             if at == len(stages):
                 return values
             x, factors = stages[at]
-            zeros = _zeros([_univariate(_put_in(f, values, self.context), x) for f in factors])
+            zeros = _zeros([univariate(_put_in(f, values, self.context), x) for f in factors])
             for value in _between(zeros):
                 self._cell()
                 there = values | {x: value}
@@ -462,13 +463,6 @@ def _components(atoms: list[Atom]) -> list[list[Atom]]:
                 apart.append((other, held))
         parts = [*apart, (used, joined)]
     return [held for _, held in parts]
-
-
-def _univariate(p: Polynomial, x: int) -> fmpq_poly:
-    total = fmpq_poly([0])
-    for exponents, value in p.terms():
-        total[int(exponents[x])] = total[int(exponents[x])] + value
-    return total
 
 
 def _zeros(polynomials: Sequence[fmpq_poly]) -> list[Number]:

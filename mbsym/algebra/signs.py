@@ -35,6 +35,7 @@ from flint import arb, ctx, fmpq
 
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
+from mbsym.algebra.terms import coefficients_in
 
 Polynomial = Any  # a flint.fmpq_mpoly: python-flint carries no types
 SignSet = frozenset[int]
@@ -48,14 +49,8 @@ SIGN_SETS: dict[str, SignSet] = {
     "nonzero": frozenset({-1, 1}),
     "real": frozenset({-1, 0, 1}),
 }
-SIGN_WORDS: dict[SignSet, str] = {signs: word for word, signs in SIGN_SETS.items()} | {
-    SIGN_SETS["real"]: "unknown",
-}
-RELATIONS: dict[str, SignSet] = {
-    ">": SIGN_SETS["positive"],
-    ">=": SIGN_SETS["nonnegative"],
-    "!=": SIGN_SETS["nonzero"],
-}
+SIGN_WORDS: dict[SignSet, str] = {signs: word for word, signs in SIGN_SETS.items()} | {SIGN_SETS["real"]: "unknown"}
+RELATIONS: dict[str, SignSet] = {">": SIGN_SETS["positive"], ">=": SIGN_SETS["nonnegative"], "!=": SIGN_SETS["nonzero"]}
 
 ANY, ZERO, POSITIVE = SIGN_SETS["real"], SIGN_SETS["zero"], SIGN_SETS["positive"]
 
@@ -721,15 +716,6 @@ def conditions(requirements: Iterable[Condition]) -> tuple[Condition, ...]:
         else:
             result.append(Condition("nonzero", requirement.polynomial * 0 + 1, (), nonzero))
     return tuple(c for i, c in enumerate(result) if not any(_same(c, other) for other in result[:i]))
-
-
-def coefficients_in(p: Polynomial, generator: int) -> list[Polynomial]:
-    """The coefficients of p as a polynomial in one generator, from low to high, in the same context."""
-    table: list[dict[tuple[int, ...], Any]] = [{} for _ in range(p.degrees()[generator] + 1)] if p != 0 else [{}]
-    for exponents, coefficient in p.terms():
-        rest = (*exponents[:generator], 0, *exponents[generator + 1 :])
-        table[exponents[generator]][rest] = coefficient
-    return [p.context().from_dict(entries) for entries in table]
 
 
 def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:

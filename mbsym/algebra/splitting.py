@@ -25,7 +25,7 @@ from typing import Any
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Ring
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import with_quotient
 
 Polynomial = Any  # a flint.fmpq_mpoly
 
@@ -187,7 +187,7 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
         if p == 0:
             continue
         if len(p) > work.limits.terms:
-            raise NoClosedForm(Message("an equation of [[count]] terms", count=len(p)))
+            raise NoClosedForm("an equation of [[count]] terms", count=len(p))
         factors = [f for f in work.factors(p) if not work.known(f, branch.nonzero)]
         if not factors:
             return []
@@ -298,19 +298,8 @@ def _substituted(branch: Branch, solution: Solved) -> Branch | None:
 
 def _at(p: Polynomial, s: Solved) -> tuple[Polynomial, int]:
     """(P, n) with p = P/denominator^n where the unknown has its value."""
-    context = p.context()
     degree = p.degrees()[s.unknown]
-    if degree <= 0:
-        return p, 0
-    parts: list[dict[tuple[int, ...], Any]] = [{} for _ in range(degree + 1)]
-    for monomial, c in p.to_dict().items():
-        power = monomial[s.unknown]
-        parts[power][(*monomial[: s.unknown], 0, *monomial[s.unknown + 1 :])] = c
-    total = context.constant(0)
-    for power, part in enumerate(parts):
-        if part:
-            total += context.from_dict(part) * s.numerator**power * s.denominator ** (degree - power)
-    return total, degree
+    return (with_quotient(p, s.unknown, s.numerator, s.denominator), degree) if degree > 0 else (p, 0)
 
 
 def _cleared(p: Polynomial, solved: Sequence[Solved]) -> Polynomial:

@@ -24,7 +24,6 @@ from mbsym.algebra.factors import square_apart
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.rationals import value_at
 from mbsym.expressions.angles import LinearForm
-from mbsym.expressions.message import Message
 
 #: As many roots can be adjoined, and so many terms may an element have.
 MOST_ROOTS, MOST_TERMS = 8, 4_000
@@ -103,7 +102,7 @@ class Tower(Algebra[Element]):
         """Counts products of terms.  Raises NoClosedForm where they are too many."""
         self.work += 8 + work
         if self.work > MOST_WORK:
-            raise NoClosedForm(Message("more than [[most]] products of terms", most=MOST_WORK), limit=Limit.WORK)
+            raise NoClosedForm("more than [[most]] products of terms", most=MOST_WORK, limit=Limit.WORK)
 
     def element(self, x: Any) -> Element:
         if isinstance(x, Element):
@@ -124,9 +123,7 @@ class Tower(Algebra[Element]):
             if top.degrees()[MOST_ROOTS - 1 - k] > 1:
                 top = divmod(top, self._roots[k] ** 2 - self.squares[k])[1]
         if len(top) > MOST_TERMS:
-            raise NoClosedForm(
-                Message("more than [[most]] terms of one coefficient", most=MOST_TERMS), limit=Limit.TERMS
-            )
+            raise NoClosedForm("more than [[most]] terms of one coefficient", most=MOST_TERMS, limit=Limit.TERMS)
         return top
 
     def made(self, top: fmpq_mpoly, bottom: fmpq_mpoly) -> Element:
@@ -178,7 +175,7 @@ class Tower(Algebra[Element]):
             return self.made(outside, x.bottom)
         if inside not in self.squares:
             if len(self.squares) == MOST_ROOTS:
-                raise NoClosedForm(Message("more than [[most]] square roots", most=MOST_ROOTS), limit=Limit.FUNCTIONS)
+                raise NoClosedForm("more than [[most]] square roots", most=MOST_ROOTS, limit=Limit.FUNCTIONS)
             self.squares.append(inside)
         return self.made(outside * self._roots[self.squares.index(inside)], x.bottom)
 
@@ -242,7 +239,7 @@ class Tower(Algebra[Element]):
         )
 
     def function(self, name: str, x: Element) -> Element:
-        raise NoClosedForm(Message("[[name]] in the coefficients: only square roots are exact here", name=name))
+        raise NoClosedForm("[[name]] in the coefficients: only square roots are exact here", name=name)
 
     def enclosed(self, x: Element, values: Mapping[str, Any]) -> acb:
         """x at values of the parameters, of angles, too; roots by their principal values, sines by the angle."""

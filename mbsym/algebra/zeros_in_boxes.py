@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly
+from flint import Ordering, arb, ctx, fmpq, fmpq_mat, fmpq_mpoly_ctx
 
 from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors, occurring
@@ -16,7 +16,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.matrices import reduced_rows
 from mbsym.algebra.polynomial_systems import Limits, context, real_roots, solve
 from mbsym.algebra.ring import Generator, Polynomial, Ring
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import univariate
 
 
 class Several:
@@ -324,7 +324,7 @@ class HalfAngles:
         used = [ring.generators[k] for k in occurring([polynomial])]
         for g in used:
             if g.kind not in ("sine", "cosine", "coordinate", "prescribed", "time") or g.argument is not None:
-                raise NoClosedForm(Message("a [[kind]] in a determinant", kind=g.kind), limit=Limit.TERMS)
+                raise NoClosedForm("a [[kind]] in a determinant", kind=g.kind, limit=Limit.TERMS)
         self.angles = {g.name: g.denominator for g in used if g.kind in ("sine", "cosine")}
         plain = [g.name for g in used if g.kind not in ("sine", "cosine")]
         self.names = (*self.angles, *(name for name in plain if name not in self.angles))
@@ -396,12 +396,9 @@ class HalfAngles:
     def _in_angle(self, factor: Polynomial, name: str) -> list[Zero]:
         """Homogeneous in (S, C): the zeros t = S/C of a polynomial, and x = pi where C divides it."""
         place, denominator = self.place[name], self.angles[name]
-        cs: dict[int, fmpq] = {}
-        for monomial, coefficient in factor.terms():
-            cs[int(monomial[place])] = coefficient
         if list(factor.degrees())[place] == 0:  # C alone
             return [_angle(Fraction(1), denominator)]
-        p = fmpq_poly([cs.get(k, fmpq(0)) for k in range(max(cs) + 1)])
+        p = univariate(factor, place)
         turns = _known_turns(p)
         if turns is not None:
             return [_angle(turn, denominator) for turn in turns]
@@ -409,9 +406,7 @@ class HalfAngles:
             return [Zero(2 * denominator * root.atan()) for root in real_roots(p, PRECISION)]
 
     def _in_coordinate(self, factor: Polynomial, names: tuple[str, ...]) -> list[Zero]:
-        place = self.place[names[0]]
-        cs = {int(monomial[place]): coefficient for monomial, coefficient in factor.terms()}
-        p = fmpq_poly([cs.get(k, fmpq(0)) for k in range(max(cs) + 1)])
+        p = univariate(factor, self.place[names[0]])
         if p.degree() == 1:
             value = -p[0] / p[1]
             exact = rationals.fraction(value)

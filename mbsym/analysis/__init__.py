@@ -2,15 +2,3 @@
 
 from mbsym.analysis.pipeline import ALL_PROBLEMS, PROBLEMS, USUAL_PROBLEMS, Analysis, Problem
 from mbsym.analysis.stages import Derived, NoResult, Stage, Unavailable
-
-__all__ = [
-    "ALL_PROBLEMS",
-    "PROBLEMS",
-    "USUAL_PROBLEMS",
-    "Analysis",
-    "Derived",
-    "NoResult",
-    "Problem",
-    "Stage",
-    "Unavailable",
-]

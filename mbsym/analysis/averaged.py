@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.expressions.message import Message
 from mbsym.expressions.parser import parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import Expression, Name, names, number
@@ -50,9 +49,7 @@ def averaging_of(
     for phase, speed in rates.items():
         _refuse_company(system, phase, speed)
         if speed in told:
-            raise NoClosedForm(
-                Message("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=speed, phase=phase)
-            )
+            raise NoClosedForm("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=speed, phase=phase)
     orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, rates)
     _refuse_ties(system, chosen, (*rates.values(), *orders))
     averaged = averaging.averaged(analysis.scene, analysis.energy, rates, orders)
@@ -62,10 +59,8 @@ def averaging_of(
     for combination in averaged.apart:
         if len(known) == len(numbers) and combination.subs(known).is_zero:
             raise NoClosedForm(
-                Message(
-                    "at the given values [[combination]] = 0: the phases do not turn independently of each other",
-                    combination=combination,
-                ),
+                "at the given values [[combination]] = 0: the phases do not turn independently of each other",
+                combination=combination,
                 remedy="write both by one phase, as phi and 2*phi",
             )
     return averaged
@@ -76,12 +71,10 @@ def _refuse_company(system: System, phase: str, rate: str) -> None:
     for item in system.prescribed:
         if item.name != phase and rate in names(item.rate):
             raise NoClosedForm(
-                Message(
-                    "[[other]] is as fast as [[phase]]: both have a rate with [[rate]]",
-                    other=item.name,
-                    phase=phase,
-                    rate=rate,
-                )
+                "[[other]] is as fast as [[phase]]: both have a rate with [[rate]]",
+                other=item.name,
+                phase=phase,
+                rate=rate,
             )
 
 
@@ -91,21 +84,17 @@ def _refuse_ties(system: System, phases: Sequence[str], scaled: Sequence[str]) -
         tied = [name for name in scaled if name in names(item.rate)]
         if tied and item.name not in phases:
             raise NoClosedForm(
-                Message(
-                    "[[name]] takes part in the rate of [[other]]: what is small or large must be free",
-                    name=tied[0],
-                    other=item.name,
-                )
+                "[[name]] takes part in the rate of [[other]]: what is small or large must be free",
+                name=tied[0],
+                other=item.name,
             )
     for relation in system.relations:
         tied = [name for name in scaled if name == relation.name or name in names(relation.value)]
         if tied:
             raise NoClosedForm(
-                Message(
-                    "[[name]] is tied by the relation for [[relation]]: what is small or large must be free",
-                    name=tied[0],
-                    relation=relation.name,
-                ),
+                "[[name]] is tied by the relation for [[relation]]: what is small or large must be free",
+                name=tied[0],
+                relation=relation.name,
                 remedy="put the relation into the formulas",
             )
 

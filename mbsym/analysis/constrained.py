@@ -33,7 +33,7 @@ def constraints_of(analysis: Analysis) -> Constraints:
 
     if not analysis.system.speeds:
         return constraints(analysis.scene)
-    from mbsym.problems.constraints.in_speeds import constraints_in_speeds
+    from mbsym.problems.constraints.analysis import constraints_in_speeds
 
     tied = analysis.tied_in_coordinates
     return constraints_in_speeds(analysis.form, analysis.scene, tied, programs_of(analysis))
@@ -51,13 +51,13 @@ def constraints_in_coordinates(analysis: Analysis) -> Constraints:
 
 def equations_of(analysis: Analysis) -> Equations:
     """The equations of the open tree with the constraints, and those without multipliers if they are not too long."""
+    from mbsym.problems import in_speeds
     from mbsym.problems.constraints import embedded_equations
-    from mbsym.problems.in_speeds import speeds
 
     constraints, form = analysis.constraints, analysis.form
     rows = [x.polynomial for x in (*constraints.velocity, *(f for f in constraints.position if f is not None))]
     if analysis.system.speeds:
-        tree: Equations = speeds.equations(form, analysis.scene, rows)
+        tree: Equations = in_speeds.equations(form, analysis.scene, rows)
     else:
         tree = equations.equations(analysis.scene, analysis.energy)
     try:

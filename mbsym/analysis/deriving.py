@@ -27,9 +27,8 @@ from mbsym.problems.equations import Equations
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.integrals import Integral
 from mbsym.problems.stability import Stability
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.problems.telling import ToldSystem, told_system
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.constraints.motion import Embedded
     from mbsym.problems.first_order import FirstOrder
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.linearisation import Subsystem
     from mbsym.problems.relative_equilibria.equilibria import Equilibria
     from mbsym.problems.stabilisation import Stabilisation
@@ -57,9 +56,9 @@ def equations_of(analysis: Analysis) -> Equations:
         return constrained.equations_of(analysis)
     if not analysis.system.speeds:
         return equations.equations(analysis.scene, analysis.energy)
-    from mbsym.problems.in_speeds import speeds
+    from mbsym.problems import in_speeds
 
-    return speeds.equations(analysis.form, analysis.scene)
+    return in_speeds.equations(analysis.form, analysis.scene)
 
 
 def stability_of(analysis: Analysis) -> Stability:
@@ -215,8 +214,10 @@ def _of_the_steady_motions(analysis: Analysis) -> dict[str, Any]:
         return {}
     ring, names = analysis.ring, analysis.system.coordinates
     at = unperturbed_with(analysis.parameters_scene, relations(analysis.parameters_scene))
+    position = oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded)
+    rests = bool(position) and ring.reduce(at[ring.index("velocity", position)]).is_zero()
     return {
-        "oscillating": oscillating_position(ring, embedded, names) or _in_other_velocities(analysis, embedded),
+        "oscillating": position if rests else "",
         "steady": steady_motions(ring, embedded, names, about.idle, at, analysis.signs),
     }
 
@@ -226,7 +227,11 @@ MOST_CHOICES = 4
 
 
 def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
-    """The position that velocities follow, told in others: x' of a body that turns brings in a heading, u does not."""
+    """The position that velocities follow, told in others: x' of a body that turns brings in a heading, u does not.
+
+    These may be singular on the motion itself (s' = q u at q = 0): no coupling with q' in either mass matrix, that the
+    one equation is even in q' and the others q' A(q, w) hold in regular velocities around it then, and so at it, too.
+    """
     from mbsym.problems.constraints.motion import felt_coordinates, oscillating_position
 
     idle, system = {*analysis.reduced.about.idle}, analysis.system
@@ -302,10 +307,10 @@ def first_integrals(analysis: Analysis) -> tuple[Integral, ...]:
     if analysis.system.constraints:
         return constrained.integrals_of(analysis)
     if analysis.system.speeds:
-        from mbsym.problems.in_speeds import speed_integrals
+        from mbsym.problems import in_speeds
 
         equations = cast("SpeedEquations", analysis.equations)
-        return speed_integrals.integrals(analysis.form, analysis.scene, analysis.energy, equations)
+        return in_speeds.integrals(analysis.form, analysis.scene, analysis.energy, equations)
     try:
         return integrals.integrals(analysis.scene, analysis.energy, analysis.equations, analysis.programs)
     except Failure as failure:

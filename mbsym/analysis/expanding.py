@@ -15,6 +15,7 @@ from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Condition, Signs
 from mbsym.algebra.signs import conditions as sharpest
+from mbsym.algebra.terms import coefficients_in
 from mbsym.analysis.stages import Unavailable
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Formula, Shown
@@ -23,8 +24,7 @@ from mbsym.model.system import SmallParameter
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Adjoined, Choice, Hurwitz, Outcome, ScaledField, SlowManifold, scaled
-from mbsym.problems.small_parameter.root import Root, Roots, adjoined, put
-from mbsym.problems.small_parameter.steady import steady_states
+from mbsym.problems.small_parameter.slow import Root, Roots, adjoined, put, steady_states
 from mbsym.problems.vector_field import Transfer, vector_field
 
 if TYPE_CHECKING:
@@ -90,10 +90,8 @@ def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:
 
     def parts(p: Any) -> list[Any]:
         found = [context.constant(0), context.constant(0)]
-        for monomial, number in p.to_dict().items():
-            power = int(monomial[root.place])
-            term = context.from_dict({(*monomial[: root.place], 0, *monomial[root.place + 1 :]): number})
-            found[power % 2] += term * root.square ** (power // 2)
+        for power, c in enumerate(coefficients_in(p, root.place)):
+            found[power % 2] += context.from_dict(c.to_dict()) * root.square ** (power // 2)
         return found
 
     (a, b), (e, f) = parts(c.top), parts(c.bottom)
@@ -117,26 +115,21 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     inside = [name for name in whole.variables if not name.isidentifier()]
     if inside:
         raise NoClosedForm(
-            Message(
-                "[[names]] are variables: slow manifolds are expanded in positions and velocities that stand by "
-                "themselves",
-                names=", ".join(inside),
-            ),
+            "[[names]] are variables: slow manifolds are expanded in positions and velocities that stand by themselves",
+            names=", ".join(inside),
             remedy="see 'mbsym oscillations' about a motion",
         )
     for name, _ in small.powers:
         if name in whole.variables:
             raise NoClosedForm(
-                Message(
-                    "[[name]] is a variable that is small itself: slow manifolds take powers of parameters only",
-                    name=name,
-                ),
+                "[[name]] is a variable that is small itself: slow manifolds take powers of parameters only",
+                name=name,
                 remedy="see 'mbsym oscillations'",
             )
     numbers = {n: rationals.exact(x) for n, x in (values or {}).items() if n in whole.parameters}
     field = whole.at(numbers) if numbers else whole
     if small.name not in field.parameters and not any(name in field.parameters for name, _ in small.powers):
-        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
+        raise NoClosedForm("the equations do not depend on [[name]]", name=small.name)
     there = scaled(field, small.name, dict(small.powers))
     fast = _declared(small, field.variables) or slow.fast_variables(there, small.slow)
     there, known, root = _with_root(analysis, there, fast, (*fast, small.name, *dict(small.powers)))
@@ -177,12 +170,10 @@ def _real_roots(analysis: Analysis, there: ScaledField, fast: tuple[str, ...]) -
     real_roots = replace(real_roots, squares=tuple(x for x in real_roots.squares if signs.condition(x).kind != "never"))
     if not real_roots.any:
         raise NoClosedForm(
-            Message(
-                "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
-                "rational or square roots",
-                small=there.small,
-                fast=", ".join(fast),
-            )
+            "at the lowest order in [[small]] the equations of [[fast]] have no simple real solutions that are "
+            "rational or square roots",
+            small=there.small,
+            fast=", ".join(fast),
         )
     return real_roots
 
@@ -259,12 +250,10 @@ def _about(
         return replace(plain, missing="a denominator of the expansion vanishes on the motion")
     if steady.fast.bounded:
         raise NoClosedForm(
-            Message(
-                "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
-                "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
-                fast=", ".join(manifold.fast),
-                small=manifold.field.small,
-            ),
+            "not all of [[fast]] are fast: of the roots that would belong to them one stays bounded as "
+            "[[small]] tends to 0; of a slow manifold over more variables nothing is said",
+            fast=", ".join(manifold.fast),
+            small=manifold.field.small,
             remedy=slow.DECLARE,
         )
     plain = replace(plain, manifold=replace(plain.manifold, steady=steady))
@@ -276,10 +265,7 @@ def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: 
     unknown = known.others + 2 * len(known.squares)
     if len(known.known) + unknown == 1:
         return found[0][0]
-    on, drawn = (
-        [x for x in found if x[0].manifold.steady is not None],
-        [x for x in found if _attracts(analysis, *x)],
-    )
+    on, drawn = ([x for x in found if x[0].manifold.steady is not None], [x for x in found if _attracts(analysis, *x)])
     listed, choice = (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (found, Choice.FIRST)
     taken, start = listed[0]
     others = [tuple(map(taken.formula, root.values)) for root in known.known if root is not start]
@@ -312,22 +298,19 @@ def _refuse(
     for name in scales:
         if name in related:
             raise NoClosedForm(
-                Message("[[name]] is given by a relation: it is not small, or scaled, by itself", name=name),
+                "[[name]] is given by a relation: it is not small, or scaled, by itself",
+                name=name,
                 remedy="solve the relation for another parameter",
             )
         if name in values:
-            raise NoClosedForm(Message("[[name]] depends on the small parameter: it cannot be a number", name=name))
+            raise NoClosedForm("[[name]] depends on the small parameter: it cannot be a number", name=name)
     for name in values:
         if name in related:
-            raise NoClosedForm(Message("[[name]] is given by a relation: it cannot be another number", name=name))
+            raise NoClosedForm("[[name]] is given by a relation: it cannot be another number", name=name)
     signs = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
     if signs.get(small.name) in ("negative", "nonpositive", "zero"):
         raise NoClosedForm(
-            Message(
-                "expansions are about [[small]] > 0, and it is declared [[sign]]",
-                small=small.name,
-                sign=signs[small.name],
-            )
+            "expansions are about [[small]] > 0, and it is declared [[sign]]", small=small.name, sign=signs[small.name]
         )
 
 
@@ -343,9 +326,7 @@ def _declared(small: SmallParameter, variables: Sequence[str]) -> tuple[str, ...
     """The fast variables that are declared.  Raises NoClosedForm for one on which the equations do not depend."""
     for name in (*small.fast, *small.slow):
         if name not in variables:
-            raise NoClosedForm(
-                Message("the equations do not depend on [[name]], which is declared fast or slow", name=name)
-            )
+            raise NoClosedForm("the equations do not depend on [[name]], which is declared fast or slow", name=name)
     return small.fast
 
 
@@ -374,7 +355,7 @@ def _values(analysis: Analysis, transfer: Transfer, motion: Mapping[Any, Any]) -
     values = {}
     for name, k in zip(transfer.variables, transfer.places[len(transfer.parameters) :], strict=True):
         if k not in motion:
-            raise NoClosedForm(Message("[[name]] is not constant on the motion", name=name))
+            raise NoClosedForm("[[name]] is not constant on the motion", name=name)
         values[name] = motion[k]
     return values
 

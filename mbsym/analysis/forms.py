@@ -11,7 +11,7 @@ from mbsym.mechanics.variables import ring_environment
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
-    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
+    from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.checks import Check
 
 # What few ask for is not imported for nothing: names stand here, modules in the functions.
@@ -26,7 +26,7 @@ CHECKED = {REDUCED: "routh", CANONICAL: "hamilton", INVOLUTION: BRACKETS}
 
 def hamilton(analysis: Analysis) -> Hamilton:
     """The canonical equations, formulas written as the description wants its names."""
-    from mbsym.problems.canonical import canonical
+    from mbsym.problems import canonical
 
     found = canonical.hamilton(analysis.system, analysis.terms)
     _write(analysis, found.hamiltonian.ring)
@@ -35,7 +35,7 @@ def hamilton(analysis: Analysis) -> Hamilton:
 
 def routh(analysis: Analysis) -> Routh:
     """Routh's equations."""
-    from mbsym.problems.canonical import canonical
+    from mbsym.problems import canonical
 
     found = canonical.routh(analysis.system, analysis.terms)
     _write(analysis, found.function.ring)
@@ -44,7 +44,7 @@ def routh(analysis: Analysis) -> Routh:
 
 def brackets(analysis: Analysis) -> Brackets | None:
     """The Poisson brackets of problem 7's integrals; None without any."""
-    from mbsym.problems.canonical import canonical as problem
+    from mbsym.problems import canonical as problem
 
     return problem.brackets(analysis.system, analysis.hamilton, analysis.integrals)
 
@@ -76,7 +76,7 @@ def _hamilton(analysis: Analysis) -> Check | None:
     found = analysis.optional("hamilton")
     if found is None:
         return None
-    from mbsym.problems.canonical.canonical_checks import check_hamilton
+    from mbsym.problems.canonical import check_hamilton
 
     return check_hamilton(analysis.oracles, found)
 
@@ -85,7 +85,7 @@ def _routh(analysis: Analysis) -> Check | None:
     found = analysis.optional("routh")
     if found is None:
         return None
-    from mbsym.problems.canonical.canonical_checks import check_routh
+    from mbsym.problems.canonical import check_routh
 
     return check_routh(analysis.oracles, found)
 
@@ -94,15 +94,11 @@ def _brackets(analysis: Analysis) -> Check | None:
     found = analysis.optional(BRACKETS)
     if found is None:
         return None
-    from mbsym.problems.canonical.canonical_checks import check_brackets
+    from mbsym.problems.canonical import check_brackets
 
     system, ring = analysis.system, analysis.hamilton.hamiltonian.ring
     scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
     return check_brackets(found, analysis.hamilton, scene)
 
 
-CHECKS: dict[str, Callable[[Analysis], Check | None]] = {
-    REDUCED: _routh,
-    CANONICAL: _hamilton,
-    INVOLUTION: _brackets,
-}
+CHECKS: dict[str, Callable[[Analysis], Check | None]] = {REDUCED: _routh, CANONICAL: _hamilton, INVOLUTION: _brackets}

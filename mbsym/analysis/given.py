@@ -29,12 +29,7 @@ def chosen(system: System, problems: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def refuse() -> None:
-    why = NoResult(
-        Message("not derived: [[why]]", why=WITHOUT_BODIES),
-        HINT,
-        "no bodies",
-        "given-by-matrices",
-    )
+    why = NoResult(Message("not derived: [[why]]", why=WITHOUT_BODIES), HINT, "no bodies", "given-by-matrices")
     raise Unavailable("bodies", why)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -24,17 +24,15 @@ from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.variables import expressions
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
-from mbsym.problems.dissipation import EnergyLaw
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact, HigherOrder
-from mbsym.problems.stability.verdict import Verdict, concluded
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.verdict import Extremum, Verdict, by_extremum, by_geodesics, coasting
+from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.algebra.ring import Polynomial, Ring
     from mbsym.algebra.signs import Signs
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.expansion import OnManifold
+    from mbsym.problems.dissipation import Balance
     from mbsym.problems.normal_forms import InSymbols, Judged, NormalForms
 
 
@@ -99,13 +97,69 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
     """What a minimum of the potential energy of higher order says under constraints; None where it says nothing."""
     from mbsym.problems.normal_forms import problem
 
-    law = analysis.balance.at(values).law
+    balance = analysis.balance.at(values)
     try:
-        if not law.bounded:
+        if not balance.law.bounded:
             return None
-        scene, conserved = analysis.parameters_scene, law is EnergyLaw.CONSERVED
-        manifold = on_manifold(analysis)
-        return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, conserved, values)
+        scene, manifold = analysis.parameters_scene, on_manifold(analysis)
+        forces = (analysis.energy.force_function.polynomial, *generalized_forces(analysis.held_scene).values())
+        if balance.conserves and all(map(analysis.ring.vanishes, forces)):
+            return coasting(Because.ALIKE) if len(analysis.linearisation.M.polynomials) == 1 else by_geodesics()
+        return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, balance.conserves, values)
+    except (Failure, *NOT_THERE):
+        return None
+
+
+@dataclass(frozen=True)
+class FirstTerm:
+    """The first term of V(x) of a system of one coordinate, ``coefficient`` x^``order``, on a border.
+
+    ``damped`` by a term of first order, x' = -V'(x)/d on the centre manifold, else the energy decides; ``conserved``:
+    it does not fall; ``leaf``: velocity constraints keep relations, and what decays there is stable.
+    """
+
+    order: int
+    coefficient: Polynomial
+    damped: bool
+    conserved: bool
+    leaf: bool
+
+    def verdict(self, sign: str) -> Verdict | None:
+        """The verdict where the coefficient has this sign; None where that does not decide."""
+        if self.order % 2:
+            extremum = Extremum.NONE if sign in ("positive", "negative", "nonzero") else Extremum.OPEN
+        else:
+            extremum = {"positive": Extremum.MINIMUM, "negative": Extremum.NONE}.get(sign, Extremum.OPEN)
+        if not self.damped or extremum is Extremum.OPEN:
+            return by_extremum(self.order, extremum, self.conserved)
+        decaying = Word.STABLE if self.leaf else Word.ASYMPTOTIC
+        word = decaying if extremum is Extremum.MINIMUM else Word.UNSTABLE
+        return Verdict(word, (HigherOrder.REDUCTION.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
+
+
+def first_term(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial], str]) -> FirstTerm | None:
+    """The first term that ``sign`` does not call zero; None of several coordinates, or where the energy may grow.
+
+    ``balance`` is that at the values ``sign`` is about.
+    """
+    if not installed("mbsym.problems.normal_forms"):
+        return None
+    from mbsym.problems.normal_forms import problem
+
+    scene = analysis.parameters_scene
+    try:
+        damping = analysis.linearisation.D.polynomials
+        if len(damping) != 1 or not balance.law.bounded:
+            return None
+        manifold = on_manifold(analysis) if analysis.system.constraints else None
+        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold, sign)
+        if term is None or term[0] == 2:
+            return None
+        above, below = scene.ring.fraction(term[1])
+        for factor, exponent in below:
+            above = scene.ring.times(above, scene.ring.power(factor, exponent))
+        damped = sign(damping[0][0]) == "positive"
+        return FirstTerm(term[0], scene.ring.reduce(above), damped, balance.conserves, on_a_leaf(analysis))
     except (Failure, *NOT_THERE):
         return None
 
@@ -113,67 +167,27 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
 def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str, Any] | None = None) -> Verdict:
     """A verdict that is on a border, decided by the first term of V(x) of the one coordinate.
 
-    For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.  With
-    damping of first order, x' = -V'(x)/d on the centre manifold, else by the energy.  On a leaf of velocity constraints
-    what decays there is stable: others keep apart.
+    For all parameters, or at ``values`` of them.  Where its sign is not known for all, the condition is told.
     """
-    if not installed("mbsym.problems.normal_forms"):
-        return verdict
-    from mbsym.problems.normal_forms import problem
-
     scene, balance = analysis.parameters_scene, analysis.balance
-    law = (balance if values is None else balance.at(values)).law
-    tied = bool(analysis.system.constraints)
 
     def for_all(x: Polynomial) -> str:
         return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
 
     sign = for_all if values is None else _sign_at(scene.ring, values)
-    try:
-        damping = analysis.linearisation.D.polynomials
-        if not law.bounded or len(damping) != 1:
-            return verdict
-        damped = sign(damping[0][0]) == "positive"
-        manifold = on_manifold(analysis) if tied else None
-        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold, sign)
-        if term is None or term[0] == 2:
-            return verdict
-        order, value = term
-        above, below = scene.ring.fraction(value)
-        bottom = scene.ring.one
-        for factor, exponent in below:
-            bottom = scene.ring.times(bottom, scene.ring.power(factor, exponent))
-        value = scene.ring.reduce(scene.ring.times(above, bottom))
-        word = sign(value)
-    except (Failure, *NOT_THERE):
+    term = first_term(analysis, balance if values is None else balance.at(values), sign)
+    if term is None:
         return verdict
-    higher = Reason(Because.TERMS_OF_HIGHER_ORDER)
-    by_manifold = (HigherOrder.REDUCTION.value,)
-    leaving = concluded(
-        {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED},
-        Reason(Because.NO_MINIMUM, (order,)),
-    )
-    staying = concluded(
-        {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}, Reason(Because.HIGHER_MINIMUM, (order,))
-    )
-    if damped:
-        decaying = Word.STABLE if on_a_leaf(analysis) else Word.ASYMPTOTIC
-        leaving, staying = (Verdict(word, by_manifold, (higher,)) for word in (Word.UNSTABLE, decaying))
-    leaves = damped or law is EnergyLaw.CONSERVED
-    if order % 2:
-        return leaving if leaves and word in ("positive", "negative", "nonzero") else verdict
-    if word == "positive":
-        return staying
-    if leaves and word == "negative":
-        return leaving
-    if not leaves or values is not None or word != "unknown":
-        return verdict
-    condition = knowledge.signs(scene).condition(value)
+    known = sign(term.coefficient)
+    staying, leaving = (term.verdict(word) for word in ("positive", "negative"))
+    if known != "unknown" or values is not None or term.order % 2 or staying is None or leaving is None:
+        return term.verdict(known) or verdict
+    condition = knowledge.signs(scene).condition(term.coefficient)
     if condition.kind != "inequality" or condition.nonzero:
         return verdict
     positive = Formula(scene.ring, condition.polynomial)
     reasons = (reason for reason in verdict.reasons if reason.code is not Because.HIGHER_ORDER)
-    return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (order, positive, staying.word))))
+    return replace(verdict, reasons=(*reasons, Reason(Because.ORDER_DECIDES, (term.order, positive, staying.word))))
 
 
 def _sign_at(ring: Ring, values: Mapping[str, Any]) -> Callable[[Polynomial], str]:
@@ -237,16 +251,39 @@ def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
     from mbsym.problems.normal_forms import Vanishing
 
-    def left(formula: Formula) -> Formula:
-        product = formula.ring.one
-        if not formula.is_zero:
-            for factor, _ in formula.polynomial.factor()[1]:
-                if not signs.never_zero(factor):
-                    product = formula.ring.times(product, factor)
-        return formula if formula.is_zero else Formula(formula.ring, formula.ring.reduce(product))
+    region = [x.polynomial for x in (found.trace, found.product, found.discriminant)]  # positive: two frequencies
+    inside = signs.assuming((x, ">") for x in region)
 
-    resonances = tuple((vector, left(x)) for vector, x in found.resonances)
-    return replace(found, vanishing=Vanishing(left(found.zero), resonances))
+    def left(formula: Formula, may_vanish: Callable[[Polynomial], bool]) -> Formula:
+        product = formula.ring.one
+        if formula.is_zero:
+            return formula
+        for factor, _ in formula.polynomial.factor()[1]:
+            if may_vanish(factor):
+                product = formula.ring.times(product, factor)
+        return Formula(formula.ring, formula.ring.reduce(product))
+
+    def inside_too(factor: Polynomial) -> bool:
+        return not inside.never_zero(factor) and not any(map(_zeros_of_terms(factor, signs), region))
+
+    zero = left(found.zero, lambda factor: not signs.never_zero(factor))
+    resonances = tuple((vector, left(x, inside_too)) for vector, x in found.resonances)
+    return replace(found, vanishing=Vanishing(zero, resonances))
+
+
+def _zeros_of_terms(p: Polynomial, signs: Signs) -> Callable[[Polynomial], bool]:
+    """Whether another polynomial vanishes where p does, as terms of one sign vanish together: a^2 + 8 g^2 = 0."""
+    context = p.context()
+    terms = [(monomial, context.from_dict({monomial: coefficient})) for monomial, coefficient in p.to_dict().items()]
+    alike = any(all(signs.sign(term) in words for _, term in terms) for words in _ONE_SIDED)
+    used = [[k for k, exponent in enumerate(monomial) if exponent] for monomial, _ in terms]
+    zeros = {k for names in used if len(names) == 1 for k in names} if alike else set[int]()
+    at = [context.constant(0) if k in zeros else context.gen(k) for k in range(context.nvars())]
+    return lambda x: bool(zeros) and x.compose(*at, ctx=context) == 0
+
+
+#: Signs of terms that vanish together where their sum does.
+_ONE_SIDED = (("nonnegative", "positive"), ("nonpositive", "negative"))
 
 
 def decided(word: Word) -> Word | None:

@@ -47,12 +47,10 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     count = len(analysis.system.coordinates)
     if not analysis.system.speeds and count > MOST_ANGLES:
         raise NoClosedForm(
-            Message(
-                "[[count]] coordinates: without speeds of their own, families of integrals of at most "
-                "[[most]] are looked at",
-                count=count,
-                most=MOST_ANGLES,
-            ),
+            "[[count]] coordinates: without speeds of their own, families of integrals of at most "
+            "[[most]] are looked at",
+            count=count,
+            most=MOST_ANGLES,
             remedy=_remedy(analysis.system),
         )
     there = polynomial.setting(analysis)
@@ -61,24 +59,20 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     inside = [x for x in field.variables if not (x.isidentifier() or (lagrangian and x.startswith(("sin(", "cos("))))]
     if inside:
         raise NoClosedForm(
-            Message(
-                "[[names]] are variables: families of integrals are looked at in velocities, angles and positions, or "
-                "in speeds, positions and unit vectors",
-                names=", ".join(inside),
-            ),
+            "[[names]] are variables: families of integrals are looked at in velocities, angles and positions, or "
+            "in speeds, positions and unit vectors",
+            names=", ".join(inside),
             remedy="see 'mbsym integrals'" if lagrangian else "leave 'speeds' out",
         )
     twice = [x for x in field.variables if any(y.startswith((f"sin({x})", f"sin({x}/")) for y in field.variables)]
     if twice:  # grad K with respect to both would not be that of a function of the angle
         names = ", ".join(y for x in twice for y in (x, f"sin({x})"))
-        raise NoClosedForm(Message("[[names]] are functions of each other: they cannot all be variables", names=names))
+        raise NoClosedForm("[[names]] are functions of each other: they cannot all be variables", names=names)
     if lagrangian and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
-            Message(
-                "[[count]] rates, sines, cosines and positions: families of at most [[most]] are looked at",
-                count=len(field.variables),
-                most=MOST_IN_ANGLES,
-            ),
+            "[[count]] rates, sines, cosines and positions: families of at most [[most]] are looked at",
+            count=len(field.variables),
+            most=MOST_IN_ANGLES,
             remedy=_remedy(analysis.system),
         )
     found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]

@@ -3,7 +3,7 @@
 Asked in this order, each only where those before leave the nonlinear system open:
 
 1. the first approximation, with the energy and exactly linear equations (``stability.ExactVerdicts``);
-2. the system at these numbers: its integrals, an energy of higher order (``open_verdicts``);
+2. the system at these numbers: its integrals, an energy of higher order (``relative_equilibria.verdict``);
 3. terms of higher order: normal forms, centre manifolds (problem 11); of one coordinate the first term of its potential
    energy, which need not be an algebraic number.
 
@@ -35,10 +35,8 @@ from mbsym.model.constraints import Relation
 from mbsym.model.substitution import displaced, without_explicit_relations
 from mbsym.model.system import System
 from mbsym.problems.stability.problem import ExactVerdicts
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import HigherOrder
 from mbsym.problems.stability.verdict import Flaw, Verdict, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, HigherOrder, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
@@ -138,9 +136,10 @@ class Judge:
         if self.analysis.system.constraints:
             known = installed("mbsym.problems.normal_forms")
             return (higher.by_energy(self.analysis, values) if known else None) or verdict
-        from mbsym.problems import open_verdicts  # what equilibria are judged by is not imported for nothing
+        # What equilibria are judged by is not imported for nothing.
+        from mbsym.problems.relative_equilibria.verdict import decided_at
 
-        return open_verdicts.decided_at(verdict, self.analysis.parameters_scene, values)
+        return decided_at(verdict, self.analysis.parameters_scene, values)
 
     @cached_property
     def _in_others(self) -> Judge | None:

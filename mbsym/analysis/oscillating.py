@@ -17,12 +17,13 @@ from flint import acb
 
 from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
+from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import evaluated, with_quotients
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.analysis.scaled import with_parameters
-from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.expressions.tree import Call, Expression, Negative, Operation
 from mbsym.formulas.formula import Formula
@@ -37,7 +38,6 @@ from mbsym.problems.normal_forms.dissipative import taylor_field
 from mbsym.problems.normal_forms.exact import letter
 from mbsym.problems.small_parameter.generating import graded_rows
 from mbsym.problems.small_parameter.lindstedt import integrated
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import (
     AMPLITUDE,
     LATEST,
@@ -45,6 +45,7 @@ from mbsym.problems.small_parameter.oscillations import (
     oscillation,
     tower_over,
 )
+from mbsym.problems.small_parameter.result import Amplitude, Divisor, Harmonics, Oscillation
 from mbsym.problems.vector_field import vector_field
 
 if TYPE_CHECKING:
@@ -208,7 +209,8 @@ def oscillating(
     for name in (small.name, *(one for one, _ in small.powers), *given):
         if name in related:
             raise NoClosedForm(
-                Message("[[name]] is given by a relation: it is not small, scaled, or a number by itself", name=name),
+                "[[name]] is given by a relation: it is not small, scaled, or a number by itself",
+                name=name,
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
@@ -222,7 +224,7 @@ def oscillating(
         if name in system.coordinates and velocity_name(name) in field.variables:
             powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
-        raise NoClosedForm(Message("the equations do not depend on [[name]]", name=small.name))
+        raise NoClosedForm("the equations do not depend on [[name]]", name=small.name)
     kept = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
     most = order if taylor else order + LATEST
     left = {*kept, small.name, *related, *given}
@@ -251,11 +253,9 @@ def oscillating(
     sign = _sign(analysis, tower, found.frequency * found.frequency)
     if sign == "negative":
         raise NoClosedForm(
-            Message(
-                "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
-                leading=found.leading,
-                small=small.name,
-            )
+            "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
+            leading=found.leading,
+            small=small.name,
         )
     size = _sign(analysis, tower, found.amplitude * found.amplitude)
     return Oscillating(
@@ -297,9 +297,7 @@ def with_integrals(told: Oscillating, analysis: Analysis, rates: Mapping[str, Ex
             _is_rate(analysis, name, rate)
         power, slopes = series_of(system, told, rate)
         if power < 0:
-            raise NoClosedForm(
-                Message("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
-            )
+            raise NoClosedForm("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
         nothing = [Harmonics(found.tower, {})] * power
         drifts.append(integrated(name, [*nothing, *slopes], found.frequency, found.corrections))
     return replace(told, found=replace(found, drifts=tuple(drifts)))
@@ -312,7 +310,8 @@ def _is_rate(analysis: Analysis, name: str, rate: Expression) -> None:
     """
     form = analysis.form
     refusal = NoRate(
-        Message("[[name]] is a coordinate, and its rate was not found to be this", name=name),
+        "[[name]] is a coordinate, and its rate was not found to be this",
+        name=name,
         remedy="give the integral a name that the description does not have",
     )
     if not analysis.system.speeds or form.by_quaternion:
@@ -382,19 +381,10 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
 
     def whole(p: Any) -> Element:
         """A polynomial with everything put in, over the product of the denominators."""
-        degrees = [int(d) for d in p.degrees()]
-        used = [k for k, degree in enumerate(degrees) if degree > 0]
-        for k in used:
+        for k in occurring([p]):
             known.setdefault(k, generator(k))
-        total = tower.context.constant(0)
-        for monomial, c in p.to_dict().items():
-            term = tower.context.constant(c)
-            for k in used:
-                term *= known[k].top ** int(monomial[k]) * known[k].bottom ** (degrees[k] - int(monomial[k]))
-            total += term
-        below = tower.context.constant(1)
-        for k in used:
-            below *= known[k].bottom ** degrees[k]
+        images = {k: (x.top, x.bottom) for k, x in known.items()}
+        total, below = with_quotients(p, images, tower.context)
         return tower.made(tower.reduced(total), below)
 
     def put(x: Element) -> Element:
@@ -498,11 +488,9 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     for name in names:
         if weights.get(name) and any(f"({name}" in variable for variable in field.variables):
             raise NoClosedForm(
-                Message(
-                    "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
-                    "which all coordinates are small only",
-                    name=name,
-                ),
+                "[[name]] is small, but stands under sines and cosines: they are expanded about a motion in "
+                "which all coordinates are small only",
+                name=name,
                 remedy="give the 'motion', and a power to every coordinate",
             )
     return field, False
@@ -542,20 +530,13 @@ def in_letters(
         return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
     def carried(p: Any) -> Polynomial:
-        total = ring.zero
-        for monomial, c in p.to_dict().items():
-            term = ring.number(rationals.fraction(c))
-            for index, exponent in enumerate(monomial):
-                if exponent:
-                    term = ring.times(term, generator(index) ** int(exponent))
-            total = total + term
-        return ring.reduce(total)
+        return ring.reduce(evaluated(p, lambda k, e: generator(k) ** e, ring.context.constant, ring.times))
 
     top = carried(x.top)
     if x.bottom.is_constant():
         return top  # the leading coefficient of every denominator is 1
     if denominators is None:
-        return ring.reduce(ring.times(top, ring.reciprocal(carried(x.bottom))))
+        return ring.ratio(top, carried(x.bottom))
     constant, factors = x.bottom.factor()
     below = ring.number(rationals.fraction(constant))
     for factor, power in factors:

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
     from mbsym.analysis.oscillating import Oscillating
     from mbsym.analysis.small import SmallParameters
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
+    from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.problems.claims import ClaimResult
     from mbsym.problems.claims.counterexample import Trials
     from mbsym.problems.constraints import Constraints

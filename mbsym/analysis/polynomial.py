@@ -89,7 +89,7 @@ class Setting:
         common = top.gcd(bottom)
         ring = self.transfer.ring
         upper, lower = (self.formula(p / common).polynomial for p in (top, bottom))
-        return Formula(ring, ring.reduce(ring.times(upper, ring.reciprocal(lower))))
+        return Formula(ring, ring.ratio(upper, lower))
 
 
 def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, driven: bool = False) -> Setting:

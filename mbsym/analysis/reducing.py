@@ -1,4 +1,4 @@
-"""A reduction of a system, from what its author asks for (``mbsym.source.reduction``)."""
+"""A reduction of a system, from what its author asks for (``mbsym.source.scaling``)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.rationals import exact
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import apart
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import Expression, Name, Negative, Number, Operation, names, substitute, text, walk
 from mbsym.formulas.formula import Formula
@@ -53,7 +53,7 @@ class Reduced:
             sine = ring.generator("sine", name)
             while (left := ring.quotient(below, ring.one - ring.generator("cosine", name) ** 2)) is not None:
                 found, below = ring.times(found, ring.reciprocal(sine) ** 2), left
-        return Formula(ring, ring.reduce(ring.times(found, ring.reciprocal(below))))
+        return Formula(ring, ring.ratio(found, below))
 
     def terms(self, x: Series) -> tuple[tuple[Formula, Formula], ...]:
         """The coefficients with powers of the small parameter, from the lowest on; they hold what it divides."""
@@ -128,7 +128,7 @@ class _Start:
         self.moving |= {velocity_name(n) for n in bases}
         self.letters = {name: x for name, x in expressions.items() if name not in self.moving}
         for name in sorted({*self.letters} & {*parameters, "pi"}):
-            raise NoClosedForm(Message("[[name]] is a parameter: a letter needs a name of its own", name=name))
+            raise NoClosedForm("[[name]] is a parameter: a letter needs a name of its own", name=name)
         seen = [name for x in expressions.values() for name in sorted(names(x))]
         known = {*parameters, *self.letters, *self.moving, "pi"}
         self.fresh = [name for name in dict.fromkeys(seen) if name not in known]
@@ -139,7 +139,7 @@ class _Start:
         self._constants = [next(x for x in numbered if x not in taken) for _ in bases]
         added = [*self._firsts.values(), *self._constants]
         if asked.small and asked.small not in parameters:
-            raise NoClosedForm(Message("[[name]] is no parameter of the equations", name=asked.small))
+            raise NoClosedForm("[[name]] is no parameter of the equations", name=asked.small)
         fixed = dict.fromkeys((*parameters, *added))
         positive = [parameter.name for parameter in self.system.parameters if parameter.sign == "positive"]
         self.ring = ring = Ring([*bases, *self.fresh], [], [*fixed], own.angles, positive, spare=64)
@@ -163,7 +163,7 @@ class _Start:
             variable = ring.generator(g.kind, g.name)
             factor = ring.quotient(carry(own.context.gen(k)), variable)
             if factor is None:
-                raise NoClosedForm(Message("[[name]] under sines and cosines is not scaled", name=g.name))
+                raise NoClosedForm("[[name]] under sines and cosines is not scaled", name=g.name)
             below = ring.times(carry(there.back(field.denominator)), factor)
             rate = ring.times(ring.times(carry(there.back(p)), time), ring.reciprocal(below))
             self.rows[self.at(variable)] = self.transfer.fraction(rate)
@@ -214,7 +214,7 @@ class _Start:
     def place(self, name: str) -> int:
         """Raises NoClosedForm for what is no variable."""
         if name not in self.moving:
-            raise NoClosedForm(Message("[[name]] is no variable of the equations", name=name))
+            raise NoClosedForm("[[name]] is no variable of the equations", name=name)
         return self.at(self.environment[name])
 
     def initial(self, places: Iterable[int]) -> dict[int, Series]:
@@ -254,7 +254,7 @@ class _Start:
             case Operation("+" | "-" | "*" | "/" as operator, left, right):
                 act: Any = {"+": add, "-": sub, "*": mul, "/": truediv}[operator]
                 return cast("Quotient", act(self._quotient(left), self._quotient(right)))
-        raise NoClosedForm(Message("[[formula]] is no rational function of names that are known", formula=text(x)))
+        raise NoClosedForm("[[formula]] is no rational function of names that are known", formula=text(x))
 
     def flow(self) -> Flow:
         velocities = {}
@@ -271,16 +271,12 @@ class _Start:
 
     def _graded(self, top: Polynomial, bottom: Polynomial) -> Series:
         """By powers of the small parameter."""
-        context = self.transfer.context
-        parts = []
-        for p in (top, bottom):
-            found: dict[int, dict[tuple[int, ...], Any]] = {}
-            for monomial, c in p.to_dict().items():
-                k = int(monomial[self.small]) if self.small >= 0 else 0
-                rest = (*monomial[: self.small], 0, *monomial[self.small + 1 :]) if k else tuple(monomial)
-                found.setdefault(k, {})[rest] = c
-            parts.append(Series(context, {k: Quotient.of(context.from_dict(x)) for k, x in found.items()}))
-        return parts[0].over(parts[1], self.known if len(parts[1].coefficients) > 1 else None)
+        places = [self.small] if self.small >= 0 else []
+        above, below = (
+            Series(self.transfer.context, {sum(k): Quotient.of(c) for k, c in apart(p, places).items()})
+            for p in (top, bottom)
+        )
+        return above.over(below, self.known if len(below.coefficients) > 1 else None)
 
 
 def _tried(name: str) -> Iterator[str]:

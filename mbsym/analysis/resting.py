@@ -17,10 +17,10 @@ from mbsym.expressions.tree import Expression, Name, multiply, number
 from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Value, at_numbers
 from mbsym.model.system import MotionEntry, Parameter, System
-from mbsym.problems.open_verdicts import MOST_COORDINATES
 from mbsym.problems.relative_equilibria.equilibria import WITHIN, Equilibria, equilibria
 from mbsym.problems.relative_equilibria.listing import CoordinateValue, RelativeEquilibrium
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.relative_equilibria.verdict import MOST_COORDINATES
+from mbsym.problems.stability.words import Because
 
 
 def relative_equilibria(system: System, values: Mapping[str, Value], within: float = WITHIN) -> Equilibria:

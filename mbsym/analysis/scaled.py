@@ -26,6 +26,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Generator, Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.analysis.in_groups import in_groups, product
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import ENDINGS, velocity_name, without_velocity
@@ -55,7 +56,7 @@ from mbsym.problems.scaling import Groups, independent, measured_in
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
 
 #: Fields that hold names of variables.
 _NAMED = ("coordinate", "coordinates", "order", "dependent", "fast", "slow", "leading", "powers", "components")
@@ -72,11 +73,11 @@ def in_variables(system: System, scaling: Scaling) -> System:
     from mbsym.analysis import Analysis
 
     if system.linear is not None:
-        raise NoDescription(Message("the system is given by its matrices"))
+        raise NoDescription("the system is given by its matrices")
     vectors = {name for body in system.bodies for one in body.orientation for name in one.components}
     for one in scaling.variables:
         if one.name in vectors and not is_number(one.factor, 1):
-            raise NoDescription(Message("[[name]] is a component of a unit vector or quaternion", name=one.name))
+            raise NoDescription("[[name]] is a component of a unit vector or quaternion", name=one.name)
     base = with_parameters(system, scaling)
     groups = _groups(base, scaling)
     units = {name: number(1) for name in groups.units}
@@ -84,7 +85,7 @@ def in_variables(system: System, scaling: Scaling) -> System:
     lower = Lowering(ring, ring_environment(base, ring))
     if scaling.time is not None and lower(folded(scaling.time.factor, units)) != ring.one:
         left = text(folded(scaling.time.factor, units))
-        raise NoDescription(Message("with what can be set to 1 the unit of time is [[left]], not 1", left=left))
+        raise NoDescription("with what can be set to 1 the unit of time is [[left]], not 1", left=left)
     found = renamed(in_groups(base, groups), {variable.name: variable.new for variable in scaling.variables})
     for one in scaling.variables:
         factor = folded(one.factor, units)
@@ -228,7 +229,7 @@ def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Gr
     lost = next((name for name in free if len(independent((*units, name), exponents)) > len(units)), None)
     if lost is not None and lost not in units:
         raise NoDescription(
-            Message("nothing that is positive measures [[name]]", name=lost), remedy="say what it is in new names"
+            "nothing that is positive measures [[name]]", name=lost, remedy="say what it is in new names"
         )
     rate = [fmpq(-int(base_ == "s")) for base_ in bases]
     moving = (*base.coordinates, *base.variables, *(one.name for one in base.prescribed), *base.input_names)
@@ -321,7 +322,7 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
     if name in speeds:
         images = dict.fromkeys((), ONE) | {name + "_dot": images[name + "_dot"], name: images[name]}
     if name in system.dependent:
-        raise NoDescription(Message("'[[name]]' is a dependent variable", name=name))
+        raise NoDescription("'[[name]]' is a dependent variable", name=name)
     loads = tuple(_load(load, name, factor) for load in system.loads)
     kept = {one: getattr(system, one) for one in ("motion", "initial", "start")}
     base = replace(system, loads=loads, motion=(), initial=(), start=())
@@ -427,9 +428,7 @@ class Formulas:
         """What the rate of a variable is equal to, in its new time and size."""
         factor = self.ring.quotient(self.carry(rate.polynomial), self.moving(rate).polynomial)
         assert factor is not None
-        return Formula(
-            self.ring, self.ring.reduce(self.ring.times(self.carry(value.polynomial), self.ring.reciprocal(factor)))
-        )
+        return Formula(self.ring, self.ring.ratio(self.carry(value.polynomial), factor))
 
     def row(self, x: Formula, constant: bool = False) -> Formula:
         """A constant multiple of a formula: without denominators of parameters, content and common names.
@@ -456,14 +455,7 @@ def _moving(ring: Ring, x: Polynomial) -> bool:
 def _terms(ring: Ring, x: Polynomial) -> Iterator[Polynomial]:
     """The coefficients of what moves: polynomials in parameters."""
     moving = [k for k, g in enumerate(ring.generators) if g.kind not in ("parameter", "spare")]
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for monomial, c in x.to_dict().items():
-        key = tuple(monomial[k] for k in moving)
-        rest = list(monomial)
-        for k in moving:
-            rest[k] = 0
-        parts.setdefault(key, {})[tuple(rest)] = c
-    return (ring.context.from_dict(part) for part in parts.values())
+    return iter(apart(x, moving).values())
 
 
 def _ring(system: System, original: System, scaling: Scaling) -> Ring:
@@ -535,7 +527,7 @@ def _demand_law(old: Analysis, new: Analysis, scaling: Scaling, groups: Groups) 
         ]
         if not all(same) or (k is not None and not a[k]):
             raise NoDescription(
-                Message("the equations hold numbers that have a dimension, or the scaled ones could not be compared"),
+                "the equations hold numbers that have a dimension, or the scaled ones could not be compared",
                 remedy="give the numbers names under 'parameters'",
             )
 

@@ -92,11 +92,10 @@ def _closed(analysis: Analysis) -> Equations | None:
 def _equations(analysis: Analysis) -> Check | None:
     closed = _closed(analysis)
     if closed is not None and analysis.system.speeds:
-        from mbsym.problems.in_speeds import speed_checks
-        from mbsym.problems.in_speeds.speeds import SpeedEquations
+        from mbsym.problems.in_speeds import SpeedEquations, check_equations
 
         assert isinstance(closed, SpeedEquations)
-        return speed_checks.check_equations(analysis.oracles, closed)
+        return check_equations(analysis.oracles, closed)
     return None if closed is None else comparison.check_equations(analysis.oracles, closed)
 
 
@@ -107,9 +106,9 @@ def _program(analysis: Analysis) -> Check | None:
     checked = comparison.check_program(analysis.oracles, found)
     if not analysis.system.speeds or checked.failed:
         return checked
-    from mbsym.problems.in_speeds import speed_checks
+    from mbsym.problems.in_speeds import check_program
 
-    in_speeds = speed_checks.check_program(analysis.oracles, analysis.form)
+    in_speeds = check_program(analysis.oracles, analysis.form)
     return in_speeds if in_speeds.failed else checked
 
 
@@ -168,7 +167,7 @@ def _first_order(analysis: Analysis) -> Check | None:
     if found is None or linear is None:
         return None
     from mbsym.problems import first_order
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
 
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)

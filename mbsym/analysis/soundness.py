@@ -51,7 +51,7 @@ def _in_speeds(system: System, ring: Ring, plain: Scene) -> tuple[Fault, ...]:
     """What is wrong with the dependent set among speeds; ``plain`` is the system in coordinates."""
     from mbsym.mechanics.constraints.programs import constrained_programs  # few systems have speeds and constraints
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.constraints.in_speeds import constraints_in_speeds
+    from mbsym.problems.constraints.analysis import constraints_in_speeds
 
     tied, form = constraints(plain), SpeedForm(system, ring)
     kept = [(name.constraint, name.component) for name in tied.names]

@@ -52,11 +52,7 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
     """The condition that a text is, or None with at least one complaint; names are looked up among ``known``."""
     before = complaints.error_count
     if len(text) > MAX_LENGTH:
-        complaints.error(
-            "too-long",
-            Message("a condition has at most [[most]] characters", most=MAX_LENGTH),
-            span_of(0, 1),
-        )
+        complaints.error("too-long", "a condition has at most [[most]] characters", span_of(0, 1), most=MAX_LENGTH)
         return None
     title, colon, _ = text.partition(":")
     begin = len(title) + 1 if colon else 0
@@ -86,10 +82,7 @@ def parse_condition(text: str, known: Collection[str], complaints: Complaints, s
             period = _expression(text, word.end(), after, known, complaints, span_of)
         elif word.group() == "mod" or text[word.end() : after].strip() or place + 1 < len(words):
             complaints.error(
-                "bad-condition",
-                Message("[[word]] does not stand here", word=word.group()),
-                span_of(*word.span()),
-                _EXAMPLE,
+                "bad-condition", "[[word]] does not stand here", span_of(*word.span()), _EXAMPLE, word=word.group()
             )
         elif side:
             message = Message(

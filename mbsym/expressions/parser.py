@@ -196,9 +196,7 @@ def parse_expression(
     try:
         if len(text) > bounds.length:
             complaints.error(
-                "too-long",
-                Message("an expression has at most [[length]] characters", length=bounds.length),
-                span_of(0, 1),
+                "too-long", "an expression has at most [[length]] characters", span_of(0, 1), length=bounds.length
             )
             raise _Refused
         parser = _Parser(text, _tokens(text, complaints, span_of), complaints, span_of)
@@ -210,9 +208,7 @@ def parse_expression(
         return None
     if complaints.error_count == errors_before and (nothing := meaningless(tree)) is not None:
         node, why = nothing
-        complaints.error(
-            "no-number", Message("this is no real number: [[why]]", why=why), node.span, _no_number_hint(node)
-        )
+        complaints.error("no-number", "this is no real number: [[why]]", node.span, _no_number_hint(node), why=why)
         return tree
     return tree if complaints.error_count == errors_before else None
 

@@ -6,8 +6,10 @@ they collect into.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+
+from mbsym.expressions.message import GAP, Message
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -51,11 +53,14 @@ class Complaints:
         self._known = set(self.items)
         self.error_count = len(self.errors)
 
-    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
-        self._append(Complaint(code, message, span, hint))
+    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None, **gaps: object) -> None:
+        """``gaps`` are those of the message and of the hint, each in both if it stands in both."""
+        self._append(Complaint(code, _with(message, gaps), span, hint and _with(hint, gaps)))
 
-    def warning(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
-        self._append(Complaint(code, message, span, hint, "warning"))
+    def warning(
+        self, code: str, message: str, span: Span | None = None, hint: str | None = None, **gaps: object
+    ) -> None:
+        self._append(Complaint(code, _with(message, gaps), span, hint and _with(hint, gaps), "warning"))
 
     def _append(self, complaint: Complaint) -> None:
         self.error_count += complaint.severity == "error"
@@ -84,3 +89,9 @@ class Complaints:
 
     def __bool__(self) -> bool:
         return bool(self.items)
+
+
+def _with(text: str, gaps: Mapping[str, object]) -> str:
+    """A text with its gaps filled, unless it is a message already, or has none."""
+    own = {name: gaps[name] for name in GAP.findall(text) if name in gaps} if not isinstance(text, Message) else {}
+    return Message(text, **own) if own else text

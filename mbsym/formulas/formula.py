@@ -164,10 +164,10 @@ class Formula(GuessesNames):
         return self._with(other, lambda ring, x, y: ring.reduce(ring.times(x, y)))
 
     def __truediv__(self, other: object) -> Formula:
-        return self._with(other, lambda ring, x, y: ring.reduce(ring.times(x, ring.reciprocal(y))))
+        return self._with(other, lambda ring, x, y: ring.ratio(x, y))
 
     def __rtruediv__(self, other: object) -> Formula:
-        return self._with(other, lambda ring, x, y: ring.reduce(ring.times(y, ring.reciprocal(x))))
+        return self._with(other, lambda ring, x, y: ring.ratio(y, x))
 
     __radd__, __rmul__ = __add__, __mul__
 

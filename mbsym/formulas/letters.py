@@ -29,6 +29,7 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import MOST_DEGREE, Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.algebra.tower import MOST_ROOTS, Tower
 from mbsym.expressions.rates import ENDINGS
 from mbsym.expressions.tree import Call, Expression, names, sign_by_structure, substitute
@@ -357,21 +358,15 @@ class Rewriter:
 
     def _waves(self, polynomial: Polynomial) -> list[tuple[Polynomial, Polynomial]]:
         """Of a series in the sine and cosine of one angle the products of these, with the quotients before them."""
-        ring, found = self.ring, dict[tuple[int, ...], dict[tuple[int, ...], Any]]()
+        ring = self.ring
         held = {k: ring.generators[k] for k in occurring([polynomial])}
         waves = [k for k, g in held.items() if g.kind in ("sine", "cosine")]
         if len({held[k].name for k in waves}) != 1 or all(g.kind != "reciprocal" for g in held.values()):
             return []
-        for monomial, coefficient in polynomial.terms():
-            key = tuple(int(monomial[k]) for k in waves)
-            rest = list(monomial)
-            for k in waves:
-                rest[k] = 0
-            found.setdefault(key, {})[tuple(rest)] = coefficient
         gens = [ring.context.gen(k) for k in waves]
         return [
-            (prod((g**n for g, n in zip(gens, key, strict=True)), start=ring.one), ring.context.from_dict(terms))
-            for key, terms in found.items()
+            (prod((g**n for g, n in zip(gens, key, strict=True)), start=ring.one), quotient)
+            for key, quotient in apart(polynomial, waves).items()
         ]
 
     def _as_one(self, polynomial: Polynomial) -> Polynomial | None:

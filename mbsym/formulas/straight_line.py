@@ -14,7 +14,6 @@ from itertools import chain
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Instruction, Node, Program
-from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import MOST_WRITTEN_OUT, Name, slope_written_out, written_out
 from mbsym.formulas.tree import writable
@@ -184,12 +183,10 @@ class WithoutTables(Program):
         table, count = name.table, len(name.table.points)
         if count > MOST_WRITTEN_OUT:
             raise NoClosedForm(
-                Message(
-                    "the table [[table]] has [[count]] points: there it is written out by moduli, up to [[most]]",
-                    table=table.name,
-                    count=count,
-                    most=MOST_WRITTEN_OUT,
-                )
+                "the table [[table]] has [[count]] points: there it is written out by moduli, up to [[most]]",
+                table=table.name,
+                count=count,
+                most=MOST_WRITTEN_OUT,
             )
         at = Name("x")
         expression = slope_written_out(name.curve, at) if name.curve.order else written_out(table, at, whole=False)

@@ -15,7 +15,6 @@ from math import floor, gcd, log2
 from typing import Any, Literal, NamedTuple
 
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.expressions.message import Message
 
 Rational = Any  # flint.fmpq
 
@@ -109,9 +108,7 @@ _MOST_BITS = floor(MOST_DIGITS * log2(10))
 def writable(*numbers: int) -> None:
     """Raises NoClosedForm if one of the integers has more digits than can be read again."""
     if max(map(int.bit_length, numbers)) > _MOST_BITS:
-        raise NoClosedForm(
-            Message("a number in it has more than [[most]] digits", most=MOST_DIGITS), limit=Limit.DIGITS
-        )
+        raise NoClosedForm("a number in it has more than [[most]] digits", most=MOST_DIGITS, limit=Limit.DIGITS)
 
 
 # Polynomials as dictionaries of monomials, for showing them: what is common, what is obviously irreducible, signs.

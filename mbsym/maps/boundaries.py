@@ -67,6 +67,8 @@ class Origin(Enum):
     POTENTIAL = "N = 0"
     CYCLIC = "rows of cyclic coordinates"
     ENERGY = "sign in the energy law"
+    #: Where K vanishes in the whole section: of the first term of V that does not.
+    HIGHER_ORDER = "term of higher order"
     ASSUMPTION = "assumption"
     SIGN = "declared sign"
     INERTIA = "triangle inequality"

@@ -26,7 +26,7 @@ from mbsym.analysis import Analysis
 from mbsym.maps.admissible import Admissibility
 from mbsym.maps.boundaries import Boundaries
 from mbsym.maps.check import check_boxes
-from mbsym.maps.mapping import Judge, Watch, bounded, box_of, kept_in, unwatched, without_constant
+from mbsym.maps.mapping import Judge, Watch, bounded, box_of, by_first_term, kept_in, unwatched, without_constant
 from mbsym.maps.result import Cell, Lack, Map, Of, Shape
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section, unmade
 from mbsym.maps.subdivision import ByBoundaries, ByEnclosures, End, Subdivision, about_centre, centre, subdivide
@@ -37,7 +37,7 @@ from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict, combine, displaced, off_the_leaf
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: Boxes are halved so often at most, and there are so many of them at most.
 DEPTH, MOST = 12, 20_000
@@ -102,7 +102,7 @@ def box_map(
     boundaries, method = Boundaries((), (), ()), Method.ENCLOSURES
     try:
         if functions is None:
-            boundaries = bounded(there, admissibility)
+            boundaries = bounded(analysis, there, admissibility)
             method = Method.BOUNDARIES
     except TooLargeError as error:
         if there.constant is not None or of is not Of.STABILITY:
@@ -123,11 +123,12 @@ def box_map(
             checked = None
     if checked is not None and not checked.holds:  # a route that is wrong in one box is trusted in none
         cells = [cell if cell.said is None else cell.withdrawn for cell in cells]
-    return BoxMap(
+    found = BoxMap(
         of, there.axes, there.told, made, boundaries, tuple(cells),
         areas=tuple((float(tile.box.area), 0.0) for tile in made.tiles), section=there, admissibility=admissibility,
         interrupted=checked is None, check=checked, method=method, because=because,
     )  # fmt: skip
+    return by_first_term(found, analysis) if method is Method.BOUNDARIES else found
 
 
 def _cell(number: int, proved: Cell | None, sample: tuple[Rational, Rational]) -> Cell:

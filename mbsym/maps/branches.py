@@ -48,7 +48,7 @@ from mbsym.problems.relative_equilibria.equilibria import (
     rank_of,
 )
 from mbsym.problems.relative_equilibria.place import Place
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.words import Because
 
 #: Parts of a range at which a parameter is tried, where nothing special happens.
 _TRIED = tuple(Fraction(k, 97) for k in (48, 21, 77, 5, 92))

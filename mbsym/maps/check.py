@@ -34,24 +34,22 @@ from mbsym.algebra.characteristic import characteristic_polynomial
 from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.matrices import added
 from mbsym.algebra.plane import AlgebraicNumber
-from mbsym.algebra.plane.elements import ElementMatrix
-from mbsym.algebra.plane.fields import Over
-from mbsym.algebra.plane.line import Line, univariate
+from mbsym.algebra.plane.elements import ElementMatrix, LineField, PointField
+from mbsym.algebra.plane.fields import Over, Point
+from mbsym.algebra.plane.line import Line
 from mbsym.algebra.plane.numbers import Rational, between_simply, high, low, sign, simplest
-from mbsym.algebra.plane.point_field import LineField, PointField
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import nothing
 from mbsym.algebra.rationals import fraction
 from mbsym.algebra.roots import RootCount, counted, counted_real
+from mbsym.algebra.terms import univariate
 from mbsym.maps.section import Section
 from mbsym.maps.verdicts import Border, Judged, jumps, verdict_at
 from mbsym.problems.stability.constant import Constant
 from mbsym.problems.stability.enclosed import eigenvalues, on_axis, spectrum
 from mbsym.problems.stability.exact import ExactPoint, PointVerdict, RationalPoint, evaluated, inertia, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, Matrix, is_zero, state_matrix
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import Verdict, combine
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 # The exact verdict of problem 6 at an exact point of a section: on a curve, at a corner, at an end of an interval.
 #

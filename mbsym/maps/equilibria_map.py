@@ -27,7 +27,6 @@ from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.plane import Point
 from mbsym.algebra.polynomial_systems import Limits, _Branch, _moved, _moved_back, _Solver, context
 from mbsym.algebra.ring import Polynomial
-from mbsym.expressions.message import Message
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, factored
 from mbsym.maps.branches_curve import INFINITY_OPEN, MASS_OPEN, Varied, searches_over
 from mbsym.maps.branches_events import BY_INERTIA, is_undamped
@@ -289,5 +288,5 @@ def surfaces(
     """
     found = [Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches]
     if angles := [name for surface in found for name in surface.in_angles]:
-        raise NoClosedForm(Message("[[name]] stands in a root or a function", name=angles[0]))
+        raise NoClosedForm("[[name]] stands in a root or a function", name=angles[0])
     return tuple(surface for surface in found if not surface.empty)

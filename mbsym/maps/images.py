@@ -15,6 +15,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoValue, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import with_quotients
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.stability.constant import Constant
@@ -70,21 +71,10 @@ class Images:
         indices = None if ring is None or ring is self.ring else ring.indices
         used = occurring([p])
         images = {k: self._generator(k if indices is None else indices[k]) for k in used}
-        degrees = p.degrees() if p else []
         if all(bottom == 1 for _, bottom in images.values()):
             places = [images[k][0] if k in images else self.context.constant(0) for k in range(p.context().nvars())]
             return (p.compose(*places, ctx=self.context) if p else self.context.constant(0)), self._one
-        total, below = self.context.constant(0), self._one
-        for k in used:
-            below *= images[k][1] ** int(degrees[k])
-        for exponents, coefficient in p.terms():
-            term = self.context.constant(coefficient)
-            for k in used:
-                top, bottom = images[k]
-                power = int(exponents[k])
-                term *= top**power * bottom ** (int(degrees[k]) - power)
-            total += term
-        return _lowest(total, below)
+        return _lowest(*with_quotients(p, images, self.context))
 
     def _generator(self, k: int) -> Image:
         if k in self._given:

@@ -4,10 +4,10 @@ every arc and at every corner."""
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
@@ -17,9 +17,13 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.characteristic import leading_minors
 from mbsym.algebra.failures import Failure, TooLargeError
 from mbsym.algebra.plane import AlgebraicNumber, Box, Point
-from mbsym.algebra.plane.line import Line, decompose_line, univariate
+from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import sign
+from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.signs import SIGN_WORDS
+from mbsym.algebra.terms import univariate
 from mbsym.analysis import Analysis
+from mbsym.analysis.higher import FirstTerm, first_term
 from mbsym.analysis.judge import Judge as OneJudge
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
@@ -58,8 +62,8 @@ def exact_map(
     there = section(analysis, axes, settings)
     kept = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    found = with_onsets(mapped(there, kept, bounded(there, kept), of, watch), SoftBorders(analysis, there), watch)
-    return with_nonlinear(found, analysis, watch)
+    found = mapped(there, kept, bounded(analysis, there, kept), of, watch)
+    return with_nonlinear(with_onsets(found, SoftBorders(analysis, there), watch), analysis, watch)
 
 
 def kept_in(analysis: Analysis, there: Section) -> Admissibility:
@@ -70,10 +74,68 @@ def kept_in(analysis: Analysis, there: Section) -> Admissibility:
     return kept
 
 
-def bounded(there: Section, kept: Admissibility) -> Boundaries:
+def bounded(analysis: Analysis, there: Section, kept: Admissibility) -> Boundaries:
     """All boundaries of a section: of verdicts, of what is kept, and the axes' zeros where the energy asks for them."""
     conditions = [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
+    degenerate = first_term_in(analysis, there)
+    if degenerate is not None:
+        conditions.append(Condition(Origin.HIGHER_ORDER, degenerate.coefficient))
     return boundaries(there, [*(demand.condition for demand in kept.demands), *conditions], kept.known)
+
+
+@dataclass(frozen=True)
+class ByFirstTerm:
+    """Decides cells of a section in which K of the one coordinate vanishes, by the first term of V that does not.
+
+    ``coefficient`` and ``damping``: what has their signs, polynomials in the axes.
+    """
+
+    term: FirstTerm
+    coefficient: Any
+    damping: Any
+
+    def __call__(self, cell: Cell) -> Cell:
+        """The cell, decided if its verdict is open and the sign of the coefficient at its sample decides."""
+        if cell.judged is None or not cell.judged.verdict.word.open:
+            return cell
+        word = SIGN_WORDS[frozenset({_sign(cell.sample, self.coefficient)})]
+        verdict = replace(self.term, damped=_sign(cell.sample, self.damping) > 0).verdict(word)
+        return cell if verdict is None else replace(cell, said=replace(cell.judged, verdict=verdict))
+
+
+def first_term_in(analysis: Analysis, there: Section) -> ByFirstTerm | None:
+    """What decides cells of a section in which K of the one coordinate vanishes; None of others."""
+    if there.constant is not None or len(there.parts) != 1 or any(x != 0 for row in there.parts[0].K for x in row):
+        return None
+
+    def carried(x: Polynomial) -> Any:
+        above, below = there.images(x)
+        return above * below
+
+    def sign_of(x: Polynomial) -> str:
+        image = carried(x)
+        if not image.is_constant():
+            return "unknown"
+        return "zero" if image == 0 else SIGN_WORDS[frozenset({sign(image.leading_coefficient())})]
+
+    numbers = {name: x for name, x in there.numbers.items() if name in analysis.system.parameter_names}
+    try:
+        term = first_term(analysis, analysis.balance.at(numbers), sign_of)
+        return None if term is None else ByFirstTerm(term, carried(term.coefficient), there.parts[0].D[0][0])
+    except Failure:
+        return None
+
+
+AnyMap = TypeVar("AnyMap", bound=Map)
+
+
+def by_first_term(found: AnyMap, analysis: Analysis) -> AnyMap:
+    """The map with open verdicts decided by the first term of V, whose coefficient's sign bounds regions."""
+    decided = None if found.section is None else first_term_in(analysis, found.section)
+    if decided is None or found.of is not Of.STABILITY:
+        return found
+    regions, arcs, corners = (tuple(map(decided, part)) for part in (found.regions, found.arcs, found.corners))
+    return replace(found, regions=regions, arcs=arcs, corners=corners)
 
 
 def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
@@ -109,14 +171,16 @@ def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
 
 
 def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
-    """The map with what the one judge says at rational samples where the first approximation and the energy are open.
+    """The map with what the nonlinear system shows where the first approximation and the energy are open.
 
-    It is said of these points alone: what terms of higher order depend on bounds no region.  Only where the axes and
-    all that is given are parameters with numbers, and at the first ``MOST_ASKED`` of such points.
+    Of one coordinate whose K vanishes in the whole section the first term of V decides.  Else it is what the one judge
+    says of rational samples alone: only where the axes and all that is given are parameters with numbers, and at the
+    first ``MOST_ASKED`` of such points.
     """
     there, system = found.section, analysis.system
     if found.of is not Of.STABILITY or found.interrupted or there is None or there.constant is not None:
         return found
+    found = by_first_term(found, analysis)
     names = {axis.name for axis in found.axes}
     related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
     if {*system.parameter_names} - related != {*there.numbers, *names} - related:

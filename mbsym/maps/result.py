@@ -26,7 +26,7 @@ from mbsym.maps.soft_borders import SoftBorders, SoftOrHard
 from mbsym.maps.subdivision import Subdivision
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 if TYPE_CHECKING:
     from mbsym.maps.branches_result import Critical

@@ -41,6 +41,7 @@ from mbsym.maps.mapping import (
     bounded,
     box_of,
     ends,
+    first_term_in,
     kept_in,
     mapped,
     unwatched,
@@ -138,7 +139,7 @@ def stack(
     there = section(analysis, axes, settings)
     admissibility = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    boundaries = bounded(there, admissibility)
+    boundaries = bounded(analysis, there, admissibility)
     line = critical_levels(boundaries.factors, box_of(axes), *ends(axes[2]), progress=watch)
     if len(line.zeros) > MOST_LEVELS:
         raise TooLargeError(
@@ -211,7 +212,7 @@ class _Slicing:
         flat = [p if p == 0 else norm_of_factors(cut, p) for p in flat]
         if all(p != 0 for p in flat):
             return Boundaries(tuple(flat), self.boundaries.conditions, self.boundaries.vanishing)
-        own = bounded(cut, admissibility)
+        own = bounded(self.analysis, cut, admissibility)
         here = [p if p != 0 else cut.context.constant(1) for p in flat]
         further = [
             (p, conditions)
@@ -239,7 +240,9 @@ class _Slicing:
         flat = [flattened(p, z, cut.context) for p in self.boundaries.factors]
         there: Arrangement = decompose([p if p != 0 else cut.context.constant(1) for p in flat], box_of(cut.axes))
         judge = Judge(cut, admissibility)
-        kinds = [judge(Shape.REGION, region.id, Point(*region.sample)).kind for region in there.regions]
+        cells = [judge(Shape.REGION, region.id, Point(*region.sample)) for region in there.regions]
+        decided = first_term_in(self.analysis, cut) if self.of is Of.STABILITY else None
+        kinds = [(cell if decided is None else decided(cell)).kind for cell in cells]
         return alike(
             plane.arrangement,
             there,

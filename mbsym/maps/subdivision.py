@@ -31,10 +31,8 @@ from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.enclosed import enclosed_verdict_with_cyclic
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.nonholonomic import to_the_right
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, exactly
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Reason, Word
 
 Proved = TypeVar("Proved")
 Given = TypeVar("Given", covariant=True)

@@ -28,7 +28,6 @@ from typing import Generic
 from mbsym.algebra.base import Algebra, S
 from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.vectors import Tensor, Vector, axis_vector, symmetric_tensor, tensor_of, zero_tensor
-from mbsym.expressions.message import Message
 from mbsym.mechanics.articulation import Articulation, Frame, MassProperties, turned_symmetric
 from mbsym.mechanics.falling import falling_scene, overrides
 from mbsym.mechanics.frames import Turn
@@ -251,7 +250,7 @@ class _Articulated(Generic[S]):
         lacking = [name for name in self.system.coordinates if name not in self.pivots]
         if lacking:
             raise SingularPoint(
-                Message("the mass matrix is singular everywhere: [[names]] moves no body", names=", ".join(lacking))
+                "the mass matrix is singular everywhere: [[names]] moves no body", names=", ".join(lacking)
             )
         accelerations = self._outwards()
         names = self.system.coordinates
@@ -297,9 +296,7 @@ class _Articulated(Generic[S]):
         """The inertia that is left, and the joint with its pivot inverted; the frame's wrench is updated."""
         algebra, pivot = self.algebra, joint.inverse
         if algebra.vanishes(pivot):
-            raise SingularPoint(
-                Message("the mass matrix is singular everywhere: [[joint]] moves no mass", joint=joint.name)
-            )
+            raise SingularPoint("the mass matrix is singular everywhere: [[joint]] moves no mass", joint=joint.name)
         self.pivots[joint.name] = algebra.times(pivot, algebra.times(joint.slope, joint.slope))
         inverse = algebra.reciprocal(pivot)
         ratio_force = _scaled(joint.force, inverse)

@@ -19,7 +19,6 @@ from mbsym.algebra.base import S
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import determinant
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.articulation import mass_properties
 from mbsym.mechanics.kinematics import BodyMotion, Scene
@@ -99,7 +98,7 @@ def own_determinants(system: System, ring: Ring) -> list[Polynomial]:
             done.update(own)
     left = [name for name in system.coordinates if name not in done]
     if left:
-        raise NoClosedForm(Message("no body alone tells [[names]]", names=", ".join(left)))
+        raise NoClosedForm("no body alone tells [[names]]", names=", ".join(left))
     return polynomials
 
 
@@ -140,7 +139,7 @@ class _Energies:
         minors = [ring.reduce(determinant(ring, [[tensor[i][j] for j in k] for i in k])) for k in _PRINCIPAL]
         if any(not x.is_constant() or _constant(x) < 0 for x in (ring.reduce(motion.mass), *minors)):
             raise NoClosedForm(
-                Message("the mass and tensor of [[body]] are not those of a body at rest in its own axes", body=body)
+                "the mass and tensor of [[body]] are not those of a body at rest in its own axes", body=body
             )
 
     def hessian(self, body: str, moving: Sequence[str]) -> list[list[Polynomial]]:

@@ -60,7 +60,7 @@ WITHOUT_BODIES = Message("the system is given by its matrices, and has no bodies
 def refuse_matrices(system: System, what: str) -> None:
     """Raises GivenByMatrices if the system has matrices in place of bodies."""
     if system.linear is not None:
-        raise GivenByMatrices(Message("[[what]]: [[why]]", what=what, why=WITHOUT_BODIES), remedy=HINT)
+        raise GivenByMatrices("[[what]]: [[why]]", what=what, why=WITHOUT_BODIES, remedy=HINT)
 
 
 HINT = "the linear equations themselves are in problem 5"

@@ -10,9 +10,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
 
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.matrices import adjugate, determinant
+from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import ZERO, Expression, names
@@ -165,3 +168,51 @@ def _same_forces(found: Rest, length: str, angle: str) -> bool:
         ring.is_zero(reflected(found, f, length, angle) - signs.get(name, 1) * f) is True
         for name, f in zip(found.system.coordinates, found.forcing, strict=True)
     )
+
+
+#: Kinetic energies of more coordinates are not asked for their curvature.
+MOST_CURVED = 3
+
+
+def constantly_curved(ring: Ring, metric: Sequence[Sequence[Polynomial]], coordinates: Sequence[str]) -> bool:
+    """Whether T = g_ij q'_i q'_j/2 is the same at every position and in every direction, as of a plane or a sphere:
+
+        R_ijkl = c (g_ik g_jl - g_il g_jk),    c constant,
+
+    R_ijkl of the derivatives of g and of the Christoffel symbols [ij, k].  Then displacements that change no equation
+    lead to every position near by.  One coordinate is always such (it is a function of the length of its path).
+    """
+    size = range(len(coordinates))
+    if len(size) == 1:
+        return True
+    if len(size) > MOST_CURVED:
+        return False
+    slopes = [[[ring.derivative(x, name) for x in row] for row in metric] for name in coordinates]
+    bends = [[[[ring.derivative(x, name) for x in row] for row in slope] for slope in slopes] for name in coordinates]
+    symbols = [[[(slopes[i][j][k] + slopes[j][i][k] - slopes[k][i][j]) / 2 for k in size] for j in size] for i in size]
+    whole = determinant(ring, metric)
+    inverse = adjugate(metric, partial(determinant, ring))  # times det g
+
+    def curvature(i: int, j: int, k: int, l: int) -> Polynomial:
+        """R_ijkl det g."""
+        second = bends[j][k][i][l] + bends[i][l][j][k] - bends[i][k][j][l] - bends[j][l][i][k]
+        total = ring.times(whole, second / 2)
+        for m in size:
+            for n in size:
+                square = ring.times(symbols[j][k][m], symbols[i][l][n]) - ring.times(symbols[j][l][m], symbols[i][k][n])
+                total = total + ring.times(inverse[m][n], square)
+        return ring.reduce(total)
+
+    def area(i: int, j: int, k: int, l: int) -> Polynomial:
+        return ring.reduce(ring.times(metric[i][k], metric[j][l]) - ring.times(metric[i][l], metric[j][k]))
+
+    def same(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> bool:
+        """Whether a/b = c/d."""
+        return ring.vanishes(ring.reduce(ring.times(a, d) - ring.times(c, b)))
+
+    top, bottom = curvature(0, 1, 0, 1), area(0, 1, 0, 1)
+    pairs = list(combinations(size, 2))
+    if not all(same(curvature(*one, *other), area(*one, *other), top, bottom) for one in pairs for other in pairs):
+        return False
+    scale = ring.times(whole, bottom)  # c = top/scale
+    return all(same(ring.derivative(top, name), ring.derivative(scale, name), top, scale) for name in coordinates)

@@ -91,7 +91,7 @@ def integral_unit(system: System, kind: str, of: str) -> str | None:
     if kind in _MOMENTA:
         return system.units.text(_MOMENTA[kind])
     if kind != "cyclic momentum":
-        energies = ("generalised energy", "energy with the potential of the forces")
+        energies = ("generalised energy", "energy with the potential of the forces", "energy of a part")
         return energy_unit(system) if kind in energies else None
     own = dimension_of(system, of)
     return None if own is None else system.units.text(times(times(ENERGY, TIME), own, -1))

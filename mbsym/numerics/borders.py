@@ -37,7 +37,7 @@ from mbsym.numerics.scenario import Incomplete, Scenario, changed
 from mbsym.numerics.trade.digits import FULL, PRECISIONS, Digits, compared, digits_of, tight
 from mbsym.problems.stability import ExactVerdicts
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 BORDER = "border of stability"
 

@@ -19,7 +19,6 @@ from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.message import Message
 from mbsym.expressions.table import Curve, Tabulated
 
 _SHORT = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/", "negative": "neg"}
@@ -161,7 +160,7 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
     unknown = sorted(needed.keys() - set(order))
     if unknown:
         text = "the places of bodies depend on what has no value: [[names]]"
-        raise NoClosedForm(Message(text, names=", ".join(unknown)))
+        raise NoClosedForm(text, names=", ".join(unknown))
     inputs = tuple(name for name in order if name in needed)
     value = {needed[name]: k for k, name in enumerate(inputs)}
     constants = [(number, one) for number, one in instructions if one.operation == "constant"]
@@ -180,7 +179,7 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
         else:
             name = _SHORT.get(name, name)
             if name not in OPERATIONS:
-                raise NoClosedForm(Message("pictures do not know the operation [[name]]", name=name))
+                raise NoClosedForm("pictures do not know the operation [[name]]", name=name)
         steps.append((name, *(value[k] for k in one.operands)))
         value[number] = len(value)
     numbers = tuple(float(one.payload) for _, one in constants)  # type: ignore[arg-type]

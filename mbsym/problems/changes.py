@@ -30,6 +30,7 @@ from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.failures import Limit, NoClosedForm, SingularPoint
 from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Quotient, Series
+from mbsym.algebra.terms import evaluated
 
 MOST_ROUNDS = 40
 #: Numerators and denominators of the random states.
@@ -130,14 +131,8 @@ class Reduction:
             return fmpq_poly([0 if c is None else c.top(*at) / c.bottom(*at) for c in terms])
 
         def whole(p: Polynomial, put: Mapping[int, fmpq_poly]) -> fmpq_poly:
-            total = fmpq_poly()
-            for monomial, c in p.to_dict().items():
-                term = fmpq_poly([c])
-                for place, power in enumerate(monomial):
-                    if power:
-                        term *= (put[place] if place in put else fmpq_poly([at[place]])) ** int(power)
-                total += term
-            return total
+            there = [put[place] if place in put else fmpq_poly([x]) for place, x in enumerate(at)]
+            return evaluated(p, lambda place, power: there[place] ** power, lambda c: fmpq_poly([c]))
 
         eps = fmpq_poly([0, 1])
         put = {place: _lowered(value(x), shift) for place, x in images.items()} | {self.small: eps}

@@ -118,12 +118,7 @@ def extent(lengths: Mapping[str, int], what: str, fixed: int = 0) -> Extent:
             break
         chosen.append(name)
     remark = (
-        Message(
-            "[[count]] of [[all]] [[what]], the others are longer",
-            count=len(chosen),
-            all=len(lengths),
-            what=what,
-        )
+        Message("[[count]] of [[all]] [[what]], the others are longer", count=len(chosen), all=len(lengths), what=what)
         if len(chosen) < len(lengths)
         else ""
     )
@@ -367,12 +362,7 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
 
 def _terms(body: BodyKinematics) -> int:
     """The length of everything that problem 1 says of a body."""
-    vectors = (
-        body.relative_angular_velocity,
-        body.angular_velocity,
-        body.velocity_origin,
-        body.velocity_mass_centre,
-    )
+    vectors = (body.relative_angular_velocity, body.angular_velocity, body.velocity_origin, body.velocity_mass_centre)
     return body.rotation.terms + sum(x.terms for vector in vectors for x in vector)
 
 
@@ -451,10 +441,7 @@ def check_identities(
             open_entries.append(label)
     if open_entries:
         return Check(
-            name,
-            *routes,
-            UNDECIDED,
-            Message("open whether they agree in [[names]]", names=joined(open_entries, ", ")),
+            name, *routes, UNDECIDED, Message("open whether they agree in [[names]]", names=joined(open_entries, ", "))
         )
     return Check(name, *routes, EXACT, WHERE_IT_EXISTS if needed else HOW_EQUAL[EXACT])
 

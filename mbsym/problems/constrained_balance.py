@@ -42,16 +42,14 @@ class ConstrainedBalance(Balance):
     oscillating: str = ""
     steady: int | None = None
 
-    @cached_property
-    def law(self) -> EnergyLaw:
-        """The law of the energy."""
+    def _law(self) -> EnergyLaw:
         free = Balance(self.scene, self.energy, self.signs, self.fixed, self.somewhere)
         moving = set(self.scene.system.coordinates) - self._resting
         if self._rows is None:
             return EnergyLaw.UNKNOWN
         if (not self._homogeneous or self._touched & moving) and not self.exactly_linear:
             return EnergyLaw.UNKNOWN
-        return free.law
+        return free._law()
 
     @cached_property
     def ignorable(self) -> tuple[str, ...]:

@@ -36,6 +36,7 @@ from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs, sign_of_product
+from mbsym.algebra.terms import apart
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.tree import (
@@ -125,7 +126,15 @@ class Balance:
 
     @cached_property
     def law(self) -> EnergyLaw:
-        """The law of the energy."""
+        """The law of the energy, of all values there may be if it is one."""
+        return self._law()
+
+    @cached_property
+    def conserves(self) -> bool:
+        """Whether the energy is constant: at values it may be where it does not grow at all of them."""
+        return self._law() is EnergyLaw.CONSERVED
+
+    def _law(self) -> EnergyLaw:
         try:
             if self._knows_the_time or not self._turns_freely:
                 return EnergyLaw.UNKNOWN
@@ -657,14 +666,7 @@ def _by_velocities(ring: Ring, x: Polynomial, coordinates: Sequence[str]) -> dic
     for k in used:
         if k not in indices and ring.dependencies(ring.context.gen(k), speeds):
             return None
-    parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for monomial, coefficient in x.terms():
-        exponents = list(map(int, monomial))
-        key = tuple(exponents[index] for index in indices)
-        for index in indices:
-            exponents[index] = 0
-        parts.setdefault(key, {})[tuple(exponents)] = coefficient
-    return {key: ring.context.from_dict(part) for key, part in parts.items()}
+    return apart(x, indices)
 
 
 @dataclass(frozen=True)

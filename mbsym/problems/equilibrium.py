@@ -245,7 +245,7 @@ def _solve(
         return None
     _, _, index, slope = min(options, key=lambda option: option[:2])
     rest = condition - ring.times(slope, ring.context.gen(index))
-    return index, ring.reduce(ring.times(-rest, ring.reciprocal(slope)))
+    return index, ring.ratio(-rest, slope)
 
 
 def _preferred(system: System) -> list[str]:

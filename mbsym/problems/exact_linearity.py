@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Any
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.terms import apart
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
 from mbsym.mechanics.motion import relations
@@ -77,20 +77,12 @@ def _excess(scene: Scene, formulas: Iterable[Polynomial], most: int, known: Mapp
         curved = {k for k, g in others if ring.dependencies(g, moving)}
         late = {k for k, g in others if ring.dependencies(g, running)}
         varying = tuple(direct | curved | late)
-        apart: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-        for monomial, coefficient in x.terms():
-            rest = list(map(int, monomial))
-            degree = sum([rest[k] for k in direct])
-            runs = any(rest[k] for k in late)
-            bent = any(rest[k] for k in curved)
-            if degree <= most and not bent and not (runs and (degree or not most)):
+        for key, part in apart(x, varying).items():
+            held = [k for k, exponent in zip(varying, key, strict=True) if exponent]
+            degree = sum(exponent for k, exponent in zip(varying, key, strict=True) if k in direct)
+            runs = not late.isdisjoint(held)
+            if degree <= most and curved.isdisjoint(held) and not (runs and (degree or not most)):
                 continue
-            key = tuple([rest[k] for k in varying])
-            for k in varying:
-                rest[k] = 0
-            apart.setdefault(key, {})[tuple(rest)] = coefficient
-        for terms in apart.values():
-            part = ring.context.from_dict(terms)
             if part.is_constant():
                 return None
             polynomials.append(part)

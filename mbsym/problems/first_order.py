@@ -41,7 +41,7 @@ from mbsym.mechanics.variables import ring_environment
 from mbsym.model.system import velocity_name
 from mbsym.problems.checks import Check, check_identities
 from mbsym.problems.equilibrium import Equilibrium, unsolved
-from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.in_speeds import SpeedEquations
 from mbsym.problems.linearisation import Linearisation
 
 if TYPE_CHECKING:
@@ -264,7 +264,7 @@ def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
 
 def _not_steady(names: Iterable[str]) -> NoClosedForm:
     what = "the motion is not steady in speeds and positions: they vary with [[names]]"
-    return NoClosedForm(Message(what, names=", ".join(names)))
+    return NoClosedForm(what, names=", ".join(names))
 
 
 def _quaternions(form: SpeedForm, plain: Scene, reduced: Reduced | None) -> dict[str, Polynomial]:

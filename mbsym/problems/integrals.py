@@ -12,8 +12,9 @@ Found are
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
   mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted;
-* where the energy is conserved, such a momentum less W(q), if the forces that change it, which do no work together
-  (those of a magnetic field), are dW/dt: m x' - q B y.
+* of systems that consist of parts which do not know each other, the energy of each;
+* such a momentum less W(q), if the forces that change it are dW/dt: m x' - q B y of a magnetic field, m x' + c x of a
+  damper.
 
 Where a formula outgrows its budget, the energy and cyclic momenta that follow from the structure of the equations alone
 are named without one.
@@ -67,8 +68,11 @@ ENERGY = "generalised energy"
 WITH_FORCES = "energy with the potential of the forces"
 ENERGIES = (ENERGY, WITH_FORCES)
 
-#: A momentum less W, where forces that do no work change it by dW/dt.
-GYROSCOPIC = "gyroscopic momentum"
+#: The energy of coordinates whose equations know no others.
+OF_A_PART = "energy of a part"
+
+#: A momentum less W, where forces that do no work together change it by dW/dt; where forces do that do work.
+GYROSCOPIC, WITH_IMPULSE = "gyroscopic momentum", "momentum with the impulse of forces"
 
 #: Working precision of balls, in bits.
 PRECISION = 256
@@ -80,7 +84,7 @@ MOST_COORDINATES, MOST_TERMS = 3, 400
 
 @dataclass(frozen=True, repr=False)
 class Integral(Shown):
-    """``kind``: generalised energy, cyclic, linear, angular, gyroscopic momentum; ``of``: a coordinate or an axis."""
+    """``kind``: one of those above, or cyclic, linear, angular momentum; ``of``: coordinates or an axis."""
 
     name: str
     kind: str
@@ -113,15 +117,16 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     energies = [*_generalised_energy(scene, energy, equations)]
     idle = any(item.name == ENERGY for item in energies)
+    for item in _energies_of_parts(scene, energy, equations):
+        if _is_new(item.formula.polynomial, [x.formula.polynomial for x in energies]):
+            energies.append(item)
     found = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
     found = [item for item in found if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
-    found += _momenta(
-        scene, equations, conserved, [item.formula.polynomial for item in found if item.kind not in ENERGIES]
-    )
-    if idle and not all(load.conservative for load in scene.system.loads):
-        known = [item.formula.polynomial for item in found if item.kind not in ENERGIES]
-        found += _gyroscopic_momenta(scene, equations, conserved, known)
+    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item not in energies])
+    if not all(load.conservative for load in scene.system.loads):
+        known = [item.formula.polynomial for item in found if item not in energies]
+        found += _momenta_with_a_share(scene, equations, conserved, known, idle)
     return tuple(found)
 
 
@@ -166,28 +171,70 @@ def total_rate(scene: Scene, x: Polynomial) -> Polynomial:
 
 def _generalised_energy(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
     ring, names = scene.ring, scene.system.coordinates
-    momenta = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
+    integral = _jacobi(scene, energy)
     speeds = [ring.generator("velocity", name) for name in names]
-    power = ring.dot(momenta, speeds)
-    lagrangian = energy.kinetic_energy.polynomial + energy.force_function.polynomial
-    integral = ring.reduce(power - lagrangian)
-    multiplied = ring.dot(speeds, [x.polynomial for x in equations.equalities(names)])
-    power = ring.reduce(total_rate(scene, integral) - multiplied)
-    if ring.is_zero(power):
-        yield Integral(ENERGY, ENERGY, "time", Formula(ring, integral), Certainty.PROVED)
-        return
+    momenta = [ring.velocity_derivative(energy.kinetic_energy.polynomial, name) for name in names]
     squares = [[ring.velocity_derivative(x, name) for name in names] for x in momenta]
     half = ring.number(Fraction(1, 2))
-    quadratic = ring.times(half, ring.dot(speeds, [ring.dot(row, speeds) for row in squares]))
-    for whole, rate in ((integral, power), (quadratic, None)):
-        own = ring.reduce(total_rate(scene, whole) - multiplied) if rate is None else rate
-        work = _work(scene, own)
-        if work is None:
-            continue
-        integral = ring.reduce(whole - work)
-        if ring.is_zero(total_rate(scene, integral) - multiplied):
-            yield Integral(WITH_FORCES, WITH_FORCES, "time", Formula(ring, integral), Certainty.PROVED)
+    for whole in (integral, ring.times(half, ring.dot(speeds, [ring.dot(row, speeds) for row in squares]))):
+        formula = _with_work(scene, equations, whole, names)
+        if formula is not None:
+            kind = ENERGY if formula == whole == integral else WITH_FORCES
+            yield Integral(kind, kind, "time", Formula(ring, formula), Certainty.PROVED)
             return
+
+
+def _jacobi(scene: Scene, energy: Energy) -> Polynomial:
+    """T_2 - T_0 - U."""
+    ring, kinetic = scene.ring, energy.kinetic_energy.polynomial
+    momenta = [ring.velocity_derivative(kinetic, name) for name in scene.system.coordinates]
+    power = ring.dot(momenta, [ring.generator("velocity", name) for name in scene.system.coordinates])
+    return ring.reduce(power - kinetic - energy.force_function.polynomial)
+
+
+def _with_work(scene: Scene, equations: Equations, whole: Polynomial, of: Sequence[str]) -> Polynomial | None:
+    """An energy of coordinates, less what forces without a force function have done; None if that is not constant."""
+    ring, names = scene.ring, scene.system.coordinates
+    rows = {name: x.polynomial for name, x in zip(names, equations.equalities(names), strict=True)}
+    speeds = [ring.generator("velocity", name) for name in of]
+    power = ring.reduce(total_rate(scene, whole) - ring.dot(speeds, [rows[name] for name in of]))
+    if ring.is_zero(power):
+        return whole
+    work = _work(scene, power)
+    return None if work is None else ring.reduce(whole - work)
+
+
+def _energies_of_parts(scene: Scene, energy: Energy, equations: Equations) -> Iterator[Integral]:
+    """T_2 - T_0 - U of coordinates whose equations know no others, where there are such parts."""
+    ring, names = scene.ring, scene.system.coordinates
+    every = (*names, *scene.system.velocities)
+    owner = dict(zip(every, (*names, *names), strict=True))
+    parts = [{name} for name in names]
+
+    def joined_by(coordinates: set[str]) -> None:
+        touched = [part for part in parts if part & coordinates]
+        parts[:] = [part for part in parts if part not in touched] + ([set().union(*touched)] if touched else [])
+
+    for name, row, force in zip(names, equations.mass_matrix.polynomials, equations.forcing, strict=True):
+        joined_by({name, *(owner[x] for p in (*row, force.polynomial) for x in ring.dependencies(p, every))})
+        joined_by({name, *(other for other, entry in zip(names, row, strict=True) if not entry.is_zero())})
+    if len(parts) == 1:
+        return
+    shares = [ring.zero for _ in parts]
+    for monomial, coefficient in _jacobi(scene, energy).to_dict().items():
+        term = ring.context.from_dict({monomial: coefficient})
+        knowing = {owner[x] for x in ring.dependencies(term, every)}
+        at = [k for k, part in enumerate(parts) if part & knowing]
+        if len(at) > 1:
+            return
+        for k in at:
+            shares[k] = shares[k] + term
+    for part, share in sorted(zip(parts, shares, strict=True), key=lambda one: min(map(names.index, one[0]))):
+        of = [name for name in names if name in part]
+        formula = _with_work(scene, equations, share, of)
+        if formula is not None:
+            title = Message("energy of [[names]]", names=", ".join(of))
+            yield Integral(title, OF_A_PART, " ".join(of), Formula(ring, formula), Certainty.PROVED)
 
 
 def _work(scene: Scene, power: Polynomial) -> Polynomial | None:
@@ -215,14 +262,21 @@ def _cyclic_momenta(scene: Scene, energy: Energy, equations: Equations, idle: bo
         if name not in energy.cyclic:
             continue
         force = ring.reduce(total_rate(scene, momentum) - equations.equality(i, names).polynomial)
-        if ring.is_zero(force):
-            kind, title, share = "cyclic momentum", Message("momentum of [[name]]", name=name), ring.zero
-        elif not idle or (work := _work(scene, force)) is None:
-            continue
-        else:
-            title = Message("momentum of [[name]] with the share of gyroscopic forces", name=name)
-            kind, share = GYROSCOPIC, work
+        kind, title, share = "cyclic momentum", Message("momentum of [[name]]", name=name), ring.zero
+        if not ring.is_zero(force):
+            work = _work(scene, force)
+            if work is None:
+                continue
+            share = work
+            kind, title = _with_share(title, idle)
         yield Integral(title, kind, name, Formula(ring, ring.reduce(momentum - share)), Certainty.PROVED)
+
+
+def _with_share(momentum: Message, idle: bool) -> tuple[str, Message]:
+    """The kind of a momentum less W, and what it is called."""
+    if idle:
+        return GYROSCOPIC, Message("[[momentum]] with the share of gyroscopic forces", momentum=momentum)
+    return WITH_IMPULSE, Message("[[momentum]] with the impulse of forces", momentum=momentum)
 
 
 # --- momenta of the whole system ---
@@ -267,8 +321,12 @@ def _momenta(
     return found
 
 
-def _gyroscopic_momenta(
-    scene: Scene, equations: Equations, conserved: set[tuple[str, int]], known: Sequence[Polynomial]
+def _momenta_with_a_share(
+    scene: Scene,
+    equations: Equations,
+    conserved: set[tuple[str, int]],
+    known: Sequence[Polynomial],
+    idle: bool,
 ) -> list[Integral]:
     """Momenta of the whole system less W, where what is left of their rates by the equations is dW/dt, W(q)."""
     ring, names = scene.ring, scene.system.coordinates
@@ -287,9 +345,9 @@ def _gyroscopic_momenta(
             others = [*known, *(item.formula.polynomial for item in found)]
             if work is None or not _is_new(whole := ring.reduce(formula - work), others):
                 continue
-            title = Message("[[momentum]] with the share of gyroscopic forces", momentum=momentum_title(kind, axis))
+            sort, title = _with_share(momentum_title(kind, axis), idle)
             of = f"{kind.removesuffix(' momentum')} {axis}"
-            found.append(Integral(title, GYROSCOPIC, of, Formula(ring, whole), Certainty.PROVED))
+            found.append(Integral(title, sort, of, Formula(ring, whole), Certainty.PROVED))
     except Failure:
         pass  # what was found so far is right; the rest is not known
     return found

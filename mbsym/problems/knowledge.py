@@ -16,7 +16,6 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, SingularPoint
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
@@ -143,7 +142,7 @@ def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
     """
     found = _definitions(scene)
     if name not in found:
-        raise SingularPoint(Message("the symbol [[name]] has no closed form", name=name))
+        raise SingularPoint("the symbol [[name]] has no closed form", name=name)
     return found[name]
 
 

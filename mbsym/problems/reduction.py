@@ -29,7 +29,6 @@ from mbsym.algebra.failures import SingularPoint
 from mbsym.algebra.matrices import ScalarMatrix
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names as names_of
 from mbsym.formulas.formula import Formula, Shown
 from mbsym.mechanics.constraints.expansion import Expansion, Projected, Row, echelon, felt
@@ -115,11 +114,9 @@ def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 
     if found.lost and (demanded := [x for x in found.conditions if not x.is_zero()]):
         told = ", ".join(f"{Formula(scene.ring, x)} = 0" for x in demanded)
         raise SingularPoint(
-            Message(
-                "the motion keeps the constraints only where [[told]], and elsewhere they have another rank: write "
-                "numbers in the place of these parameters",
-                told=told,
-            )
+            "the motion keeps the constraints only where [[told]], and elsewhere they have another rank: write "
+            "numbers in the place of these parameters",
+            told=told,
         )
     if found.lost:
         raise SingularPoint(

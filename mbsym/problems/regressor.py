@@ -34,6 +34,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.program import Node, Program
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
@@ -127,11 +128,11 @@ def _refuse(system: System) -> None:
     inertial = [part for body in system.bodies for part in expressions(body)]
     fields = [load for load in system.loads if isinstance(load, UniformGravity)]
     if any(timely & names(x) for x in (*inertial, *expressions(tuple(fields)))):
-        raise NoClosedForm(Message("base parameters of a system that moves as prescribed are not looked for"))
+        raise NoClosedForm("base parameters of a system that moves as prescribed are not looked for")
     if system.newtonian_fields:
-        raise NoClosedForm(Message("base parameters are looked for in uniform fields of gravity alone"))
+        raise NoClosedForm("base parameters are looked for in uniform fields of gravity alone")
     if any(names(x) & {*system.coordinates} for body in system.bodies for x in _mass_properties(body)):
-        raise NoClosedForm(Message("the inertia of a body changes with the motion"))
+        raise NoClosedForm("the inertia of a body changes with the motion")
 
 
 def _mass_properties(body: Any) -> list[Any]:
@@ -147,21 +148,19 @@ class _Split:
         coordinates = set(system.coordinates)
         kinds = ("velocity", "acceleration", "coordinate", "prescribed", "time")
         self.moving = [
-            g.kind in kinds or (g.kind in ("sine", "cosine") and g.name in coordinates) for g in ring.generators
+            k
+            for k, g in enumerate(ring.generators)
+            if g.kind in kinds or (g.kind in ("sine", "cosine") and g.name in coordinates)
         ]
 
     def __call__(self, kinetic: Polynomial, force: Polynomial) -> _Column:
-        found: dict[tuple[Any, ...], dict[tuple[int, ...], Any]] = {}
+        column: dict[tuple[Any, ...], Polynomial] = {}
         for mark, x in (("T", kinetic), ("U", force)):
             self._check(x)
-            for monomial, coefficient in x.terms():
-                fast = tuple(int(e) if m else 0 for e, m in zip(monomial, self.moving, strict=True))
-                if mark == "U" and not any(fast):
-                    continue
-                slow = tuple(0 if m else int(e) for e, m in zip(monomial, self.moving, strict=True))
-                key = (mark, *((k, e) for k, e in enumerate(fast) if e))
-                found.setdefault(key, {})[slow] = coefficient
-        return {key: self.ring.context.from_dict(part) for key, part in found.items()}
+            for fast, slow in apart(x, self.moving).items():
+                if mark == "T" or any(fast):
+                    column[mark, *((k, e) for k, e in zip(self.moving, fast, strict=True) if e)] = slow
+        return column
 
     def _check(self, x: Polynomial) -> None:
         """Adjoined elements (roots, reciprocals) have to be constant, or monomials with them may depend on others."""
@@ -170,12 +169,12 @@ class _Split:
         degrees = x.degrees()
         for k, g in enumerate(self.ring.generators[: self.ring.spare]):
             if degrees[k] > 0 and (g.argument is None or self._moves(g.argument)):
-                raise NoClosedForm(Message("a joint's place is no polynomial in coordinates, sines and cosines"))
+                raise NoClosedForm("a joint's place is no polynomial in coordinates, sines and cosines")
 
     def _moves(self, x: Polynomial) -> bool:
         degrees = x.degrees()
         spare = self.ring.generators[: self.ring.spare]
-        return any(d > 0 and m for d, m in zip(degrees, self.moving, strict=True)) or any(
+        return any(degrees[k] > 0 for k in self.moving) or any(
             degrees[k] > 0 and (g.argument is None or self._moves(g.argument)) for k, g in enumerate(spare)
         )
 
@@ -212,7 +211,7 @@ def _slots(
     kept, dependent = _relations(ring, ordered)
     kept = [*kept, *long]
     if long and len(kept) > MOST_PROVED:
-        raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
+        raise NoClosedForm("formulas of T are too long to find the relations between their parts")
     if long:
         _independent(frames, system, kept)
     made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in kept}
@@ -271,7 +270,7 @@ def _independent(frames: Articulation[Polynomial], system: System, slots: Sequen
             for i in range(size):
                 matrix[i, k] = matrix[i, k] / longest if longest > 0 else matrix[i, k]
         if matrix.det().contains(0):
-            raise NoClosedForm(Message("formulas of T are too long to find the relations between their parts"))
+            raise NoClosedForm("formulas of T are too long to find the relations between their parts")
 
 
 def _relations(ring: Ring, columns: Mapping[Key, _Column]) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
@@ -315,7 +314,7 @@ def _eliminated(
             continue
         key = min(left, key=lambda one: (len(left[one].top) + len(left[one].bottom), rows.index(one)))
         if ring.is_zero(left[key].top) is None:
-            raise NoClosedForm(Message("whether a constant is zero cannot be decided"))
+            raise NoClosedForm("whether a constant is zero cannot be decided")
         unit = left[key]
         keys.append(name)
         pivots.append(
@@ -336,11 +335,7 @@ def _normal(ring: Ring, x: Quotient) -> Quotient:
 
 
 def _unequal(
-    ring: Ring,
-    columns: Mapping[Key, _Column],
-    name: Key,
-    row: Mapping[Key, Quotient],
-    known: Sequence[tuple[Any, ...]],
+    ring: Ring, columns: Mapping[Key, _Column], name: Key, row: Mapping[Key, Quotient], known: Sequence[tuple[Any, ...]]
 ) -> tuple[Any, ...] | None:
     """A monomial in which a column is not this combination of others; None where it is in all of them."""
     common = ring.one
@@ -364,4 +359,4 @@ def _unequal(
 def _polynomial(ring: Ring, x: Quotient) -> Polynomial:
     if x.bottom.is_constant():
         return x.top / x.bottom.leading_coefficient()
-    return ring.reduce(ring.times(x.top, ring.reciprocal(x.bottom)))
+    return ring.ratio(x.top, x.bottom)

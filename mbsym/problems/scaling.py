@@ -42,7 +42,7 @@ from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import relations
 from mbsym.problems.constraints import Constraints
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.in_speeds import SpeedEquations
 from mbsym.problems.stability.linear_form import LinearSystem
 
 #: More choices of units than this are not compared: then the first parameters that will do are taken.

@@ -156,11 +156,9 @@ def _steady(scene: Scene, found: StateSpace) -> StateSpace:
         among = {name for row in matrix.polynomials for x in row for name in unsteady(scene, x)}
         if among:
             raise NoClosedForm(
-                Message(
-                    "[[letter]] of the first-order form varies with [[names]]",
-                    letter=letter,
-                    names=", ".join(sorted(among)),
-                )
+                "[[letter]] of the first-order form varies with [[names]]",
+                letter=letter,
+                names=", ".join(sorted(among)),
             )
     return found
 

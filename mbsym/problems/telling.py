@@ -107,7 +107,7 @@ class _Limited(Program):
 
 def _too_many(most: int) -> TooLargeError:
     text = "more than [[most]] operations, too many to be told through intermediates"
-    return TooLargeError(Message(text, most=most))
+    return TooLargeError(text, most=most)
 
 
 def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:

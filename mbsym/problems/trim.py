@@ -119,4 +119,4 @@ def _cleared(ring: Ring, x: Polynomial) -> Polynomial:
             top = ring.times(top, ring.power(one, times * exponent))
     if not bottoms:
         return x
-    return ring.reduce(ring.times(ring.reduce(top), ring.reciprocal(ring.reduce(bottom))))
+    return ring.ratio(ring.reduce(top), ring.reduce(bottom))

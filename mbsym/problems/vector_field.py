@@ -225,10 +225,8 @@ class _State:
         roots = [k for k in variables if self._is_root(k)]
         if not independent(ring, [ring.context.gen(k) for k in roots]):
             raise NoClosedForm(
-                Message(
-                    "[[names]]: it is not shown that no product of what stands under these roots is a square",
-                    names=", ".join(map(self.name, roots)),
-                ),
+                "[[names]]: it is not shown that no product of what stands under these roots is a square",
+                names=", ".join(map(self.name, roots)),
                 remedy="write what is a square without a root, as 2*sin(x/2) for sqrt(2 - 2*cos(x))",
             )
         for k in roots:
@@ -263,7 +261,8 @@ class _State:
         if beside or (slopes and fmpq_mat(slopes).rank() < len(slopes) - tied):
             told = ", ".join([*map(self.name, functions), *beside])
             raise NoClosedForm(
-                Message("[[names]] are functions of each other: they cannot all be variables", names=told),
+                "[[names]] are functions of each other: they cannot all be variables",
+                names=told,
                 remedy="see 'mbsym symmetries', which needs no polynomials",
             )
 
@@ -288,10 +287,8 @@ class _State:
         powers = [x // gcd(*column) for x in column]
         if count > 1 or not ring.vanishes(ring.dot(exponents, [ring.number(n) for n in powers])):
             raise NoClosedForm(
-                Message(
-                    "the exponentials [[names]] are related in several ways, or by a constant factor",
-                    names=", ".join(map(self.name, places)),
-                ),
+                "the exponentials [[names]] are related in several ways, or by a constant factor",
+                names=", ".join(map(self.name, places)),
                 remedy="write them as powers of fewer exponentials",
             )
         sides = [ring.one, ring.one]

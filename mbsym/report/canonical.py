@@ -11,7 +11,7 @@ from mbsym.analysis.forms import BRACKETS, requested_forms
 from mbsym.formulas.formula import Formula, Matrix
 from mbsym.model.momenta import denominator_names
 from mbsym.model.system import System
-from mbsym.problems.canonical.canonical import DENOMINATORS
+from mbsym.problems.canonical import DENOMINATORS
 from mbsym.report.documents.base import Part, Write
 from mbsym.report.documents.results import canonical as doc
 from mbsym.report.latex.formulas import width
@@ -20,7 +20,7 @@ from mbsym.report.lengths import formulas
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.stages import NoResult
-    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
+    from mbsym.problems.canonical import Brackets, Hamilton, Routh
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from mbsym.formulas.names import parts
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.stability import Stability, SubsystemStability
 from mbsym.problems.stability.requirements import PART, REVERSED, Case, Place, Requirement
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: Places of the list as a whole: the others are told with the condition.
 _OF_THE_LIST = {Place.NECESSARY, Place.EXPONENTIAL, Place.SUFFICIENT}

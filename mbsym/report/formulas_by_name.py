@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from mbsym.analysis import Analysis
     from mbsym.analysis.reducing import Reduced
     from mbsym.analysis.scaled import Formulas
-    from mbsym.problems.in_speeds.speeds import SpeedEquations
+    from mbsym.problems.in_speeds import SpeedEquations
     from mbsym.problems.stability.problem import SubsystemStability
 
 #: The languages in which a formula is written; the first is for people.

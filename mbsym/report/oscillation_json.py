@@ -10,9 +10,9 @@ from msgspec import UNSET, UnsetType
 
 from mbsym.formulas.formula import Formula
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.oscillation_result import Harmonics
+from mbsym.problems.small_parameter.result import Harmonics
 from mbsym.report.documents import oscillations as doc
-from mbsym.report.documents.base import written
+from mbsym.report.documents.base import finite, written
 from mbsym.report.words.expansion_words import sum_of_powers
 from mbsym.report.words.oscillation_words import numerator
 
@@ -105,15 +105,20 @@ def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
         small=measured.small,
         time=float(f"{measured.time:.4g}"),
         parts=[str(x) for x in measured.parts],
+        relative=[_two_digits(x) for x in measured.relative],
         errors=[
             doc.Error(
                 variable=name,
-                errors=[float(f"{x:.2g}") for x in errors],
+                errors=[_two_digits(x) for x in errors],
                 order=None if order is None else round(order, 2),
             )
             for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
         ],
     )
+
+
+def _two_digits(error: float) -> float | None:
+    return finite(float(f"{error:.2g}"))
 
 
 def _function(told: Oscillating, name: str, series: Sequence[Harmonics]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from mbsym.problems.stability import Stability
-from mbsym.problems.stability.theorems import (
+from mbsym.problems.stability.words import (
     CHAPLYGIN,
     CHETAEV,
     CONVERSE,

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import log, pi
+from math import inf, log, pi
 from typing import Any
 
 from flint import arb, arb_series, ctx, fmpq
 
 from mbsym.algebra import rationals
-from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.failures import Failure, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.tower import Element, angle_in
 from mbsym.analysis.oscillating import Oscillating
@@ -23,13 +23,13 @@ from mbsym.expressions.tree import Expression, number
 from mbsym.model.system import System, velocity_name
 from mbsym.numerics.scenario import Scenario, exact, scenario
 from mbsym.numerics.states import scenario_in_states
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics
 from mbsym.simulation.request import Request
 from mbsym.simulation.run import simulate
 
 #: Parts of the given eps, and states that are compared over one period.
-PARTS = tuple(Fraction(1, 2**k) for k in range(1, 6))
+PARTS = tuple(Fraction(1, 2**k) for k in range(6))
 ROWS, BITS, TAYLOR = 24, 200, 24
 #: Errors below, in parts of the variable's size, are rounding of the simulation.
 NOISE_OF_A_RUN, NOISE_OF_BALLS = 1e-10, 1e-40
@@ -40,9 +40,10 @@ TOLERANCE = 1e-13
 class MeasuredOrders:
     """``errors[v][k]``: the largest |x_v - X_v| over one period at eps times ``parts[k]``, in scaled variables.
 
-    ``orders``: log2 of the ratio of the last two errors of each variable that rounding leaves, at ``parts[k]`` and
-    ``parts[k + 1]`` with k from ``halved``; None where there are none.  The expansion to order n is right where they
-    are about n + 1, or more.
+    ``relative[k]``: the largest of them as parts of max |X_v|, of the variables that the series does not set to zero;
+    infinite where no motion was found.  ``orders``: log2 of the ratio of the last two errors of each variable that
+    rounding leaves, at ``parts[k]`` and ``parts[k + 1]`` with k from ``halved``; None where there are none.  The
+    expansion to order n is right where they are about n + 1, or more.
     """
 
     small: float
@@ -50,6 +51,7 @@ class MeasuredOrders:
     parts: tuple[Fraction, ...]
     names: tuple[str, ...]
     errors: tuple[tuple[float, ...], ...]
+    relative: tuple[float, ...]
     orders: tuple[float | None, ...]
     halved: tuple[int, ...]
     simulated: bool
@@ -73,6 +75,7 @@ def measured_orders(
     whole = parameters[oscillation.small] if oscillation.small in told.field.parameters else Fraction(1)
     symbols = symbol_values(given, told, powers, whole, values or {})
     errors: list[list[float]] = [[] for _ in oscillation.names]
+    sizes: list[list[float]] = [[] for _ in oscillation.names]
     time = 0.0
     simulated = not system.speeds
     for part in PARTS:
@@ -84,21 +87,37 @@ def measured_orders(
         series = Numeric(told, parameters | symbols, eps)
         time = 2 * pi / abs(series.rate)  # a root in the frequency may stand above what is negative
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
-        if simulated:
-            rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
-        else:
-            start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in oscillation.names]
-            rows = _integrated(told.field, oscillation.names, numbers, start, times)
+        try:
+            if simulated:
+                rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
+            else:
+                start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in oscillation.names]
+                rows = _integrated(told.field, oscillation.names, numbers, start, times)
+        except (Failure, ArithmeticError, ValueError):
+            if part != 1:
+                raise
+            rows = []  # eps as it is given may be far too large for the series
         for place, name in enumerate(oscillation.names):
             unit = series.eps ** powers.get(name, 0)
             with ctx.workprec(BITS):
-                away = [abs(row[place] / unit - series.at(t, name)) for row, t in zip(rows, times, strict=True)]
-            errors[place].append(max(float(x.mid()) for x in away))
+                waves = [series.at(t, name) for t in times]
+                away = [abs(row[place] / unit - x) for row, x in zip(rows, waves, strict=bool(rows))]
+                sizes[place].append(max(abs(float(x.mid())) for x in waves))
+            errors[place].append(max((_number(x) for x in away), default=inf))
     noise = NOISE_OF_A_RUN if simulated else NOISE_OF_BALLS
     orders, halved = zip(*(_order(x, noise) for x in errors), strict=True)
-    return MeasuredOrders(
-        float(whole), time, PARTS, oscillation.names, tuple(map(tuple, errors)), orders, halved, simulated
+    relative = tuple(
+        max((of[k] / size[k] for of, size in zip(errors, sizes, strict=True) if size[k] > noise), default=inf)
+        for k in range(len(PARTS))
     )
+    return MeasuredOrders(
+        float(whole), time, PARTS, oscillation.names, tuple(map(tuple, errors)), relative, orders, halved, simulated
+    )
+
+
+def _number(x: Any) -> float:
+    """The midpoint of a ball; infinity where it is not finite."""
+    return float(x.mid()) if x.is_finite() else inf
 
 
 def _order(errors: Sequence[float], noise: float) -> tuple[float | None, int]:

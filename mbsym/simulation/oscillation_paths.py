@@ -17,6 +17,7 @@ import numpy as np
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.program import Program
+from mbsym.algebra.terms import evaluated
 from mbsym.analysis.oscillating import Oscillating
 from mbsym.expressions.tree import Expression, number
 from mbsym.mechanics.speeds import SpeedForm
@@ -122,13 +123,7 @@ def _rates(field: PolynomialField, parameters: Mapping[str, Fraction], columns: 
     known = [float(parameters[name]) for name in field.parameters] + [columns[name] for name in field.variables]
 
     def at(p: Any) -> Floats:
-        total: Floats = 0.0
-        for monomial, c in p.to_dict().items():
-            term: Floats = int(c.p) / int(c.q)
-            for x, e in zip(known, monomial, strict=True):
-                term = term * x ** int(e) if e else term
-            total = total + term
-        return total + np.zeros_like(known[-1])
+        return evaluated(p, lambda k, e: known[k] ** e, lambda c: int(c.p) / int(c.q)) + np.zeros_like(known[-1])
 
     below = at(field.denominator)
     return {name: at(p) / below for name, p in zip(field.variables, field.numerators, strict=True)}

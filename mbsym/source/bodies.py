@@ -108,11 +108,7 @@ def _declare_listed(draft: Draft, reading: Reading) -> None:
         return
     items = reading.lone_or_items(node, "'coordinates'")
     if len(items) > MAX_COORDINATES:
-        reading.error(
-            "too-large",
-            Message("a joint introduces at most [[most]] coordinates", most=MAX_COORDINATES),
-            node.span,
-        )
+        reading.error("too-large", "a joint introduces at most [[most]] coordinates", node.span, most=MAX_COORDINATES)
         return
     for item in items:
         scalar = reading.scalar(item, "a coordinate")
@@ -351,10 +347,7 @@ def _axis(node: Node, reading: Reading) -> int | None:
             "write [[index]]: the axes x, y, z are numbered 1, 2, 3", index="xyz".index(scalar.text.lower()) + 1
         )
     reading.error(
-        "bad-axis",
-        Message("rotation axes are 1, 2, 3 or 0, not [[what]]", what=ascii_safe(scalar.text)),
-        scalar.span,
-        hint,
+        "bad-axis", "rotation axes are 1, 2, 3 or 0, not [[what]]", scalar.span, hint, what=ascii_safe(scalar.text)
     )
     return None
 

@@ -44,8 +44,8 @@ from mbsym.source.settings import (
     read_motion,
     read_notation,
     read_relations,
+    read_small,
 )
-from mbsym.source.small import read_small
 from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, in_coordinates, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
@@ -293,13 +293,11 @@ def _bound(count: int, what: str, node: Node, reading: Reading) -> None:
     if count > MAX_INPUTS:
         reading.error(
             "too-large",
-            Message(
-                "a system has at most [[most]] [[what]], not [[count]]",
-                most=MAX_INPUTS,
-                what=worded(what),
-                count=count,
-            ),
+            "a system has at most [[most]] [[what]], not [[count]]",
             node.span,
+            most=MAX_INPUTS,
+            what=worded(what),
+            count=count,
         )
 
 

@@ -43,7 +43,7 @@ from mbsym.model.system import Body, System, velocity_name
 from mbsym.source.bodies import Draft
 from mbsym.source.identity import in_floats, vanishes
 from mbsym.source.reading import Reading
-from mbsym.source.shape import inertia_shape
+from mbsym.source.yaml_writer import inertia_shape
 
 #: Relative error of a number that is computed in floats because it has no exact value.
 _FLOATS = Fraction(1, 10**12)
@@ -83,10 +83,7 @@ def _check_coordinates(system: System, body: Body, draft: Draft, reading: Readin
             else "use it in an angle or in the connection point"
         )
         reading.error(
-            "idle-coordinate",
-            Message("the coordinate '[[name]]' moves nothing in this joint", name=name),
-            scalar.span,
-            hint,
+            "idle-coordinate", "the coordinate '[[name]]' moves nothing in this joint", scalar.span, hint, name=name
         )
 
 
@@ -260,9 +257,7 @@ def _check_single_moment(
     violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
         given = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
-        reading.error(
-            "bad-inertia", Message("no body has this inertia: [[violation]]", violation=violation), span, given
-        )
+        reading.error("bad-inertia", "no body has this inertia: [[violation]]", span, given, violation=violation)
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
@@ -387,9 +382,7 @@ def _check_given(system: System, reading: Reading) -> None:
             continue  # without names it has been judged where it stands
         if (nothing := meaningless(expression, known)) is not None:
             node, why = nothing
-            reading.error(
-                "no-number", Message("with the given values this is no real number: [[why]]", why=why), node.span
-            )
+            reading.error("no-number", "with the given values this is no real number: [[why]]", node.span, why=why)
 
 
 def _check_relation_values(system: System, reading: Reading) -> None:

@@ -252,10 +252,7 @@ class _Reader:
                 if key in self.fields.found:
                     hint = "add for example state: initial; formulas are compared exactly"
                     self.reading.error(
-                        "missing-key",
-                        Message("'[[key]]' is about numbers at a state", key=key),
-                        self.fields.key_span(key),
-                        hint,
+                        "missing-key", "'[[key]]' is about numbers at a state", self.fields.key_span(key), hint, key=key
                     )
 
     # --- what is claimed ---
@@ -371,10 +368,7 @@ class _Reader:
             hint = did_you_mean(words, known) or Message("one of: [[known]]", known=", ".join(known[:12]))
             wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
             self.reading.error(
-                "unknown-name",
-                Message("[[words]] is not [[wanted]]", words=ascii_safe(words), wanted=wanted),
-                scalar.span,
-                hint,
+                "unknown-name", "[[words]] is not [[wanted]]", scalar.span, hint, words=ascii_safe(words), wanted=wanted
             )
         return words
 

@@ -170,9 +170,7 @@ class Item:
             names = " nor ".join(f"'{way.keys[0]}'" for way in ways)
             if fields.sound:  # else there was no mapping
                 self.reading.error(
-                    "missing-key",
-                    Message("[[what]] has neither [[names]]", what=worded(fields.what), names=names),
-                    fields.span,
+                    "missing-key", "[[what]] has neither [[names]]", fields.span, what=worded(fields.what), names=names
                 )
             return None
         fields.exclude(found[-1].keys[0], (key for key in self.kind.keys if key not in found[-1].keys))

@@ -8,7 +8,6 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.constants import out_of_range
-from mbsym.expressions.message import Message
 from mbsym.expressions.parser import names_apart, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.tree import KINKED, Expression, number
@@ -34,9 +33,7 @@ def read_law(
     for expression in [tree] if tree is not None else names_apart(text, place, complaints.items[before:]):
         scope.check(expression, allowed)
     if tree is not None and (why := out_of_range(tree)):
-        complaints.error(
-            "no-number", Message("nothing can be computed with this number: [[why]]", why=why), place(0, len(text))
-        )
+        complaints.error("no-number", "nothing can be computed with this number: [[why]]", place(0, len(text)), why=why)
     return tree if len(complaints.items) == before else None
 
 

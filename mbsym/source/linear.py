@@ -36,9 +36,7 @@ def declare_linear(node: Node | None, whole: Fields, reading: Reading) -> tuple[
     items = () if names is None else reading.items(names, "'coordinates'")
     if names is not None and isinstance(names, Sequence) and not 1 <= len(items) <= MOST_COORDINATES:
         message = Message(
-            "a linear system has 1 to [[most]] coordinates, not [[items]]",
-            most=MOST_COORDINATES,
-            items=len(items),
+            "a linear system has 1 to [[most]] coordinates, not [[items]]", most=MOST_COORDINATES, items=len(items)
         )
         reading.error("wrong-shape", message, names.span)
     for item in items:

@@ -97,11 +97,9 @@ def check_characters(text: str, complaints: Complaints) -> bool:
     if len(text) > MAX_TEXT:
         complaints.error(
             "too-large",
-            Message(
-                "a description has at most [[most]] characters; this one has [[what]]",
-                most=MAX_TEXT,
-                what=len(text),
-            ),
+            "a description has at most [[most]] characters; this one has [[what]]",
+            most=MAX_TEXT,
+            what=len(text),
         )
         return False
     clean = True

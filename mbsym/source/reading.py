@@ -156,8 +156,8 @@ class Reading:
     doubles: bool = True
     labelled: bool = False
 
-    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None) -> None:
-        self.complaints.error(code, message, span, hint)
+    def error(self, code: str, message: str, span: Span | None = None, hint: str | None = None, **gaps: object) -> None:
+        self.complaints.error(code, message, span, hint, **gaps)
 
     @property
     def errors(self) -> int:
@@ -167,14 +167,12 @@ class Reading:
     def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
         self.error(
             "wrong-shape",
-            Message(
-                "[[what]] must be [[wanted]], not [[kind]]",
-                what=worded(what),
-                wanted=worded(wanted),
-                kind=worded(placed.kind(node)),
-            ),
+            "[[what]] must be [[wanted]], not [[kind]]",
             node.span,
             hint,
+            what=worded(what),
+            wanted=worded(wanted),
+            kind=worded(placed.kind(node)),
         )
 
     def scalar(self, node: Node, what: str) -> Scalar | None:
@@ -192,9 +190,7 @@ class Reading:
         text = " ".join(scalar.text.split()) if scalar else ""
         if len(text) > MAX_FREE_TEXT:
             self.error(
-                "too-long",
-                Message("[[what]] has at most [[most]] characters", what=worded(what), most=MAX_FREE_TEXT),
-                node.span,
+                "too-long", "[[what]] has at most [[most]] characters", node.span, what=worded(what), most=MAX_FREE_TEXT
             )
         return text
 
@@ -290,10 +286,7 @@ class Reading:
         if not isinstance(node, placed.Mapping):
             if isinstance(node, Scalar) and not node.text.strip():
                 self.error(
-                    "missing-value",
-                    Message("[[what]] is empty", what=worded(what)),
-                    node.span,
-                    hint or "leave the key out",
+                    "missing-value", "[[what]] is empty", node.span, hint or "leave the key out", what=worded(what)
                 )
             else:
                 self.shape_error(node, what, "a mapping (key: value)", _as_mapping(node) or hint)
@@ -303,9 +296,7 @@ class Reading:
         for entry in self.with_values(self.with_decimals(node.entries)):
             key = ALIASES.get(entry.key.text, entry.key.text)
             if key in seen:
-                self.error(
-                    "repeated-key", Message("[[what]] is given twice", what=ascii_safe(entry.key.text)), entry.key.span
-                )
+                self.error("repeated-key", "[[what]] is given twice", entry.key.span, what=ascii_safe(entry.key.text))
             else:
                 seen.add(key)
                 yield entry

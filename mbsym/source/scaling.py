@@ -9,6 +9,7 @@ places of a description demand one.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -16,20 +17,12 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
 from mbsym.expressions.rates import ENDINGS, velocity_name
-from mbsym.expressions.tree import (
-    CONSTANTS,
-    ONE,
-    Expression,
-    Name,
-    names,
-    substitute,
-    walk,
-)
+from mbsym.expressions.tree import CONSTANTS, ONE, Expression, Name, names, substitute, walk
+from mbsym.model.reducing import Asked, Reducing
 from mbsym.model.scaling import Scaled, Scaling, Weights, factor_of
 from mbsym.model.system import System
 from mbsym.source.scope import did_you_mean, listed, why_no_name
-from mbsym.source.units.expressions import Dimensions, Form
-from mbsym.source.units.system import dimensions_of
+from mbsym.source.units.system import Dimensions, Form, dimensions_of
 
 
 @dataclass(frozen=True)
@@ -157,8 +150,7 @@ def _known(name: str, span: Span, system: System, complaints: Complaints) -> boo
     there = ("t", *moving, *system.parameter_names)
     if name not in there:
         hint = did_you_mean(name, there) or listed("there are", there)
-        message = Message("there is nothing called [[name]] to scale", name=ascii_safe(name))
-        complaints.error("unknown-name", message, span, hint)
+        complaints.error("unknown-name", "there is nothing called [[name]] to scale", span, hint, name=ascii_safe(name))
         return False
     if name in {relation.name for relation in system.relations}:
         message = Message("'[[name]]' follows from a relation", name=name)
@@ -208,3 +200,36 @@ def _dimensions(
 def _weights(dimensions: Dimensions, name: str) -> Weights:
     form = dimensions.inference.reduced(dimensions.name_form(name))
     return {**dict(form.known), **{f"[{other}]": power for other, power in form.unknown}}
+
+
+# A reduction as an author asks for it: ``r1=1,h3=1 by integrals; q1,h2 by p1,h1; p1=p2+eps*lam; O(eps**3)``.
+#
+# Between semicolons stand steps: variables that are eliminated ``by`` integrals, with what they are at first, or by the
+# equations of other variables; a change of variables, and letters for what stands in it; last, if anything is to be
+# sorted by powers of a parameter, from which one on it is left out.
+
+
+_REMAINDER = re.compile(r"\s*O\(\s*(\w+)\s*(?:(?:\*\*|\^)\s*(\d+)\s*)?\)\s*")
+
+
+def read_reduction(text: str, complaints: Complaints) -> Reducing | None:
+    """The steps; None after a complaint.  Names are looked up where the equations are known."""
+    steps: list[Asked] = []
+    small, known = "", None
+    start = 0
+    for piece in text.split(";"):
+        left, by, right = piece.partition(" by ")
+        remainder = _REMAINDER.fullmatch(piece)
+        if remainder is not None:
+            small, known = remainder[1], int(remainder[2] or 1)
+        elif piece.strip():
+            items = list(assignments(left, complaints, start))
+            of = list(assignments(right, complaints, start + len(left) + len(by)))
+            for one in [x for x in items if x.bare and not by] + [x for x in of if not x.bare]:
+                message = Message("[[text]] is no step of a reduction", text=ascii_safe(one.name) or "nothing")
+                hint = "for example 'r=1 by integrals', 'q by p', 'p=p1+eps*a', and 'O(eps**3)' as the last one"
+                complaints.error("bad-step", message, one.span, hint)
+            expressions = {item.name: item.value for item in items if not item.bare}
+            steps.append(Asked(tuple(item.name for item in items), expressions, tuple(one.name for one in of)))
+        start += len(piece) + 1
+    return None if complaints.errors else Reducing(tuple(steps), small, known)

@@ -147,9 +147,7 @@ class Scope:
         if name in self.kinds:
             taken = _KINDS[self.kinds[name]]
             self.complaints.error(
-                "repeated-name",
-                Message("[[name]] is already declared as [[taken]]", name=ascii_safe(name), taken=taken),
-                span,
+                "repeated-name", "[[name]] is already declared as [[taken]]", span, name=ascii_safe(name), taken=taken
             )
             return False
         self.kinds[name] = kind

@@ -79,9 +79,7 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
             axis = reading.word(entry.value, "the axis of a unit vector", _AXES)
             if axis == QUATERNION and len(entries) > 1:
                 message = "a quaternion tells the whole orientation: nothing stands beside it"
-                reading.error(
-                    "orientation", message, entry.key.span, Message("{[[what]]: quaternion}", what=entry.key.text)
-                )
+                reading.error("orientation", message, entry.key.span, "{[[what]]: quaternion}", what=entry.key.text)
             elif axis == QUATERNION:
                 return _quaternion(entry.key.text, entry.key.span, reading)
             elif axis is not None:
@@ -92,9 +90,7 @@ def _orientation(node: Node | None, reading: Reading) -> tuple[UnitVector | Quat
     for vector in unit_vectors:
         assert vector.span is not None
         if vector.axis in axes:
-            reading.error(
-                "repeated-key", Message("a second unit vector along axis [[axis]]", axis=vector.axis), vector.span
-            )
+            reading.error("repeated-key", "a second unit vector along axis [[axis]]", vector.span, axis=vector.axis)
             continue
         axes.add(vector.axis)
         declared = [reading.scope.declare(name, "unit vector", vector.span) for name in vector.components]
@@ -188,16 +184,15 @@ def check_speeds(system: System, drafts: Sequence[Draft], reading: Reading) -> N
         rows.append(row)
         if reading.errors == errors and len(independent(rows)) < len(rows):
             others = ", ".join(one.name for one in system.speeds[: len(rows) - 1])
-            message = Message(
+            reading.error(
+                "dependent-speeds",
                 "'[[name]]' follows from [[others]]: the generalised velocities cannot be found from them",
+                speed.span,
+                "there are [[count]] generalised velocities; speeds are independent of each other",
                 name=speed.name,
                 others=others,
-            )
-            hint = Message(
-                "there are [[count]] generalised velocities; speeds are independent of each other",
                 count=len(ordered),
             )
-            reading.error("dependent-speeds", message, speed.span, hint)
     for body, draft in zip(system.bodies, drafts, strict=True):
         if body.orientation:
             _check_orientation(system, body, draft, reading)

@@ -184,10 +184,7 @@ def _coordinates(bodies: Sequence[NewBody]) -> list[str]:
 
 
 #: What is said beside a key.
-_COMMENTS = {
-    "inertia about": "or: joint",
-    "inertia": "or three rows of a symmetric matrix",
-}
+_COMMENTS = {"inertia about": "or: joint", "inertia": "or three rows of a symmetric matrix"}
 
 
 def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:

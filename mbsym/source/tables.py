@@ -97,13 +97,11 @@ def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:
     if isinstance(node, Sequence) and not 2 <= len(items) <= MAX_POINTS:
         reading.error(
             "wrong-shape",
-            Message(
-                "[[what]] has 2 to [[most]] points, not [[items]]",
-                what=worded(what),
-                most=MAX_POINTS,
-                items=len(items),
-            ),
+            "[[what]] has 2 to [[most]] points, not [[items]]",
             node.span,
+            what=worded(what),
+            most=MAX_POINTS,
+            items=len(items),
         )
     found = [(point, item.span) for item in items if (point := _point(item, what, reading)) is not None]
     for (one, _), (later, span) in pairwise(found):
@@ -288,10 +286,7 @@ def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
             )
     if len(wrong) > MOST_COMPLAINTS:
         wrong[MOST_COMPLAINTS:] = [
-            (
-                Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS),
-                None,
-            )
+            (Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS), None)
         ]
     return Rows(() if wrong else tuple(point for _, point in found), tuple(wrong), digest)
 

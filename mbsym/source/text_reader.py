@@ -88,8 +88,8 @@ class TextReader:
         match = HEADING.match(block.heading.text)
         return match.group(1).lower() if match else "section"
 
-    def error(self, code: str, message: str, span: Span, hint: str | None = None) -> None:
-        self.complaints.error(code, message, span, hint)
+    def error(self, code: str, message: str, span: Span, hint: str | None = None, **gaps: object) -> None:
+        self.complaints.error(code, message, span, hint, **gaps)
 
     def check_numbers(self, blocks: list[_Block]) -> None:
         """Blocks are numbered 1, 2, 3, ... in the order of the file."""
@@ -128,12 +128,7 @@ class TextReader:
             if guess
             else Message("the labels are: [[known]]", known=", ".join(known))
         )
-        self.error(
-            "unknown-key",
-            Message("unknown label [[shown]] in [[what]]", shown=ascii_safe(shown), what=what),
-            span,
-            hint,
-        )
+        self.error("unknown-key", "unknown label [[shown]] in [[what]]", span, hint, shown=ascii_safe(shown), what=what)
         return None if guess is None or label is None else (label, guess, value)
 
     # --- header and sections -----------------------------------------------------------------------------------------

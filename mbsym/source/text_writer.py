@@ -1,157 +1,282 @@
-"""A System as the plain text of the description editor, with the labels of the paper's Figure 3."""
+"""A System as the plain text of the description editor, with the labels of the paper's Figure 3.
+
+The data of a description are lines of editor text first: (label, value) by blocks, bodies by their numbers.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from mbsym.expressions.tree import ZERO, text
-from mbsym.model.system import Body, Shape, System, Vector
-from mbsym.source.labels import SECTIONS
-from mbsym.source.shape import Shape as Data
-from mbsym.source.shape import (
-    assumption_text,
-    claim_shape,
-    constraint_shape,
-    initial_shape,
-    input_shape,
-    linear_shape,
-    load_shape,
-    motion_shapes,
-    parameter_shape,
-    prescribed_shape,
-    small_shape,
-    speed_text,
-    table_shape,
-)
-from mbsym.source.text_data import BLOCKS, block, entry, free, names_keys, small, title_shown
+from mbsym.model.claims import BODY as ABOUT_BODY
+from mbsym.model.claims import CLAIMS
+from mbsym.model.system import Body, System
+from mbsym.source.grammar import Named
+from mbsym.source.keys import ALIASES, LOADS
+from mbsym.source.labels import ASSUMPTIONS, BODY, HEADER, NUMBERED, SECTIONS
+from mbsym.source.yaml_writer import Shape as Data
+from mbsym.source.yaml_writer import body_shape, system_shape, vector_shape
 
-_ROWS = (0, 1, 2)
+Line = tuple[str, str]
+
+#: The lists of blocks: key of the description -> what their headings begin with.
+BLOCKS = {"bodies": "Body", "loads": "Load", "constraints": "Constraint", "claims": "Claim"}
+
+ROWS = "\n    "
+
+_LABELS = {key: label.capitalize() for label, key in BODY.items()}
+_TITLES = {key: title for title, (key, _) in SECTIONS.items()}
+_FIRST = dict(SECTIONS.values())
+_SHOWN = {"latex symbols": "LaTeX symbols"}
+_ABOVE = ("mechanical system", "description", "source", "label", "language", "order", "dependent", "reactions")
+#: The lines of a header, in their order.
+_ORDER = (*_ABOVE, "number of bodies", "dimensionless time", "small parameter")
+#: All that Figure 3 shows of a body, and what we need besides.
+_OF_BODIES = (
+    *("name", "attached to", "mass", "connection point", "mass centre", "relative velocity", "rotation"),
+    *("inertia about", "inertia", "gyrostatic moment", "coordinates", "speeds", "orientation", "shapes"),
+)
 
 
 def to_text(system: System) -> str:
     """The description of a system as editor text; reading it again gives an equal system."""
-    lines = [f"Mechanical system: {free(system.name)}"]
-    if system.description:
-        lines.append(f"Description: {free(system.description)}")
-    if system.source:
-        lines.append(f"Source: {free(system.source)}")
-    if system.label:
-        lines.append(f"Label: {free(system.label)}")
-    if system.language:
-        lines.append(f"Language: {system.language}")
-    if system.order:
-        lines.append(f"Order: {_braces(list(system.order))}")
-    if system.dependent:
-        lines.append(f"Dependent: {_braces(list(system.dependent))}")
-    if system.reactions:
-        places = {body.name: str(number) for number, body in enumerate(system.bodies, start=1)}
-        lines.append(f"Reactions: {_braces([places[name] for name in system.reactions])}")
-    lines.append(f"Number of bodies: {len(system.bodies)}")
-    if system.time_scale is not None:
-        lines.append(f"Dimensionless time: {text(system.time_scale)}")
-    if system.small is not None:
-        lines.append(f"Small parameter: {small(small_shape(system.small))}")
-    lines += _section("parameters", {parameter.name: parameter_shape(parameter) for parameter in system.parameters})
-    lines += _section("prescribed", {prescribed.name: prescribed_shape(prescribed) for prescribed in system.prescribed})
-    lines += _section("inputs", {one.name: input_shape(one) for one in system.inputs})
-    lines += _section("tables", {table.name: table_shape(table) for table in system.tables})
-    lines += _section("units", {one.name: one.text for one in system.units.declared})
-    numbers = {body.name: str(number) for number, body in enumerate(system.bodies, start=1)}
-    for number, body in enumerate(system.bodies, start=1):
-        lines += ["", f"Body description ({number})", *_body(body, numbers)]
-    if system.linear is not None:
-        lines += _section("linear system", linear_shape(system.linear))
-    lines += _blocks("loads", [dict([load_shape(load)]) for load in system.loads], numbers)
-    lines += _blocks("constraints", [dict([constraint_shape(one)]) for one in system.constraints], numbers)
-    lines += _section("relations", {relation.name: text(relation.value) for relation in system.relations})
-    lines += _section("motion", motion_shapes(system))
-    lines += _section("notation", {notation.name: text(notation.value) for notation in system.notation})
-    lines += _section("outputs", {output.name: text(output.value) for output in system.outputs})
-    if system.assumptions:
-        compared = [assumption_text(one.left, one.relation, one.right) for one in system.assumptions]
-        lines += ["", "Assumptions", *(f"  {one}" for one in compared)]
-    lines += _section("initial", {value.coordinate: initial_shape(value) for value in (*system.initial, *system.start)})
-    lines += _section("limits", {limit.coordinate: [text(limit.lower), text(limit.upper)] for limit in system.limits})
-    lines += _section("latex", {symbol.name: symbol.latex for symbol in system.symbols})
-    lines += _section("abbreviations", {one.name: text(one.value) for one in system.abbreviations})
-    lines += _blocks("claims", [claim_shape(claim, system) for claim in system.claims], numbers)
-    return "\n".join(lines) + "\n"
+    data = system_shape(system)
+    if system.linear is None:
+        data["bodies"] = [_whole(body) for body in system.bodies]
+    lines = lines_of_data(data)
+    written = [f"{label.capitalize()}: {value}" for label, value in sorted(lines.header, key=_place)]
+    for key in data:
+        title = ASSUMPTIONS if key == ASSUMPTIONS else _TITLES.get(key, "")
+        for number, inside in enumerate(lines.blocks.get(key, ()), start=1):
+            written += ["", f"{BLOCKS[key]} description ({number})"]
+            between = " =" if names_keys(inside[0][1]) else ":"
+            for place, (label, value) in enumerate(inside):
+                shown = f"{label}{between}" if place else f"{label.capitalize()}:"
+                written.append(f"  {shown}{'' if value.startswith(ROWS) else ' '}{value}")
+        if title in lines.sections:
+            written += ["", title_shown(title)]
+            written += [
+                f"  {name} = {value}" if key != ASSUMPTIONS else f"  {name}" for name, value in lines.sections[title]
+            ]
+    return "\n".join(written) + "\n"
 
 
-def _section(key: str, shapes: Mapping[str, Data]) -> list[str]:
-    """The lines ``name = value`` below the title of a section; a record that says one thing stands without its key."""
-    if not shapes:
-        return []
-    title, first = next((title, first) for title, (one, first) in SECTIONS.items() if one == key)
-    lines = ["", title_shown(title)]
-    for name, shape in shapes.items():
-        alone = isinstance(shape, dict) and list(shape) == [first]
-        value = shape[first] if alone and isinstance(shape, dict) and first is not None else shape
-        lines.append(f"  {name} = {entry(key, value, first)}")
-    return lines
+def _place(line: Line) -> int:
+    return _ORDER.index(line[0])
 
 
-def _blocks(section: str, shapes: list[Data], numbers: dict[str, str]) -> list[str]:
-    """Loads, constraints, claims."""
-    lines = []
-    for number, shape in enumerate(shapes, start=1):
-        lines += ["", f"{BLOCKS[section]} description ({number})"]
-        between = " =" if isinstance(shape, dict) and names_keys(next(iter(shape))) else ":"
-        for place, (label, value) in enumerate(block(section, shape, numbers)):
-            lines.append(f"  {label}{between} {value}" if place else f"  {label.capitalize()}: {value}")
-    return lines
-
-
-def _body(body: Body, numbers: dict[str, str]) -> list[str]:
+def _whole(body: Body) -> dict[str, Data]:
     """All labels of Figure 3, zeros included, as the editor shows them."""
-    axes = [str(axis) for axis in body.rotation.axes]
-    angles = [text(angle) for angle in body.rotation.angles]
-    unused = ["0"] * (3 - len(axes))
-    lines = [
-        f"  Name: {body.name}",
-        f"  Previous body number: {numbers.get(body.attached_to, body.attached_to)}",
-        f"  Body mass: {text(body.mass)}",
-        f"  Radius vector of connection point: {_vector(body.connection_point)}",
-        f"  Radius vector of mass center: {_vector(body.mass_centre)}",
-    ]
-    if body.relative_velocity is not None:
-        lines.append(f"  Vector of relative linear velocity: {_vector(body.relative_velocity)}")
-    lines += [
-        f"  Numbers of rotation axes: {_braces(axes + unused)}",
-        f"  Rotation angles: {_braces(angles + unused)}",
-    ]
-    if body.inertia is not None:
-        lines.append(f"  Inertia about: {body.inertia.about}")
+    unused: list[Data] = ["0"] * (3 - len(body.rotation.axes))
+    axes: list[Data] = [*map(str, body.rotation.axes), *unused]
     rows = body.inertia.tensor if body.inertia is not None else ((ZERO,) * 3,) * 3
-    lines.append("  Tensor of inertia:")
-    lines += [f"    {text(rows[row][0])}, {text(rows[row][1])}, {text(rows[row][2])}" for row in _ROWS]
-    if body.inertia is not None and body.inertia.accepted:
-        lines.append("  Accept tensor of inertia: true")
-    if body.gyrostatic_moment is not None:
-        lines.append(f"  Gyrostatic moment: {_vector(body.gyrostatic_moment)}")
-    lines.append(f"  Generalized coordinates: {_braces(list(body.coordinates))}")
-    if body.speeds:
-        lines.append("  Speeds: " + "; ".join(f"{speed.name} = {speed_text(speed)}" for speed in body.speeds))
-    if body.orientation:
-        lines.append("  Orientation: " + "; ".join(f"{one.name} = {one.word}" for one in body.orientation))
-    return [*lines, *(f"  Shape: {_look(shape)}" for shape in body.shapes)]
+    tensor: dict[str, Data] = {"tensor": [vector_shape(row) for row in rows]}
+    whole = body_shape(body, ()) | {
+        "connection point": vector_shape(body.connection_point),
+        "mass centre": vector_shape(body.mass_centre),
+        "rotation": {"axes": axes, "angles": [*map(text, body.rotation.angles), *unused]},
+        "inertia": tensor | ({"accept": "true"} if body.inertia is not None and body.inertia.accepted else {}),
+        "coordinates": [*body.coordinates],
+    }
+    return {key: whole[key] for key in _OF_BODIES if key in whole}
 
 
-def _look(look: Shape) -> str:
-    """``box = (a, b, c); at = (x, y, z); axes = {3}; angles = {pi/2}``."""
-    sizes = [text(size) for size in look.size]
-    parts = [f"{look.kind} = {sizes[0] if len(sizes) == 1 else '(' + ', '.join(sizes) + ')'}"]
-    if look.at != (ZERO,) * 3:
-        parts.append(f"at = {_vector(look.at)}")
-    if look.rotation.axes:
-        parts.append(f"axes = {_braces([str(axis) for axis in look.rotation.axes])}")
-        parts.append(f"angles = {_braces([text(angle) for angle in look.rotation.angles])}")
+@dataclass(slots=True)
+class Lines:
+    """What a text has to hold; assumptions are a section whose lines have no labels."""
+
+    header: list[Line] = field(default_factory=list)
+    sections: dict[str, list[Line]] = field(default_factory=dict)
+    blocks: dict[str, list[list[Line]]] = field(default_factory=dict)
+
+
+def lines_of_data(data: dict[str, Data]) -> Lines:
+    """The lines of a whole description."""
+    lines, numbers = Lines(), _numbers(data)
+    for key, value in data.items():
+        plain = ALIASES.get(key, key)
+        if plain in BLOCKS and isinstance(value, list):
+            lines.blocks[plain] = [block(plain, one, numbers) for one in value]
+        elif plain == "assumptions" and isinstance(value, list):
+            lines.sections["assumptions"] = [(_flat(one), "") for one in value]
+        elif plain in _TITLES and isinstance(value, dict):
+            first = _FIRST[plain]
+            lines.sections[_TITLES[plain]] = [(name, entry(plain, one, first)) for name, one in value.items()]
+        elif plain != "mbsym":
+            lines.header += _header(plain, value, numbers)
+    count = len(lines.blocks.get("bodies", ()))
+    lines.header.append(("number of bodies", str(count)))
+    return lines
+
+
+def title_shown(title: str) -> str:
+    return _SHOWN.get(title, title.capitalize())
+
+
+def _numbers(data: dict[str, Data]) -> dict[str, str]:
+    bodies = data.get("bodies")
+    names = [body.get("name") for body in bodies if isinstance(body, dict)] if isinstance(bodies, list) else []
+    return {" ".join(name.split()): str(k) for k, name in enumerate(names, start=1) if isinstance(name, str)}
+
+
+def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
+    label = next((label for label, one in HEADER.items() if one == key), key)
+    if key == "reactions" and isinstance(value, list):
+        value = [numbers.get(_flat(one), _flat(one)) for one in value]
+    if key == "small parameter":
+        return [(label, small(value))]
+    free_text = isinstance(value, str) and key in ("name", "description", "source", "label")
+    return [(label, free(value) if free_text and isinstance(value, str) else _braces(value))]
+
+
+def small(value: Data) -> str:
+    """``eps``, or ``eps; powers = (e, 1, p2, -1); fast = (x, y)``."""
+    parts = []
+    for name, rest in value.items() if isinstance(value, dict) else ((text_of(value), ""),):
+        parts.append(name)
+        for key, one in rest.items() if isinstance(rest, dict) else ():
+            pairs: list[Data] = [x for pair in one.items() for x in pair] if isinstance(one, dict) else []
+            parts.append(f"{key} = {text_of(pairs or one)}")
     return "; ".join(parts)
 
 
-def _vector(vector: Vector) -> str:
-    return "(" + ", ".join(text(component) for component in vector) + ")"
+def entry(section: str, value: Data, first: str | None) -> str:
+    """The value of a name in a section; a record that says one thing stands without its key."""
+    if isinstance(value, dict) and first is not None and list(value) == [first]:
+        value = value[first]
+    if isinstance(value, dict):
+        return record(value, first)
+    return free(value) if section == "inputs" and isinstance(value, str) else text_of(value)
 
 
-def _braces(items: list[str]) -> str:
-    return "{" + ", ".join(items) + "}"
+def record(value: dict[str, Data], first: str | None = None) -> str:
+    """``positive; value = 2; meaning = length``: the first value without its key where that goes without saying."""
+    parts = []
+    for index, (key, one) in enumerate(value.items()):
+        written = free(one) if key == "meaning" and isinstance(one, str) else text_of(one)
+        parts.append(written if index == 0 and key == first and len(value) > 1 else f"{key} = {written}")
+    return "; ".join(parts)
+
+
+def _flat(value: Data) -> str:
+    return " ".join(value.split()) if isinstance(value, str) else text_of(value)
+
+
+def text_of(value: Data) -> str:
+    """A value in one line: lists in round brackets."""
+    if isinstance(value, list):
+        return "(" + ", ".join(map(text_of, value)) + ")"
+    return record(value) if isinstance(value, dict) else _flat(value)
+
+
+def free(value: str) -> str:
+    """Text for people: in double quotes where it could be taken for something else."""
+    if value and value == value.strip() and "\n" not in value and not any(mark in value for mark in ';"#\\='):
+        return value
+    escaped = value.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+# --- blocks -----------------------------------------------------------------------------------------------------------
+
+
+def block(section: str, data: Data, numbers: dict[str, str]) -> list[Line]:
+    """The lines of what is listed in a section; ``numbers`` are those of bodies."""
+    if not isinstance(data, dict):
+        return []
+    if section == "bodies":
+        return _body(data, numbers)
+    if section == "claims":
+        return _claim(data, numbers)
+    kind, value = next(iter(data.items()), ("", ""))
+    what = "load" if section == "loads" else "constraint"
+    return [(f"type of {what}", kind), *_tie(kind, value, numbers)]
+
+
+def _body(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
+    lines: list[Line] = []
+    for key, value in data.items():
+        plain = ALIASES.get(key, key)
+        if plain == "attached to":
+            lines.append((_LABELS[plain], numbers.get(_flat(value), _flat(value))))
+        elif plain == "rotation" and isinstance(value, dict):
+            lines += [(_LABELS[one], _braces(inner)) for one, inner in value.items() if one in _LABELS]
+        elif plain == "inertia" and isinstance(value, dict):
+            lines.append((_LABELS["inertia"], _tensor(value.get("tensor", []))))
+            lines += [(_LABELS["accept"], text_of(value["accept"]))] if "accept" in value else []
+        elif plain == "inertia":
+            lines.append((_LABELS["inertia"], _tensor(value)))
+        elif plain == "shapes" and isinstance(value, list):
+            lines += [(_LABELS["shapes"], _shape(one)) for one in value]
+        elif plain in ("coordinates",):
+            lines.append((_LABELS[plain], _braces(value)))
+        else:
+            lines.append((_LABELS.get(plain, plain), text_of(value)))
+    return lines
+
+
+def _braces(value: Data) -> str:
+    return "{" + ", ".join(map(text_of, value)) + "}" if isinstance(value, list) else text_of(value)
+
+
+def _tensor(value: Data) -> str:
+    """Three rows; of principal moments a diagonal matrix is not what was said, but what is meant."""
+    if not isinstance(value, list) or not all(isinstance(row, list) for row in value):
+        return text_of(value)
+    return ROWS + ROWS.join(", ".join(map(text_of, row)) for row in value if isinstance(row, list))
+
+
+def _shape(value: Data) -> str:
+    if not isinstance(value, dict):
+        return text_of(value)
+    flat: dict[str, Data] = {}
+    for key, one in value.items():
+        turned = one if key == "rotation" and isinstance(one, dict) else None
+        flat |= {key: one} if turned is None else {name: _braces(inner) for name, inner in turned.items()}
+    return record(flat)
+
+
+def names_keys(kind: str) -> bool:
+    """Whether the keys of a kind of load are names."""
+    known = LOADS.get(ALIASES.get(kind, kind))
+    return known is not None and isinstance(known.type, Named)
+
+
+def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
+    if isinstance(value, list):
+        return _ends(value, numbers)
+    if not isinstance(value, dict):
+        return [("Expression", text_of(value))]
+    lines: list[Line] = []
+    names = names_keys(kind)
+    for key, one in value.items():
+        if key == "between" and isinstance(one, list):
+            lines += _ends(one, numbers)
+        elif ALIASES.get(key, key) in NUMBERED and not names:
+            lines.append((key.capitalize(), numbers.get(_flat(one), _flat(one))))
+        else:
+            lines.append((key if names else key.capitalize(), text_of(one)))
+    return lines
+
+
+def _ends(value: list[Data], numbers: dict[str, str]) -> list[Line]:
+    lines: list[Line] = []
+    for which, end in zip(("First", "Second"), value, strict=False):
+        for key, one in end.items() if isinstance(end, dict) else ():
+            written = numbers.get(_flat(one), _flat(one)) if key == "body" else text_of(one)
+            lines.append((f"{which} {key}", written))
+    return lines
+
+
+def _claim(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
+    kind = data.get("claim")
+    about_body = isinstance(kind, str) and kind in CLAIMS and CLAIMS[kind].of == ABOUT_BODY
+    lines: list[Line] = []
+    for key, value in data.items():
+        written = text_of(value)
+        if key == "of" and about_body:
+            written = numbers.get(_flat(value), _flat(value))
+        elif key == "place" and isinstance(value, str):
+            written = free(value)
+        lines.append((key.capitalize(), written))
+    return lines

@@ -75,11 +75,7 @@ def _brackets_bounded(text: str, complaints: Complaints) -> bool:
             if depth > _MAX_BRACKETS:
                 line_start = text.rfind("\n", 0, offset) + 1
                 place = Span(text.count("\n", 0, offset) + 1, offset - line_start + 1)
-                complaints.error(
-                    "too-deep",
-                    Message("more than [[most]] brackets are open here", most=_MAX_BRACKETS),
-                    place,
-                )
+                complaints.error("too-deep", "more than [[most]] brackets are open here", place, most=_MAX_BRACKETS)
                 return False
         elif character in "]}":
             depth = max(0, depth - 1)
@@ -174,9 +170,7 @@ class _Composer:
         self.refuse_fineries(event)
         if depth > MAX_DEPTH:
             self.complaints.error(
-                "too-deep",
-                Message("lists and mappings nest at most [[most]] deep", most=MAX_DEPTH),
-                self.span(event),
+                "too-deep", "lists and mappings nest at most [[most]] deep", self.span(event), most=MAX_DEPTH
             )
             raise _Refused
         if isinstance(event, yaml.SequenceStartEvent):

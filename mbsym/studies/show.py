@@ -37,7 +37,7 @@ def _scaling(text: str, system: System, complaints: Complaints) -> Scaling | Non
 
 
 def _reducing(text: str, system: System, complaints: Complaints) -> Reducing | None:
-    from mbsym.source.reduction import read_reduction
+    from mbsym.source.scaling import read_reduction
 
     return read_reduction(text, complaints)
 

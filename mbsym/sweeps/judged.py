@@ -28,7 +28,7 @@ from mbsym.maps.result import Lack, Shape
 from mbsym.maps.section import Section, Unfit, unmade
 from mbsym.maps.verdicts import Judged
 from mbsym.numerics.kernels import llvm
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.sweeps.deciding import classes, deciding
 from mbsym.sweeps.points import Column
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.sweeps.judged import NO_VERDICT, VERDICT, WORDS
 from mbsym.sweeps.points import Column
 

@@ -14,8 +14,8 @@ from mbsym.algebra.arrangements.arrangement import Law, breaches, euler
 from mbsym.algebra.arrangements.stacks import Fibre
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box, Budget, decompose_line
+from mbsym.algebra.plane.elements import PointField
 from mbsym.algebra.plane.numbers import sign
-from mbsym.algebra.plane.point_field import PointField
 
 X, Y = (CONTEXT := fmpq_mpoly_ctx.get(["x", "y"])).gens()
 BOX = Box(-2, 2, -2, 2)

@@ -16,7 +16,7 @@ from mbsym import loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.source.keys import BODY, CONSTRAINTS, LOADS, SYSTEM
 from mbsym.source.topics import EXAMPLES
 from mbsym_cli import files

@@ -13,9 +13,8 @@ from click.testing import CliRunner
 from conftest import SHIPPED
 
 from mbsym import load, loads
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.sections.summary import _part
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main

@@ -13,7 +13,7 @@ import mbsym
 from mbsym.analysis.pipeline import Analysis
 from mbsym.formulas.formula import Matrix
 from mbsym.problems.checks import EXACT
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.source import read
 
 HERE = Path(__file__).parent

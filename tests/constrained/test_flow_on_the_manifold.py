@@ -30,7 +30,7 @@ from mbsym.numerics.closing import closed
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.scenario import scenario
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.source import read
 
 STEP = 2e-4

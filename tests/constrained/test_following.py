@@ -26,8 +26,7 @@ from mbsym.maps.section import Axis
 from mbsym.problems.checks import EXACT, FAILED
 from mbsym.problems.stability.linear_form import NonholonomicForm
 from mbsym.problems.stability.nonholonomic import enclosed
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.source import read
 
 TEXT = (Path(__file__).parent / "pulled-sleigh.yaml").read_text(encoding="utf-8")

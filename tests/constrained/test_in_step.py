@@ -16,7 +16,7 @@ import pytest
 import mbsym
 from mbsym.analysis.stages import Unavailable
 from mbsym.mechanics import motion
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 ROD = (Path(__file__).parents[1] / "cases" / "constraints" / "coupling-rod.yaml").read_text(encoding="utf-8")
 WHEEL = "mass: m, inertia about: mass centre"

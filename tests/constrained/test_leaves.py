@@ -16,8 +16,7 @@ from mbsym.analysis.pipeline import Analysis
 from mbsym.mechanics.constraints import expansion as perturbed
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
 from mbsym.problems.constraints import analysis, integrability
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.plain_writer import Writer
 from mbsym.report.words.constraint_words import reduction_sentences
 from mbsym.source import read

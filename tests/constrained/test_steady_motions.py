@@ -9,8 +9,7 @@ import pytest
 import mbsym
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.dissipation import EnergyLaw
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.source import read
 
 HERE = Path(__file__).parent

@@ -23,7 +23,7 @@ from mbsym.maps.mapping import Judge
 from mbsym.maps.result import Lack, Of
 from mbsym.maps.section import Axis
 from mbsym.maps.subdivision import ByBoundaries, End
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.language import Language
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

@@ -17,7 +17,7 @@ from mbsym.maps.check import Check, ExactVerdicts, Mistake, check
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Judged
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 MAPS = {
     "satellite": ({"alpha": ("-1", "1"), "gamma": ("-1", "1")}, {"p1": "2/5", "p2": "1/5"}),

@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from random import Random
 
 import numpy as np
+import pytest
 from click.testing import CliRunner, Result
 
 import mbsym
+from mbsym.algebra.rationals import fraction
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Map, Of, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
+from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
+from mbsym.studies.map.answer import remarks
 from mbsym_cli.main import main
 
 HEAD = "mbsym: 1\nname: {}\nparameters: {{a: {{sign: real}}, b: {{sign: real}}}}\nlinear system:\n  coordinates: [x]\n"
@@ -195,3 +200,61 @@ def test_a_located_point_of_an_arc_is_judged_at_itself(tmp_path: Path) -> None:
     planted = replace(found, arcs=tuple(replace(one, said=found.regions[1].judged) for one in found.arcs))
     assert Locating(planted)(Fraction(0), Fraction(1, 3)) == own
     assert own == ("arc 0", "stable")
+
+
+QUARTIC = """mbsym: 1
+name: quartic
+parameters: {a: real, b: real, c: nonnegative}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, 0, 0], mass: 1, coordinates: [x]}
+loads:
+  - potential: POTENTIAL
+  - damper: {coordinate: x, coefficient: c}
+motion: {x: 0}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "damping", "stable"),
+    [
+        ("x**4", 0, lambda _a, _b: True),
+        ("a*x**4 + b*x**6", 0, lambda a, _b: a > 0),
+        ("a*b*x**4 + x**5", 0, lambda a, b: a * b > 0),
+        ("(a**2 + b**2 - 1/2)*(1 - cos(x**2))", 0, lambda a, b: a**2 + b**2 > 1 / 2),
+        ("a*b*x**4 + x**5", 1, lambda a, b: a * b > 0),
+        ("x**3 + a*x**4", 0, lambda _a, _b: False),
+    ],
+)
+def test_a_potential_of_higher_order_bounds_regions(
+    potential: str, damping: int, stable: Callable[[Fraction, Fraction], bool]
+) -> None:
+    """V = c x^n + ...: stable where n is even and c > 0, else unstable; asymptotically if damped, x' = -V'(x)."""
+    analysis = mbsym.loads(QUARTIC.replace("POTENTIAL", potential))
+    axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
+    found = exact_map(analysis, axes, {"c": Fraction(damping)})
+    staying = Word.ASYMPTOTIC if damping else Word.STABLE
+    for a in (Fraction(-5, 7), Fraction(-1, 3), Fraction(2, 7), Fraction(4, 5)):
+        for b in (Fraction(-4, 5), Fraction(-1, 7), Fraction(1, 3), Fraction(6, 7)):
+            there = found.at(a, b)
+            assert there is not None
+            assert there.word is (staying if stable(a, b) else Word.UNSTABLE)
+    alone = exact_map(analysis, axes[:1], {"b": Fraction(1, 2), "c": Fraction(damping)})
+    numbers = [(x.word, fraction(x.sample)) for x in alone.regions]
+    assert all(word is (staying if stable(a, Fraction(1, 2)) else Word.UNSTABLE) for word, a in numbers)
+
+
+def test_slices_of_it_are_alike(tmp_path: Path) -> None:
+    path = tmp_path / "system.yaml"
+    path.write_text(QUARTIC.replace("POTENTIAL", "(a - c)*x**4 + b*x**6"))
+    words = ["map", str(path), "--x", "a=-1:1", "--y", "b=-1:1", "--z", "c=1/4:1/2", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(main, words)
+    assert done.exit_code == 0, done.output
+    assert "undecided" not in done.stdout
+
+
+def test_what_only_terms_of_higher_order_decide_is_not_denied() -> None:
+    """V = a x^4 + b y^4: the first approximation knows neither, the nonlinear system depends on both."""
+    text = QUARTIC.replace("x, 0, 0", "x, y, 0").replace("[x]", "[x, y]").replace("POTENTIAL", "a*x**4 + b*y**4")
+    axes = [Axis(name, Fraction(-1), Fraction(1)) for name in "ab"]
+    told = " ".join(remarks(exact_map(mbsym.loads(text), axes, {"c": Fraction(0)})))
+    assert "terms of higher order may" in told

@@ -16,7 +16,7 @@ import mbsym
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Map, Shape
 from mbsym.maps.section import Axis
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from tests.maps.test_maps_against_models import Polynomial, Values, product, to_the_right, total
 
 

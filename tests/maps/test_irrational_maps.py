@@ -14,7 +14,7 @@ import mbsym
 from mbsym.maps.boxes import BoxMap, Method, box_map
 from mbsym.maps.result import Lack, Of
 from mbsym.maps.section import Axis, Fault, Unfit
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym_cli.main import main
 
 TEXT = """mbsym: 1

@@ -20,7 +20,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis, Unfit
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 HEAD = "mbsym: 1\nname: constants\nparameters: [x, y]\nlinear system:\n  coordinates: [s, u]\n  M: [[1, 0], [0, 1]]\n"
 SPRINGS = HEAD + "  K: [[x + sqrt(2)*y, 1], [1, x]]\n"

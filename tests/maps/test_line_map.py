@@ -19,7 +19,7 @@ from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
 from mbsym.problems.stability.constant import constant_of
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema
 from mbsym_cli.main import main

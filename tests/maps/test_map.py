@@ -24,7 +24,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Lack, Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.language import Language
 from mbsym.report.maps.located import Locating
 from mbsym.report.maps.words import _CONDITIONS, LACKS

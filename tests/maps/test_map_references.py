@@ -16,8 +16,7 @@ from mbsym.maps.boundaries import boundaries
 from mbsym.maps.check import ExactVerdicts
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.verdicts import Border, Judged
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 
 @dataclass

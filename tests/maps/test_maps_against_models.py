@@ -22,7 +22,7 @@ import mbsym
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Lack, Map, Shape
 from mbsym.maps.section import Axis
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: Coefficients from the highest to the lowest.
 Polynomial = list[F]

@@ -19,7 +19,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Map
 from mbsym.maps.section import Axis
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 HARD = json.loads(Path("tests/references/hard_polynomials.json").read_text())["reference"]["routh"]
 

@@ -24,7 +24,7 @@ from mbsym.maps.mapping import exact_map
 from mbsym.maps.result import Cell, Lack, Map, Shape
 from mbsym.maps.section import Axis
 from mbsym.maps.slices import Stack, stack
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.language import Language
 from mbsym.report.maps.figure import map_figure
 from mbsym.report.maps.frame import values_lines

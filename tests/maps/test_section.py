@@ -17,7 +17,7 @@ from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
 from mbsym.maps.section import Axis, Complaint, Fault, Section, Unfit, section
 from mbsym.maps.verdicts import verdict_at as verdict_at_point
 from mbsym.problems.stability.exact import verdict_at
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 
 def made(name: str, axes: dict[str, tuple[Any, Any]], **settings: Any) -> Section:

@@ -25,7 +25,7 @@ from mbsym.maps.result import Lack
 from mbsym.maps.section import Axis
 from mbsym.maps.slices import Stack, stack
 from mbsym.maps.verdicts import Border
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.maps.figure import page_names, panels
 from mbsym.report.maps.located import Locating
 from mbsym.report.schemas import schema

@@ -15,7 +15,7 @@ from mbsym.maps.boundaries import boundaries
 from mbsym.maps.section import Axis, Section, section
 from mbsym.maps.subdivision import ByBoundaries, ByEnclosures, End, Subdivision, about_centre, centre, halves, subdivide
 from mbsym.maps.verdicts import verdict_at
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 X, Y = fmpq_mpoly_ctx.get(["x", "y"]).gens()
 UNIT = Box(-1, 1, -1, 1)

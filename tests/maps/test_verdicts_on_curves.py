@@ -15,15 +15,13 @@ from flint import fmpq, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 from mbsym.algebra.arrangements import decompose
 from mbsym.algebra.failures import TooLargeError
 from mbsym.algebra.plane import Box
-from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomial
+from mbsym.algebra.plane.elements import Element, ElementMatrix, ElementPolynomial, PointField, SimpleField
 from mbsym.algebra.plane.numbers import number, roots_between
-from mbsym.algebra.plane.point_field import PointField, SimpleField
 from mbsym.algebra.roots import RootCount, counted, counted_real
 from mbsym.maps.check import ExactVerdicts
 from mbsym.maps.verdicts import Border, Judged
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 X, Y = fmpq_mpoly_ctx.get(["x", "y"]).gens()
 ZERO, ONE = X * 0, X * 0 + 1

@@ -38,7 +38,7 @@ from mbsym.numerics.trade.digits import FULL, Arithmetic, Quantity, Truth, compa
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json, tables
 from mbsym.report.schemas import schema
 from mbsym.source import load

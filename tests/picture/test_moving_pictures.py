@@ -15,7 +15,7 @@ from mbsym.algebra.failures import Failure
 from mbsym.numerics.kernels import arrays
 from mbsym.numerics.planning.models import LinearisedDynamics
 from mbsym.numerics.scenario import Incomplete, scenario
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.viewer.modes import Modes, modes, modes_json
 from mbsym.report.viewer.motion import motion, motion_json
 from mbsym.report.viewer.page import at_rest, at_rest_json

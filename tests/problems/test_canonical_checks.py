@@ -200,7 +200,7 @@ def failing(name: str) -> set[str]:
     return {check for check, outcome in outcomes(name).items() if outcome == FAILED}
 
 
-HAMILTON, LEFT = "problems.canonical.canonical:hamilton", "problems.canonical.canonical:routh"
+HAMILTON, LEFT = "problems.canonical:hamilton", "problems.canonical:routh"
 MISTAKES = [
     Mistake("the sign of A1", HAMILTON, "p - a for", "p + a for", "driven", (CANONICAL,)),
     Mistake("a third for a half", HAMILTON, "Fraction(1, 2)", "Fraction(1, 3)", "driven", (CANONICAL,)),
@@ -243,7 +243,7 @@ MISTAKES = [
     ),
     Mistake(
         "velocities of integrals",
-        "problems.canonical.canonical:brackets",
+        "problems.canonical:brackets",
         "canonical.velocities, strict",
         "canonical.velocities[::-1], strict",
         "spring",

@@ -19,8 +19,7 @@ from mbsym.analysis.reducing import Reduced, reduced
 from mbsym.analysis.scaled import Formulas
 from mbsym.expressions.place import Complaints
 from mbsym.problems import changes
-from mbsym.source.reduction import read_reduction
-from mbsym.source.scaling import read_scaling
+from mbsym.source.scaling import read_reduction, read_scaling
 from mbsym_cli.main import main
 
 #: (4) of the paper on gyrostat-fast.yaml, and its integrals (3).

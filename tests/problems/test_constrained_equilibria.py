@@ -17,7 +17,7 @@ from mbsym.algebra.failures import Constrained
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import Equilibria
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.words import Because
 from mbsym.source import read
 
 HEAD = "mbsym: 1\nname: Tied\n"
@@ -533,3 +533,35 @@ def test_rests_of_a_linkage_with_more_rows_than_angles() -> None:
         q1, q2, q3 = (x.value for x in one.values)
         assert math.tan(q1 / 2) * math.tan(q2 / 2) == pytest.approx(5)
         assert q3 == pytest.approx(-q1)
+
+
+DEGENERATE = """mbsym: 1
+name: bead
+parameters: {k: real}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+loads: [potential: POTENTIAL]
+CONSTRAINTS
+motion: MOTION
+values: {k: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "constraints", "motion", "word"),
+    [
+        # V = cos x + x^2/2 = 1 + x^4/24 - ...: x = 0 is a threefold root of x = sin x, and x stands outside of the sine
+        ("y + k*x**2/2", "constraints: [relation: y = cos(x)]", "{x: 0, y: 1}", "stable"),
+        # V = y - x^2 with y = 1 - exp(-x^2) = x^2 - x^4/2 + ...
+        ("y - k*x**2", "constraints: [relation: y + exp(-x**2) = 1]", "{}", "unstable"),
+        # V' = exp(x - 1) - x has a double root at x = 1: no minimum
+        ("exp(x - 1) - x**2/2 + k*y**2", "", "{x: 1, y: 0}", "unstable"),
+    ],
+)
+def test_the_rest_that_is_described_is_listed(potential: str, constraints: str, motion: str, word: str) -> None:
+    """Where no search finds a multiple root of what is not algebraic."""
+    text = DEGENERATE.replace("POTENTIAL", potential).replace("CONSTRAINTS\n", constraints and constraints + "\n")
+    analysis = mbsym.loads(text.replace("MOTION", motion))
+    listed = analysis.equilibria.equilibria
+    assert [one.verdict.word.value for one in listed] == [word]
+    assert analysis.stability.numerical.word.value == word

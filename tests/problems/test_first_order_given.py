@@ -10,7 +10,7 @@ import pytest
 import mbsym
 from mbsym.maps.mapping import exact_map
 from mbsym.maps.section import Axis
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.maps.located import Locating
 from mbsym.source import read, to_yaml
 

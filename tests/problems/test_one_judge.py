@@ -12,7 +12,7 @@ from mbsym.analysis import Analysis
 from mbsym.analysis.judge import Judge
 from mbsym.analysis.resting import relative_equilibria
 from mbsym.mechanics.rest import given_values
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 PLANE = """mbsym: 1
 name: a particle in a plane

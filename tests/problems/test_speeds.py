@@ -7,7 +7,7 @@ import terminal
 import mbsym
 from mbsym.algebra.vectors import Tensor
 from mbsym.problems.checks import EXACT, FAILED
-from mbsym.problems.stability.reasons import Because
+from mbsym.problems.stability.words import Because
 
 #: A heavy gyrostat about a fixed point; what is put after its inertia says how it is told.
 GYROSTAT = """

@@ -11,7 +11,7 @@ import pytest
 
 import mbsym
 from mbsym.problems.claims import by_integrals
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 PLANE = """
 mbsym: 1

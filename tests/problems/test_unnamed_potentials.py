@@ -9,7 +9,7 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.certainty import Certainty
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 STATEMENTS = TESTS / "cases" / "statements"
 
@@ -262,7 +262,52 @@ def test_momenta_in_magnetic_fields(potential: str, force: str, wanted: set[str]
     assert found.check("first integrals").outcome == "exact"
 
 
-def test_a_damped_coordinate_has_no_such_momentum() -> None:
-    """Energy is lost: what is told of p_x + B x is left to problem 9."""
+def test_a_damped_coordinate_has_one_and_what_is_beside_it_its_energy() -> None:
+    """m x'' = -B x' and m y'' = -2 k y: energy is lost, m x' + B x and that of y are constant."""
     text = MAGNETIC.replace("POINT", "x, y, 0").replace("COORDINATES", "x, y").replace("V", "k*y**2")
-    assert mbsym.loads(text.replace("FORCE", "{x: -B*x_dot}"), (7,)).integrals == ()
+    found = mbsym.loads(text.replace("FORCE", "{x: -B*x_dot}"), (7,)).integrals
+    assert [str(one.formula) for one in found] == ["m*y_dot**2/2 + k*y**2", "m*x_dot + B*x"]
+
+
+@pytest.mark.parametrize("force", ["{y: q*B*sin(w*x)*x_dot}", "{x: -q*B*sin(w*x)*y_dot, y: q*B*sin(w*x)*x_dot}"])
+def test_a_field_that_varies_along_one_axis(force: str) -> None:
+    """m y'' = q B sin(w x) x', so that m y' + q B cos(w x)/w is constant, whatever else acts."""
+    text = MAGNETIC.replace("POINT", "x, y, 0").replace("COORDINATES", "x, y").replace("V", "0*x")
+    text = text.replace("B: real, k: real", "B: real, k: real, q: positive, w: positive").replace("FORCE", force)
+    formulas = [str(one.formula) for one in mbsym.loads(text, (7,)).integrals]
+    assert "m*y_dot + B*q*cos(w*x)/w" in formulas
+
+
+PARTS = """
+mbsym: 1
+name: parts
+parameters: {k: positive, c: positive}
+bodies:
+  - {name: p, attached to: 0, mass: 1, connection point: [x, y, 0], coordinates: [x, y]}
+  - {name: q, attached to: 0, mass: 2, connection point: [0, 0, z], coordinates: [z]}
+loads:
+  - potential: V
+  - damper: {coordinate: z, coefficient: c}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "damping", "names"),
+    [
+        ("k*x**2/2 + y**4 + z**2", "c", ["energy of x", "energy of y"]),
+        ("k*x**2/2 + x*y + z**2", "c", ["energy of x, y"]),
+        ("k*x**2/2 + x*y**2 + x*z**2", "c", []),
+        ("k*x**2/2 + y**4 + z**2", "0", ["generalised energy", "energy of x", "energy of y"]),
+        ("sqrt(1 + (x + y)**2) + z**2", "0", ["generalised energy", "energy of x, y"]),
+        ("x**2 + y**2 + z**2 + x*y + y*z", "0", ["generalised energy"]),
+    ],
+)
+def test_energies_of_parts_that_do_not_know_each_other(potential: str, damping: str, names: list[str]) -> None:
+    """Each is constant by itself, and those that follow from the ones before them are left out."""
+    text = PARTS.replace("V", potential).replace("coefficient: c", f"coefficient: {damping}")
+    found = mbsym.loads(text, (1, 2, 3, 7))
+    energies = [one for one in found.integrals if "energy" in one.kind]
+    assert [one.name for one in energies] == names
+    assert all(one.status is Certainty.PROVED for one in energies)
+    check = "verified numerically" if "sqrt" in potential else "exact"
+    assert not names or found.check("first integrals").outcome == check

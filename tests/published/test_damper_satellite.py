@@ -30,11 +30,10 @@ from mbsym.model.system import System
 from mbsym.problems.stability import parameter_values
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.routh import ignoring_cyclic
 from mbsym.problems.stability.symbolic import analyse
 from mbsym.problems.stability.verdict import Verdict, combine
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.source import to_yaml
 
 FREE, DRIVEN = SHIPPED / "satellite-with-damper.yaml", SHIPPED / "satellite-with-damper-driven.yaml"

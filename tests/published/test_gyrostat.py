@@ -22,7 +22,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.model.system import System
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.source import read, to_text, to_yaml
 
 GYROSTAT, CLEBSCH = SHIPPED / "gyrostat.yaml", SHIPPED / "clebsch.yaml"

@@ -19,7 +19,7 @@ from mbsym.analysis import Analysis
 from mbsym.mechanics.oracle import Oracle, State
 from mbsym.mechanics.programs import accelerated
 from mbsym.problems.relative_equilibria.equilibria import equilibria
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 FILE = SHIPPED / "orbital-gyrostat.yaml"
 REFERENCE = reference("orbit-gyrostat-and-clebsch")["gyrostat_orbit"]

@@ -17,8 +17,7 @@ import mbsym
 from mbsym.algebra.ring import Polynomial
 from mbsym.analysis.pipeline import Analysis
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.source import read
 from tests.published.test_constrained_systems import AtState
 

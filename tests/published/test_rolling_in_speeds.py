@@ -23,7 +23,7 @@ from mbsym.formulas.formula import Formula
 from mbsym.mechanics.constraints import speed_rows
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL
-from mbsym.problems.constraints import in_speeds
+from mbsym.problems.constraints import analysis
 from mbsym.source import read
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
@@ -147,7 +147,7 @@ def test_first_approximation_of_the_disc_in_a_circle() -> None:
 
 def test_a_dependent_speed_that_is_not_expressed_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A gamma without J' u: the embedded forces are wrong, and with them A."""
-    monkeypatch.setattr(in_speeds, "speed_rows", _without_rates(in_speeds.speed_rows))
+    monkeypatch.setattr(analysis, "speed_rows", _without_rates(analysis.speed_rows))
     found = in_a_circle()
     assert found.optional("first_order") is not None
     check = found.check("first approximation in speeds")
@@ -331,8 +331,8 @@ def _without_rates(original: Callable[..., Any]) -> Callable[..., Any]:
     ("module", "function", "mistake", "check"),
     [
         (speed_rows, "_material", _other_sign, "constraints"),
-        (in_speeds, "speed_rows", _without_rates, "constraints"),
-        (in_speeds, "speed_rows", _without_rates, "constrained motion"),
+        (analysis, "speed_rows", _without_rates, "constraints"),
+        (analysis, "speed_rows", _without_rates, "constrained motion"),
     ],
 )
 def test_a_mistake_is_found(

@@ -18,9 +18,8 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue, equilibria
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.verdict import Verdict, combine
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 THREE_BODIES = """
 mbsym: 1

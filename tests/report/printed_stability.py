@@ -21,7 +21,7 @@ from flint.utils.flint_exceptions import DomainError
 from mathml_reader import Reader as MathReader
 from mathml_reader import Token, tokens_of, tree
 
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: The value of a formula, given that of each symbol in it, as the surface writes them.
 Value = Callable[[Mapping[str, Any]], Any]

@@ -21,6 +21,8 @@ LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "picture", "p
 BEFORE = {"refused": 0, "failed": 1}
 #: Where among the arguments of a complaint about an option the message stands; a hint follows.
 COMPLAINTS = {"complain": 2, "complain_whole": 3}
+#: What failures have besides the gaps of their message.
+OF_FAILURES = ("limit", "remedy")
 #: What prints words, and asks for an answer.
 PRINTS = ("print", "echo", "prompt", "confirm")
 #: Commands that are about no description: nobody says in which language they are read.
@@ -68,12 +70,14 @@ class Module(ast.NodeVisitor):
         self.generic_visit(node)
         self._words([part for x in node.keywords if x.arg == "absent" for part in self._parts(x.value)], node)
         name = ast.unparse(node.func).split(".")[-1]
-        if name == "Message":
+        if name == "Message" or (
+            name in self.refusals and any(x.arg not in ("limit", "remedy") for x in node.keywords)
+        ):
             self._message(node)
         elif name in ("Measure", "Unusable"):
             self._words(node.args[:1], node)
         elif name in ("error", "warning") and self.of_descriptions:
-            self._words([*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")], node)
+            self._complaint(node)
         elif name == "Unfit" and self.name.startswith("studies/"):
             self._words(self._unpacked(node.args)[2:4], node)
         elif name == "Unfit" and self.name == "report/runs/earlier_run.py":
@@ -121,7 +125,7 @@ class Module(ast.NodeVisitor):
     def _message(self, node: ast.Call) -> None:
         first = node.args[0]
         starred = any(x.arg is None for x in node.keywords)
-        gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg)
+        gaps = None if starred else frozenset(x.arg for x in node.keywords if x.arg and x.arg not in OF_FAILURES)
         known = self.known.get(first.id, []) if isinstance(first, ast.Name) else []
         before = [x for x in known if x.lineno <= node.lineno]
         nearest = set(self._literals(max(before, key=lambda x: x.lineno) if before else first))
@@ -129,6 +133,18 @@ class Module(ast.NodeVisitor):
             self.texts.append(Asked(text, self._at(node), gaps if text in nearest else None))
         for text in self._named(first):
             self.texts.append(Asked(text, self._at(node)))
+
+    def _complaint(self, node: ast.Call) -> None:
+        """A message and a hint, which share what fills their gaps; what is given and stands in neither is wrong."""
+        words = [*node.args[1:2], *node.args[3:4], *(x.value for x in node.keywords if x.arg == "hint")]
+        given = {x.arg for x in node.keywords if x.arg and x.arg not in ("hint", "span")}
+        if not given:
+            return self._words(words, node)
+        texts = [text for one in words if not isinstance(one, ast.Call) for text in self._literals(one)]
+        idle = given - {gap for text in texts for gap in GAP.findall(text)}
+        for text in texts:
+            self.texts.append(Asked(text, self._at(node), frozenset(given & set(GAP.findall(text)) | idle)))
+        return None
 
     def _words(self, values: list[ast.expr], node: ast.AST, depth: int = 0) -> None:
         for value in values:

@@ -16,7 +16,7 @@ from mbsym.expressions.message import Message, worded
 from mbsym.formulas.formula import Column, Formula, Matrix
 from mbsym.formulas.latex import latex_names
 from mbsym.formulas.mathml import mathml_names
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report import content, plain_writer
 from mbsym.report.content import Name, Notation, Relation, Said, Strong, Symbol, paragraph, say
 from mbsym.report.html import writer as html

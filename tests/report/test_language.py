@@ -17,7 +17,7 @@ from markupsafe import Markup
 
 import mbsym
 from mbsym.expressions.message import Message, Said
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.messages import messages

@@ -35,11 +35,11 @@ from mbsym.numerics.planning import kinds, plan
 from mbsym.problems.checks import HOW_EQUAL
 from mbsym.problems.claims.remarks import Remark, Said, text
 from mbsym.problems.normal_forms.result import Outcome, Theorem
-from mbsym.problems.stability import theorems
+from mbsym.problems.stability import words
 from mbsym.problems.stability.linear_form import LinearSystem, kind_of
 from mbsym.problems.stability.requirements import BUT_TURNED, BUT_ZERO, Method, Place
 from mbsym.problems.stability.sentences import _SENTENCES as because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.language import LANGUAGES, Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.maps.words import _DOUBTS
@@ -228,7 +228,7 @@ def test_what_is_wrong_with_a_message_is_found() -> None:
 def words_of_types() -> set[str]:
     """Verdicts, outcomes, theorems, places and methods of conditions, kinds of systems, claims and constraints."""
     found: set[str] = {*Word, *Place, *Method, *Outcome, *Theorem, *HOW_EQUAL.values(), *KIND_NAMES.values(), *SUMS}
-    found |= {value for key, value in vars(theorems).items() if key.isupper() and isinstance(value, str)}
+    found |= {value for key, value in vars(words).items() if key.isupper() and isinstance(value, str)}
     found |= {str(one.value) for one in (Certainty.PROVED, Certainty.VERIFIED, Certainty.UNDECIDED)}
     found |= {kind_of(system) for system in systems()}
     found |= {f"{kind} of [[of]]" if one.of and kind != "coefficient" else kind for kind, one in CLAIMS.items()}
@@ -344,7 +344,7 @@ def test_a_message_is_its_english_text_and_is_said_with_its_gaps() -> None:
 
 def test_a_failure_keeps_its_message() -> None:
     """Through a pickle, as its reason, and in what is made of it: str() is English."""
-    failure = NoClosedForm(Message("[[count]] terms are beyond the budget of [[most]]", count=9, most=5))
+    failure = NoClosedForm("[[count]] terms are beyond the budget of [[most]]", count=9, most=5)
     again = pickle.loads(pickle.dumps(failure))
     assert type(again.reason) is Message
     assert again.reason.gaps == {"count": "9", "most": "5"}

@@ -31,7 +31,7 @@ from mbsym.formulas.mathml import mathml_names
 from mbsym.formulas.wolfram import wolfram_names
 from mbsym.problems.stability import SubsystemStability
 from mbsym.problems.stability.requirements import Case, Requirement
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report import conditions
 from mbsym.report.conditions import Shown
 from mbsym.report.plain_writer import Line, Writer

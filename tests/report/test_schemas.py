@@ -22,9 +22,7 @@ from mbsym.batch.summary_json import schema as of_batches
 from mbsym.numerics.conservation import Doubt
 from mbsym.problems.checks import EXACT, FAILED, NUMERICAL, SINGULAR, UNDECIDED
 from mbsym.problems.normal_forms import Theorem
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import THEOREMS
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import THEOREMS, Because, Word
 from mbsym.report.documents.base import From, Part, told_apart_by, words, written
 from mbsym.report.results_json import render
 from mbsym.report.runs.simulation_json import simulation_json

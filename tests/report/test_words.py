@@ -16,7 +16,7 @@ from terminal import told
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability import sentences
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.targets import TARGETS
 from mbsym_cli.main import main
 

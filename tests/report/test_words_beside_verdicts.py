@@ -19,7 +19,7 @@ from terminal import told
 
 import mbsym
 from mbsym.algebra.failures import Failure
-from mbsym.problems.stability.reasons import Because, Reason
+from mbsym.problems.stability.words import Because, Reason
 from mbsym.report.content import Display, Phrase, Subheading
 from mbsym.report.plain_writer import Writer
 from mbsym.report.results import results

@@ -16,8 +16,7 @@ import pytest
 from pages import ROOT, pages
 
 import mbsym
-from mbsym.problems.stability.theorems import THEOREMS
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import THEOREMS, Word
 from mbsym.report.schemas import names, schema
 from mbsym.source import keys
 from mbsym_cli.main import COMMANDS, main

@@ -22,7 +22,7 @@ from mbsym.source.examples import example_text
 from mbsym.source.grammar import Ends, Equation, Formula, Key, Kind, Record, Type, Vector, Way, plain
 from mbsym.source.keys import AXIS, CONSTRAINTS, DESCRIPTION, LOADS
 from mbsym.source.scope import Allowed
-from mbsym.source.shape import constraint_shape, load_shape
+from mbsym.source.yaml_writer import constraint_shape, load_shape
 
 KINDS = [*LOADS.items(), *CONSTRAINTS.items()]
 

@@ -784,6 +784,20 @@ def test_the_total_mass_may_be_set() -> None:
     assert not any("settotalmass" in one for one in converted(text).left_out)
 
 
+def test_a_tensor_that_no_body_has() -> None:
+    """3 > 1 + 1: MuJoCo refuses it, or with 'balanceinertia' takes the mean 5/3; in URDF it stands, and is told."""
+    body = '<body name="a"><joint/><inertial mass="1" pos="0 0 0" diaginertia="1 1 3"/></body>'
+    assert [code for code, _ in complaints_of(mujoco("", body))] == ["impossible-inertia"]
+    full = body.replace('diaginertia="1 1 3"', 'fullinertia="1.4 1.4 1 1.2 0 0"')  # 2.6 > 1 + 0.2
+    assert [code for code, _ in complaints_of(mujoco("", full))] == ["impossible-inertia"]
+    balanced = converted(mujoco('<compiler balanceinertia="true"/>', body))
+    assert not balanced.left_out
+    system, _ = read(balanced.yaml, "x.yaml")
+    assert system is not None
+    assert system.bodies[0].inertia is not None
+    assert [eval(written(system.bodies[0].inertia.tensor[k][k])) for k in range(3)] == pytest.approx([5 / 3] * 3)
+
+
 #: A frame turned by a right angle about z and moved along x; in it a body, and in that a frame with a geom and a site.
 FRAMES = """<frame name="mount" pos="1 0 0" euler="0 0 90"><body name="b" pos="0 0 2"><joint name="h" axis="0 1 0"/>
 <frame pos="0 0 -1"><geom name="g" type="sphere" size="0.1" mass="5"/><site name="tip" pos="0 0 -1"/>

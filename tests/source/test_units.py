@@ -13,8 +13,8 @@ import pytest
 
 from mbsym.model.units import ENERGY, LENGTH, MASS, TIME, Units, times, written
 from mbsym.source import read, to_text, to_yaml
-from mbsym.source.units.expressions import Form, Inference
 from mbsym.source.units.reading import COMMON, Unit, unit
+from mbsym.source.units.system import Form, Inference
 
 ROOT = Path(__file__).parents[2]
 

@@ -29,7 +29,7 @@ from mbsym.problems import stability
 from mbsym.problems.claims import ClaimResult, Outcome
 from mbsym.problems.claims.regions import Inequality, Region
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.words.claims import claim_line
 
 GRID = [Fraction(k, 2) for k in range(-4, 5)]

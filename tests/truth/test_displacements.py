@@ -14,8 +14,7 @@ import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.displacements import Displacements
 from mbsym.problems.dissipation import Balance
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 

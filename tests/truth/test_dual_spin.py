@@ -13,8 +13,7 @@ import pytest
 
 import mbsym
 from mbsym.analysis import Analysis
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 #: A, C, Ar, Cr.
 PROLATE, OBLATE = (10, 6, 2, 4), (2, 1, 8, 14)

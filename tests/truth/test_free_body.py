@@ -17,8 +17,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability.problem import SubsystemStability
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 CASES = Path(__file__).parents[1] / "cases" / "statements"
 

@@ -26,8 +26,7 @@ import pytest
 import mbsym
 from mbsym.analysis import Analysis
 from mbsym.problems.stability import ExactVerdicts
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 MANY = int(os.environ.get("MBSYM_INVARIANCE", "14"))
 #: Random parameters at which the conditions are compared.

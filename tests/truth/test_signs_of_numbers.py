@@ -11,7 +11,7 @@ from __future__ import annotations
 import pytest
 
 import mbsym
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 POINT = """
 mbsym: 1

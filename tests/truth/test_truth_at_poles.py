@@ -10,8 +10,7 @@ from terminal import told
 import mbsym
 from mbsym.analysis.judge import Judge
 from mbsym.problems.normal_forms import Outcome, Why
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.words.normal_form_words import REASONS
 
 #: U = -x^2/2 - x^4/(b - 4): its first approximation knows nothing of the pole.

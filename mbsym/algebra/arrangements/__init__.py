@@ -3,15 +3,3 @@
 from mbsym.algebra.arrangements.arrangement import Arc, Arrangement, Corner, CornerKind, Region, areas, polyline
 from mbsym.algebra.arrangements.decomposition import decompose
 from mbsym.algebra.arrangements.space import critical_levels
-
-__all__ = [
-    "Arc",
-    "Arrangement",
-    "Corner",
-    "CornerKind",
-    "Region",
-    "areas",
-    "critical_levels",
-    "decompose",
-    "polyline",
-]

@@ -14,8 +14,8 @@ from flint import arb, arb_poly, ctx, fmpq
 
 from mbsym.algebra.arrangements.stacks import Column, Fibre
 from mbsym.algebra.factors import irreducible_factors
+from mbsym.algebra.plane.fields import Point
 from mbsym.algebra.plane.numbers import Ball, Rational, Root, compare, high, low, primitive, roots_between, sign
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Curve, Polynomial, coefficients
 
 

@@ -26,10 +26,9 @@ from mbsym.algebra.arrangements.arrangement import (
 )
 from mbsym.algebra.arrangements.stacks import BOTTOM, TOP, Column, Fibre, column, connected, points_over
 from mbsym.algebra.failures import Defect, Limit, TooLargeError
+from mbsym.algebra.plane.fields import Point
 from mbsym.algebra.plane.numbers import between_simply
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.plane.projection import Box, Budget, Curve, Polynomial, Progress, abscissas, nothing, parts
-from mbsym.expressions.message import Message
 
 Key = tuple[int, int]
 End = tuple[int, int, int]  # (strip, section, 0: its left end, 1: its right end)
@@ -52,7 +51,7 @@ def decompose(
         columns.append(column(curves, box, between_simply(a.x, b.x)))
         cells += len(columns[-1].sections)
         if cells > budget.cells:
-            raise TooLargeError(Message("more than [[cells]] cells of stacks", cells=budget.cells), limit=Limit.WORK)
+            raise TooLargeError("more than [[cells]] cells of stacks", cells=budget.cells, limit=Limit.WORK)
     fibres = []
     for at, abscissa in enumerate(critical):
         progress("fibres", at, len(critical))
@@ -71,10 +70,7 @@ class _Assembly:
     fibres: tuple[Fibre, ...]
 
     def arrangement(self) -> Arrangement:
-        self.edges = {
-            BOTTOM: self._edge(self.box.y0),
-            TOP: self._edge(self.box.y1),
-        }
+        self.edges = {BOTTOM: self._edge(self.box.y0), TOP: self._edge(self.box.y1)}
         cells = self._cells()
         intervals = self._intervals(cells)
         corners = {key: k for k, key in enumerate(self._corners())}

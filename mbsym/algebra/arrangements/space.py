@@ -28,7 +28,7 @@ from mbsym.algebra.failures import Limit, TooLargeError
 from mbsym.algebra.plane.line import Line, decompose_line
 from mbsym.algebra.plane.numbers import Number, Rational
 from mbsym.algebra.plane.projection import Box, Budget, Polynomial, Progress, nothing
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import coefficients_in
 
 # Whether two arrangements correspond: a bijection of their regions, arcs and corners that keeps what they adjoin.
 #
@@ -189,7 +189,7 @@ def critical_levels(
     found = decompose_line(wanted, low, high)
     if len(found.zeros) > budget.abscissas:
         raise TooLargeError(
-            Message("[[count]] values at which the picture may change", count=len(found.zeros)), limit=Limit.WORK
+            "[[count]] values at which the picture may change", count=len(found.zeros), limit=Limit.WORK
         )
     return found
 
@@ -263,11 +263,7 @@ def _projected(
 
 def _coefficients(p: Polynomial, generator: int) -> list[Polynomial]:
     """The leading coefficient, and all others where none is a number."""
-    table: dict[int, dict[Any, Any]] = {}
-    for powers, value in p.to_dict().items():
-        key = tuple(0 if k == generator else int(power) for k, power in enumerate(powers))
-        table.setdefault(int(powers[generator]), {})[key] = value
-    every = [p.context().from_dict(table[k]) for k in sorted(table, reverse=True)]
+    every = [c for c in reversed(coefficients_in(p, generator)) if c != 0]
     return every[:1] if any(c.is_constant() for c in every) else every
 
 
@@ -289,6 +285,8 @@ def _affordable(polynomials: Sequence[Polynomial], generator: int, budget: Budge
                     worst = max(worst, own[k] * other[generator] + other[k] * own[generator])
     if worst > budget.degree:
         raise TooLargeError(
-            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            "a resultant of degree up to [[worst]], more than [[most]]",
+            worst=worst,
+            most=budget.degree,
             limit=Limit.DEGREE,
         )

@@ -17,8 +17,8 @@ from flint import acb, acb_poly, arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz, fmpz
 
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Isolated, Rational
-from mbsym.expressions.message import Message
+from mbsym.algebra.plane.numbers import AlgebraicNumber, Ball, Isolated, Rational, enclosure, sign
+from mbsym.algebra.plane.projection import Polynomial, coefficients
 
 # Greatest common divisors over QQ(alpha) by way of finite rings, where Euclid's numbers would grow without bound.
 #
@@ -63,13 +63,10 @@ def common_divisor(modulus: Element, a: Sequence[Element], b: Sequence[Element])
         if candidate is not None and all(divides(modulus, candidate, p) for p in (a, b)):
             return candidate
     raise TooLargeError(
-        Message(
-            "a common divisor of polynomials of degrees [[count]] and [[other]] over a number field of "
-            "degree [[degree]]",
-            count=len(a) - 1,
-            other=len(b) - 1,
-            degree=modulus.degree(),
-        ),
+        "a common divisor of polynomials of degrees [[count]] and [[other]] over a number field of degree [[degree]]",
+        count=len(a) - 1,
+        other=len(b) - 1,
+        degree=modulus.degree(),
         limit=Limit.DIGITS,
     )
 
@@ -528,3 +525,42 @@ def deflated(coefficients: Sequence[Ball], root: Ball) -> list[Ball]:
         carried = carried * root + c
         quotient.append(carried)
     return quotient[::-1]
+
+
+# Exact points of the plane, at which the sign of every polynomial with rational coefficients is decided.
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """(x, y): each a flint.fmpq or an AlgebraicNumber; y may be the root of a polynomial over QQ(x) instead."""
+
+    x: Any
+    y: Any
+
+    @property
+    def rational(self) -> bool:
+        return isinstance(self.x, fmpq) and isinstance(self.y, fmpq)
+
+    def sign(self, polynomial: Polynomial) -> int:
+        """The sign of polynomial(x, y), exactly."""
+        in_y = coefficients(polynomial, 1)
+        if isinstance(self.x, fmpq):
+            over = fmpq_poly([c(self.x) for c in in_y])
+            return sign(over(self.y)) if isinstance(self.y, fmpq) else self.y.sign(over)
+        x: AlgebraicNumber = self.x
+        if isinstance(self.y, fmpq):
+            total = fmpq_poly([0])
+            for c in reversed(in_y):
+                total = total * self.y + c
+            return x.sign(total)
+        root: Over = self.y
+        return root.sign(root.over.trimmed(in_y))
+
+    def enclosures(self, bits: int = 64) -> tuple[Ball, Ball]:
+        """Balls around x and y of about this relative accuracy."""
+        return enclosure(self.x, bits), self.y.enclosure(bits) if isinstance(self.y, Over) else enclosure(self.y, bits)
+
+    def floats(self) -> tuple[float, float]:
+        """The nearest doubles, or their neighbours."""
+        x, y = self.enclosures(60)
+        return float(x.mid()), float(y.mid())

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from flint import fmpq, fmpq_poly
+from flint import fmpq
 
 from mbsym.algebra.plane.numbers import (
     Integer,
@@ -22,6 +22,7 @@ from mbsym.algebra.plane.numbers import (
     sign,
 )
 from mbsym.algebra.plane.projection import Polynomial
+from mbsym.algebra.terms import univariate
 
 
 @dataclass(frozen=True)
@@ -106,11 +107,3 @@ def divided(
         sample = between_simply(a, b)
         intervals.append(Interval(len(intervals), sample, tuple(sign(p(sample)) for p in factors), (first, last)))
     return Line(low, high, tuple(factors), tuple(intervals), zeros)
-
-
-def univariate(p: Polynomial) -> fmpq_poly:
-    """A polynomial in the one generator of its context."""
-    total = fmpq_poly([0])
-    for (power,), value in p.to_dict().items():
-        total[int(power)] = value
-    return total

@@ -31,7 +31,7 @@ from mbsym.algebra.plane.numbers import (
     primitive,
     roots_between,
 )
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import coefficients_in, univariate
 
 Polynomial = Any  # a flint.fmpq_mpoly in two generators
 
@@ -141,15 +141,7 @@ class Abscissa:
 
 def coefficients(p: Polynomial, generator: int) -> tuple[Univariate, ...]:
     """Of 1, g, g^2, ... for a polynomial in two generators, as polynomials in the other one."""
-    other = 1 - generator
-    table: dict[int, dict[int, Any]] = {}
-    for powers, value in p.to_dict().items():
-        table.setdefault(int(powers[generator]), {})[int(powers[other])] = value
-    univariates = []
-    for k in range(max(table, default=0) + 1):
-        row = table.get(k, {})
-        univariates.append(fmpq_poly([row.get(j, fmpq(0)) for j in range(max(row, default=0) + 1)]))
-    return tuple(univariates)
+    return tuple(univariate(c, 1 - generator) for c in coefficients_in(p, generator))
 
 
 def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Vertical, ...]]:
@@ -172,11 +164,7 @@ def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Verti
 
 
 def abscissas(
-    curves: Sequence[Curve],
-    verticals: Sequence[Vertical],
-    box: Box,
-    budget: Budget,
-    progress: Progress = nothing,
+    curves: Sequence[Curve], verticals: Sequence[Vertical], box: Box, budget: Budget, progress: Progress = nothing
 ) -> list[Abscissa]:
     """The critical abscissas within the box, ascending, its edges included.
 
@@ -203,9 +191,7 @@ def abscissas(
     progress("projection", whole, whole)
     found = table.abscissas()
     if len(found) > budget.abscissas:
-        raise TooLargeError(
-            Message("[[count]] abscissas at which the picture may change", count=len(found)), limit=Limit.WORK
-        )
+        raise TooLargeError("[[count]] abscissas at which the picture may change", count=len(found), limit=Limit.WORK)
     return found
 
 
@@ -219,7 +205,9 @@ def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
             worst = max(worst, ax * b.degree + int(b.polynomial.degrees()[0]) * a.degree)
     if worst > budget.degree:
         raise TooLargeError(
-            Message("a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=budget.degree),
+            "a resultant of degree up to [[worst]], more than [[most]]",
+            worst=worst,
+            most=budget.degree,
             limit=Limit.DEGREE,
         )
 

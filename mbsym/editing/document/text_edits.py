@@ -15,8 +15,8 @@ from mbsym.editing.document.primitives import Add, Primitive, Remove, Replace, S
 from mbsym.editing.document.written import Data, Refused, Written, node_at
 from mbsym.source.labels import ASSUMPTIONS, SECTIONS
 from mbsym.source.placed import Scalar
-from mbsym.source.text_data import BLOCKS, ROWS, Line, lines_of_data, title_shown
 from mbsym.source.text_lines import HEADING, label_of, lines_of, word_of
+from mbsym.source.text_writer import BLOCKS, ROWS, Line, lines_of_data, title_shown
 
 _LISTS = {word.lower(): key for key, word in BLOCKS.items()}
 

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.program import Node
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import Expression, names, number
 from mbsym.model.states import InStates, described
 from mbsym.model.system import System, velocity_name
@@ -129,7 +128,7 @@ class Parametrised(Dynamics):
                 return slope(sides)
             except Incomplete as reason:
                 why = str(reason)
-        raise NoClosedForm(Message("no motion begins with another [[name]] alone: [[why]]", name=name, why=why))
+        raise NoClosedForm("no motion begins with another [[name]] alone: [[why]]", name=name, why=why)
 
     @cached_property
     def parameters(self) -> Code:

@@ -56,17 +56,6 @@ from mbsym.problems.claims.result import (
 )
 from mbsym.problems.claims.symbols import Symbols
 
-__all__ = [
-    "ClaimResult",
-    "Derived",
-    "Outcome",
-    "Part",
-    "Symbols",
-    "examine",
-    "title",
-    "undecided",
-]
-
 
 def examine(derived: Derived, claim: Claim) -> ClaimResult:
     """One claim against what is derived.

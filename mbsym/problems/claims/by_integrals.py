@@ -19,7 +19,7 @@ from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.mechanics.motion import turning, unperturbed_with
 from mbsym.problems import dissipation
 from mbsym.problems.claims.result import Derived
-from mbsym.problems.conserved import SQUARE, Conserved, by_integrals, of_integrals
+from mbsym.problems.stability.bundle import SQUARE, Conserved, by_integrals, of_integrals
 from mbsym.problems.stability.verdict import Verdict
 
 #: Larger systems are not looked at.

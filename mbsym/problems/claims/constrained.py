@@ -56,9 +56,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     if claim.right is not None:
         return examined_condition(derived, claim, about)
     if claim.kind in IN_MOMENTA or claim.kind.startswith(("state matrix", "linear matrix B")):
-        raise NoClosedForm(
-            Message("a claim about the [[kind]]: not judged under constraints", kind=Message(claim.kind))
-        )
+        raise NoClosedForm("a claim about the [[kind]]: not judged under constraints", kind=Message(claim.kind))
     if claim.kind == "coefficient" and claim.of not in SUMS:
         raise NoClosedForm("a coefficient of an equation, which multipliers complete: not judged under constraints")
     symbols, ring = Symbols.of(derived), derived.ring
@@ -212,12 +210,10 @@ def accelerated_at(system: System, ring: Ring, tied: Constraints, state: State) 
         for name, row, error in zip(names, rows, errors, strict=True):
             if abs(error) > KEPT * (1 + sum((abs(x) for x in row), arb(0))):
                 raise NoClosedForm(
-                    Message(
-                        "the state does not keep [[label]] ([[kind]]: off by [[error]])",
-                        label=name.label,
-                        kind=kind,
-                        error=shown(abs(error), 3),
-                    )
+                    "the state does not keep [[label]] ([[kind]]: off by [[error]])",
+                    label=name.label,
+                    kind=kind,
+                    error=shown(abs(error), 3),
                 )
     whole = [[*mass[i], *(-rows[k][i] for k in range(m))] for i in range(n)]
     whole += [[*row, *([arb(0)] * m)] for row in rows]

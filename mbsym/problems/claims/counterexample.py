@@ -41,7 +41,7 @@ from mbsym.model.system import Body, System, rational, velocity_name
 from mbsym.problems.stability.exact import is_positive
 from mbsym.problems.stability.sentences import with_theorem
 from mbsym.problems.stability.verdict import Flaw, Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 #: Parameters, and states, that are tried.
 SAMPLES, STATES = 400, 40

@@ -16,18 +16,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import islice
-from typing import Any
 
 from mbsym.algebra.failures import NOT_THERE, Failure, NoClosedForm
 from mbsym.algebra.matrices import components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.claims.comparison import closest_multiple, differing, exceptions
+from mbsym.problems.claims.comparison import closest_multiple, decided, differing, exceptions
 from mbsym.problems.claims.counterexample import rate_at_states
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, by_place, in_parameters, on_relations
-from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
 
 #: States at which an expression must vanish before a proof is tried; coupled equations, and powers of accelerations,
@@ -75,13 +74,10 @@ class Dynamics:
                 top = determinant(ring, [row if k == i else mass[m] for m, k in enumerate(block)])
                 if ring.vanishes(top):
                     continue
-                top, bottom = _lowest(ring, top, whole)
+                top, bottom = ring.lowest_terms(top, whole)
                 coefficients.append((self.names[i], top, bottom))
                 # left/over - top/bottom L_i over the least denominator
-                common = ring.common_factor(over, bottom)
-                mine, other = ring.quotient(bottom, common), ring.quotient(over, common)
-                if mine is None or other is None:
-                    mine, other = bottom, over
+                mine, other = ring.lowest_terms(bottom, over)
                 left = ring.times(left, mine) - ring.times(ring.times(top, other), self.rows[i])
                 left, over = ring.reduce(left), ring.reduce(ring.times(over, mine))
         return Combination(tuple(coefficients), left, over)
@@ -99,15 +95,9 @@ class Dynamics:
         total = x
         for i, top, bottom in self._solutions(wanted):
             k = self.places[i]
-            degree = int(total.degrees()[k])
-            powers: dict[int, dict[tuple[int, ...], Any]] = {}
-            for monomial, coefficient in total.terms():
-                exponents = [int(e) for e in monomial]
-                power, exponents[k] = exponents[k], 0
-                powers.setdefault(power, {})[tuple(exponents)] = coefficient
-            total = ring.zero
-            for power, terms in powers.items():
-                term = ring.context.from_dict(terms)
+            parts = coefficients_in(total, k)
+            degree, total = len(parts) - 1, ring.zero
+            for power, term in enumerate(parts):
                 for factor, exponent in ((top, power), (bottom, degree - power)):
                     for _ in range(exponent):
                         term = ring.reduce(ring.times(term, factor))
@@ -125,7 +115,7 @@ class Dynamics:
                     replaced = [
                         [y if c == column else x for c, x in enumerate(row)] for row, y in zip(mass, right, strict=True)
                     ]
-                    solutions.append((i, *_lowest(ring, determinant(ring, replaced), whole)))
+                    solutions.append((i, *ring.lowest_terms(determinant(ring, replaced), whole)))
         return solutions
 
     def _blocks(self, wanted: set[int]) -> list[tuple[list[int], list[list[Polynomial]], Polynomial]]:
@@ -137,7 +127,7 @@ class Dynamics:
             if wanted.isdisjoint(block):
                 continue
             if len(block) > MOST_COUPLED:
-                raise NoClosedForm(Message("[[count]] equations are coupled", count=len(block)))
+                raise NoClosedForm("[[count]] equations are coupled", count=len(block))
             cut = [[mass[i][j] for j in block] for i in block]
             whole = determinant(ring, cut)
             if ring.vanishes(whole):
@@ -159,7 +149,7 @@ class Combination:
         ring = dynamics.ring
         told: list[str] = []
         for name, top, bottom in self.coefficients:
-            factor = str(Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom)))))
+            factor = str(Formula(ring, ring.ratio(top, bottom)))
             if len(factor) > LONGEST:
                 names = ", ".join(name for name, *_ in self.coefficients)
                 told = [Message("a combination of the equations of [[names]]", names=names)]
@@ -184,12 +174,6 @@ class Combination:
             row = dynamics.rows[dynamics.names.index(name)]
             total = total + ring.times(ring.times(top, ring.reciprocal(bottom)), row)
         return ring.reduce(total)
-
-
-def _lowest(ring: Ring, top: Polynomial, bottom: Polynomial) -> tuple[Polynomial, Polynomial]:
-    common = ring.common_factor(top, bottom)
-    first, second = ring.quotient(top, common), ring.quotient(bottom, common)
-    return (top, bottom) if first is None or second is None else (first, second)
 
 
 def along_motion(
@@ -258,11 +242,7 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
             remark = made.words(dynamics, derived, claim.of)
         elif power_of(ring, x, _places(derived)) <= 1:
             remark = "at states, with the accelerations of the motion put in"
-        return replace(
-            plain,
-            outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL,
-            remark=remark,
-        )
+        return replace(plain, outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL, remark=remark)
     if outcome == Outcome.UNDECIDED and not refuted:
         return replace(plain, outcome=Outcome.UNDECIDED, remark="whether it vanishes on every motion is not decided")
     if not found.refuted:  # undecided as a multiple; refuted as what it is

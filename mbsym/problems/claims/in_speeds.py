@@ -26,8 +26,7 @@ from mbsym.problems.claims.integrals import of_positions, substituted
 from mbsym.problems.claims.quantities import derived_quantity, of_first_approximation
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters, scene_of_claims
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.in_speeds.speed_integrals import Field
-from mbsym.problems.in_speeds.speeds import SpeedEquations
+from mbsym.problems.in_speeds import Field, SpeedEquations
 
 #: What is told in coordinates.
 _LINEAR = ("linear matrix", "subsystem matrix", "characteristic")
@@ -124,8 +123,8 @@ def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:
         return equations.equality(_speed(form, claim.of)).polynomial
     if claim.kind == "acceleration":
         top, bottom = Dynamics.of(derived).solved(_speed(form, claim.of))
-        return form.ring.reduce(form.ring.times(top, form.ring.reciprocal(bottom)))
-    raise NoClosedForm(Message("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind)))
+        return form.ring.ratio(top, bottom)
+    raise NoClosedForm("a claim about the [[kind]]: not judged in speeds", kind=Message(claim.kind))
 
 
 def _speed(form: SpeedForm, name: str) -> int:
@@ -133,7 +132,7 @@ def _speed(form: SpeedForm, name: str) -> int:
     for r, u in enumerate(form.speeds):
         if name in (u.name, without_velocity(u.name)):
             return r
-    raise NoClosedForm(Message("the velocity of [[name]] is no speed: other speeds have taken its place", name=name))
+    raise NoClosedForm("the velocity of [[name]] is no speed: other speeds have taken its place", name=name)
 
 
 def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomial | None:
@@ -145,7 +144,7 @@ def _factor(form: SpeedForm, claimed: Polynomial, truth: Polynomial) -> Polynomi
         if ring.vanishes(first) or ring.vanishes(second) or held:
             continue
         if form.vanishes(ring.times(second, claimed) - ring.times(first, truth)) is True:
-            return ring.reduce(ring.times(first, ring.reciprocal(second)))
+            return ring.ratio(first, second)
     return None
 
 

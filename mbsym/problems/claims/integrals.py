@@ -9,19 +9,14 @@ from itertools import product as combinations_of
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import (
-    names,
-)
+from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula, Matrix, column
 from mbsym.mechanics.motion import relations
 from mbsym.mechanics.speeds import SpeedForm
 from mbsym.model.claims import Claim
-from mbsym.problems.claims.counterexample import (
-    against_constancy,
-    rate_at_states,
-)
+from mbsym.problems.claims.comparison import MOST_SIGNS, decided, restriction, signs_under_roots
+from mbsym.problems.claims.counterexample import against_constancy, rate_at_states
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
-from mbsym.problems.claims.signs_under_roots import MOST_SIGNS, decided, restriction, signs_under_roots
 from mbsym.problems.equations import Equations
 from mbsym.problems.integrals import is_conserved, is_proved, rate_on_motion, total_rate
 
@@ -131,11 +126,7 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
         found = rate_on_motion(derived.scene, equations, claimed)
         if found is None:
             return None
-        common = ring.common_factor(*found)
-        top, bottom = ring.quotient(found[0], common), ring.quotient(found[1], common)
-        if top is None or bottom is None:
-            top, bottom = found
-        return Formula(ring, ring.reduce(ring.times(top, ring.reciprocal(bottom))))
+        return Formula(ring, ring.ratio(*ring.lowest_terms(*found)))
     except Failure:
         return None
 

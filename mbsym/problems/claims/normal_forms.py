@@ -49,11 +49,9 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         nonzero = positive
     else:
         raise NoClosedForm(
-            Message(
-                "no [[kind]] in parameters: [[why]]",
-                kind=Message(claim.kind),
-                why=forms.no_symbols or "problem 11 has another case",
-            )
+            "no [[kind]] in parameters: [[why]]",
+            kind=Message(claim.kind),
+            why=forms.no_symbols or "problem 11 has another case",
         )
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))
     claimed, known = on_relations(derived, claim, claimed), on_relations(derived, claim, truth.polynomial)
@@ -108,10 +106,7 @@ class _Quotient:
 
     @staticmethod
     def of(ring: Ring, x: Polynomial, y: Polynomial) -> _Quotient:
-        above, below = over_common_denominator(ring, x, y)
-        common = ring.common_factor(above, below)
-        top, bottom = ring.quotient(above, common), ring.quotient(below, common)
-        return _Quotient(ring, above, below) if top is None or bottom is None else _Quotient(ring, top, bottom)
+        return _Quotient(ring, *ring.lowest_terms(*over_common_denominator(ring, x, y)))
 
     @property
     def product(self) -> Polynomial:
@@ -120,7 +115,7 @@ class _Quotient:
 
     @property
     def formula(self) -> Formula:
-        return Formula(self.ring, self.ring.reduce(self.ring.times(self.top, self.ring.reciprocal(self.bottom))))
+        return Formula(self.ring, self.ring.ratio(self.top, self.bottom))
 
     @property
     def is_monomial(self) -> bool:

@@ -13,21 +13,16 @@ from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, NotRational
 from mbsym.algebra.point import Balls
 from mbsym.expressions.message import Message
-from mbsym.expressions.tree import (
-    Expression,
-    Name,
-    names,
-    text,
-)
+from mbsym.expressions.tree import Expression, Name, names, text
 from mbsym.mechanics.oracle import State
 from mbsym.mechanics.programs import accelerated
 from mbsym.mechanics.states import SEED
 from mbsym.model.claims import Claim
 from mbsym.model.system import System, acceleration_name, velocity_name
+from mbsym.problems.claims.comparison import ROUNDING
 from mbsym.problems.claims.counterexample import DIGITS_SHOWN, PRECISION, follow, shown
 from mbsym.problems.claims.quantities import derived_quantity
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome
-from mbsym.problems.claims.signs_under_roots import ROUNDING
 from mbsym.problems.claims.symbols import Symbols
 
 #: The value is shown to so many digits more than the claim has.
@@ -52,10 +47,7 @@ def examined_number(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         if result is not None:
             return result
     return ClaimResult(
-        claim,
-        about,
-        Outcome.UNDECIDED,
-        remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1]),
+        claim, about, Outcome.UNDECIDED, remark=Message("too many digits cancel, even of [[most]] bits", most=FINER[-1])
     )
 
 
@@ -64,7 +56,7 @@ def _at_precision(derived: Derived, claim: Claim, about: str, last: bool) -> Cla
     try:
         printed, value = _both(derived, claim)
     except KeyError as missing:
-        raise NotRational(Message("no number is given for [[name]]", name=missing.args[0])) from None
+        raise NotRational("no number is given for [[name]]", name=missing.args[0]) from None
     for what, number in ((Message("the value"), value), (Message("the claimed value"), printed)):
         if not number.is_finite():
             return (

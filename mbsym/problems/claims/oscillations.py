@@ -17,13 +17,14 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from random import Random
-from typing import Any, Protocol
+from typing import Protocol
 
 from flint import nmod_mat
 
 from mbsym.algebra.failures import Failure, NoClosedForm, SingularPoint
 from mbsym.algebra.quotients import Quotient
 from mbsym.algebra.signs import Signs
+from mbsym.algebra.terms import modulo
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.angles import linear_form
 from mbsym.expressions.message import Message
@@ -31,12 +32,11 @@ from mbsym.expressions.tree import Call, Expression, Name, Negative, Number, Ope
 from mbsym.formulas.formula import Formula
 from mbsym.model.claims import Claim
 from mbsym.model.system import System
+from mbsym.problems.claims.comparison import decided
 from mbsym.problems.claims.result import ClaimResult, Derived, Outcome, in_parameters
-from mbsym.problems.claims.signs_under_roots import decided
 from mbsym.problems.claims.symbols import Symbols
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
 from mbsym.problems.small_parameter.oscillations import AMPLITUDE
-from mbsym.problems.small_parameter.result import SlowManifold
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation, SlowManifold
 from mbsym.problems.vector_field import Transfer
 
 # Whether a formula of another form may be the same periodic solution with its symbols chosen otherwise.
@@ -155,7 +155,7 @@ def _points(tower: Tower) -> Iterator[list[int]]:
     for _ in range(_TRIALS):
         values = [0] * MOST_ROOTS + [random.randrange(1, PRIME) for _ in tower.parameters]
         for k, square in enumerate(tower.squares):
-            root = _root(_polynomial_at(square, values))
+            root = _root(modulo(square, values, PRIME))
             if root is None:
                 break
             values[MOST_ROOTS - 1 - k] = root
@@ -173,21 +173,10 @@ def _root(square: int) -> int | None:
 
 
 def _at(x: Element, values: Sequence[int]) -> int:
-    below = _polynomial_at(x.bottom, values)
+    below = modulo(x.bottom, values, PRIME)
     if below == 0:
         raise ZeroDivisionError
-    return _polynomial_at(x.top, values) * pow(below, -1, PRIME) % PRIME
-
-
-def _polynomial_at(p: Any, values: Sequence[int]) -> int:
-    total = 0
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q), -1, PRIME)
-        for value, exponent in zip(values, monomial, strict=True):
-            if exponent:
-                term = term * pow(value, int(exponent), PRIME) % PRIME
-        total += term
-    return total % PRIME
+    return modulo(x.top, values, PRIME) * pow(below, -1, PRIME) % PRIME
 
 
 #: The kinds of claim that this is about.
@@ -322,7 +311,7 @@ class _InVariables:
             case Name(name) if name in self.waves:
                 return self.powers.get(name, 0), self.waves[name]
             case Name(name) if any(drift.variable == name for drift in oscillation.drifts):
-                raise NoClosedForm(Message("[[name]] may drift: its oscillation is not compared", name=name))
+                raise NoClosedForm("[[name]] may drift: its oscillation is not compared", name=name)
             case Negative(operand):
                 power, inner = self.series(operand)
                 return power, [harmonics.scaled(-oscillation.tower.one) for harmonics in inner]
@@ -331,9 +320,7 @@ class _InVariables:
                 least, zero = min(power, other), Harmonics(oscillation.tower, {})
                 if power != other and not self.mixed:
                     raise NoClosedForm(
-                        Message(
-                            "terms with different powers of [[small]] in one sum: not compared", small=oscillation.small
-                        )
+                        "terms with different powers of [[small]] in one sum: not compared", small=oscillation.small
                     )
                 one, two = ([*[zero] * (m - least), *x][: len(x)] for m, x in ((power, one), (other, two)))
                 return least, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
@@ -379,7 +366,7 @@ class _InVariables:
         power, series = one
         tower = self.found.tower
         if power % 2:
-            raise NoClosedForm(Message("a root of an odd power of [[small]]", small=self.found.small))
+            raise NoClosedForm("a root of an odd power of [[small]]", small=self.found.small)
         first = self._first(series)
         root = self.found.amplitude if (first - self.found.amplitude * self.found.amplitude).is_zero() else None
         found = [Harmonics.constant(tower, self.formulas.square_root(first) if root is None else root)]
@@ -447,13 +434,11 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     manifold = told_manifold.manifold
     names, series = (manifold.fast, manifold.functions) if claim.of in manifold.fast else (manifold.slow, manifold.flow)
     if claim.of not in names:
-        raise NoClosedForm(Message("[[of]] is neither fast nor slow there", of=claim.of))
+        raise NoClosedForm("[[of]] is neither fast nor slow there", of=claim.of)
     one = series[names.index(claim.of)]
     if one.known is not None and claim.order >= one.known:
         raise NoClosedForm(
-            Message(
-                "the coefficient of [[small]]^[[order]] is not known", small=manifold.field.small, order=claim.order
-            )
+            "the coefficient of [[small]]^[[order]] is not known", small=manifold.field.small, order=claim.order
         )
     coefficient = one.coefficients.get(claim.order)
     ring = told_manifold.transfer.ring
@@ -471,10 +456,7 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     else:
         outcome, where = Outcome.DIFFERS if known is False else Outcome.UNDECIDED, ""
     return replace(
-        result,
-        outcome=outcome,
-        where=where,
-        difference=None if outcome == Outcome.EXACT else Formula(ring, difference),
+        result, outcome=outcome, where=where, difference=None if outcome == Outcome.EXACT else Formula(ring, difference)
     )
 
 
@@ -529,9 +511,7 @@ class WaveFormulas:
             case Call("sin" | "cos" as function, argument):
                 return self._wave(function, argument)
             case Call(function, _):
-                raise NoClosedForm(
-                    Message("[[function]] in the coefficient of an expansion: not compared", function=function)
-                )
+                raise NoClosedForm("[[function]] in the coefficient of an expansion: not compared", function=function)
         raise NoClosedForm("an expression that is not compared with expansions")
 
     def square_root(self, x: Element) -> Element:
@@ -562,13 +542,13 @@ class WaveFormulas:
         if name not in self._values:
             if name not in self.defined:
                 what = "it is no constant of the solution" if name != self.phase else "it stands outside of sin and cos"
-                raise NoClosedForm(Message("[[name]] is not in the solution: [[what]]", name=name, what=what))
+                raise NoClosedForm("[[name]] is not in the solution: [[what]]", name=name, what=what)
             self._values[name] = self(self.defined[name])
         return self._values[name]
 
     def _product(self, harmonics: Harmonics, other: Harmonics) -> Harmonics:
         if max((*harmonics.waves, 0)) + max((*other.waves, 0)) > MOST_HARMONIC:
-            raise NoClosedForm(Message("a harmonic beyond [[most]]", most=MOST_HARMONIC))
+            raise NoClosedForm("a harmonic beyond [[most]]", most=MOST_HARMONIC)
         return harmonics * other
 
     def _power(self, base: Harmonics, exponent: Expression) -> Harmonics:
@@ -596,7 +576,7 @@ class WaveFormulas:
         if form is None or times or form.constant or k.denominator != 1 or (2 * form.turns).denominator != 1:
             raise NoClosedForm("an angle that is no multiple of the phase and of pi/2: not compared with expansions")
         if abs(k) > MOST_HARMONIC:
-            raise NoClosedForm(Message("a harmonic beyond [[most]]", most=MOST_HARMONIC))
+            raise NoClosedForm("a harmonic beyond [[most]]", most=MOST_HARMONIC)
         quarters = int(2 * form.turns) - (function == "sin")  # sin x = cos(x - pi/2)
         c, s = ((1, 0), (0, -1), (-1, 0), (0, 1))[quarters % 4]  # cos(k T + quarters pi/2) = c cos(k T) + s sin(k T)
         n = int(k)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial, Ring
-from mbsym.expressions.message import Message
 from mbsym.expressions.tree import ZERO, names
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.variables import ring_environment
@@ -34,7 +33,7 @@ def derived_quantity(derived: Derived, claim: Claim) -> Polynomial:
         return _equation(derived, claim.of)
     if kind == "acceleration":
         top, bottom = Dynamics.of(derived).solved(derived.system.coordinates.index(claim.of))
-        return ring.reduce(ring.times(top, ring.reciprocal(bottom)))
+        return ring.ratio(top, bottom)
     if kind in IN_MOMENTA:
         return in_velocities(derived, kind, claim.of)
     if kind == "linear matrix B":
@@ -90,11 +89,9 @@ def _need(there: Sequence[str], names: Sequence[str]) -> None:
     for name in names:
         if name not in there:
             raise NoClosedForm(
-                Message(
-                    "[[name]] is not among the coordinates of the first approximation ([[names]])",
-                    name=name,
-                    names=", ".join(there),
-                )
+                "[[name]] is not among the coordinates of the first approximation ([[names]])",
+                name=name,
+                names=", ".join(there),
             )
 
 

@@ -18,7 +18,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.point import Rationals
 from mbsym.algebra.ring import ParameterRing, Polynomial
 from mbsym.algebra.semialgebraic import atom, where
-from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs, coefficients_in
+from mbsym.algebra.signs import MOST_TERMS, ContradictionError, Signs
+from mbsym.algebra.terms import coefficients_in
 from mbsym.expressions.message import Message
 from mbsym.expressions.tree import is_number
 from mbsym.model.claims import Claim
@@ -40,9 +41,8 @@ from mbsym.problems.stability.requirements import (
     joined,
 )
 from mbsym.problems.stability.symbolic import on_border
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, combine, concluded, depends
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Fact, Word
 
 #: Of which coordinates a condition is, and what it is.
 _OF = "[[whose]] ([[formula]] [[relation]] 0)"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import Signs
+from mbsym.algebra.terms import grouped
 from mbsym.expressions.message import Message, joined
 from mbsym.expressions.tree import ZERO, Name, text
 from mbsym.formulas.formula import Formula
@@ -31,7 +32,7 @@ from mbsym.problems.stability import Stability
 
 if TYPE_CHECKING:
     from mbsym.mechanics.speeds import SpeedForm
-    from mbsym.problems.canonical.canonical import Routh
+    from mbsym.problems.canonical import Routh
     from mbsym.problems.claims.oscillations import SolutionInRing, ToldManifold
     from mbsym.problems.normal_forms import NormalForms
     from mbsym.problems.state_space import StateSpace
@@ -265,11 +266,6 @@ def by_place(ring: Ring, claim: Claim, x: Polynomial) -> Iterator[tuple[tuple[in
 
 def split_off(ring: Ring, x: Polynomial, constant: set[int]) -> Iterator[tuple[tuple[int, ...], Polynomial]]:
     """x as a polynomial in the other generators: their exponents, and the coefficients in the constant ones."""
-    found: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-    for monomial, coefficient in x.terms():
-        exponents = [int(e) for e in monomial]
-        key = tuple(0 if k in constant else e for k, e in enumerate(exponents))
-        rest = tuple(e if k in constant else 0 for k, e in enumerate(exponents))
-        found.setdefault(key, {})[rest] = coefficient
-    for key, terms in found.items():
-        yield key, ring.context.from_dict(terms)
+    others = [k for k in range(len(ring.generators)) if k not in constant]
+    groups = grouped(x, lambda m: tuple(0 if k in constant else int(e) for k, e in enumerate(m)), others)
+    return iter(groups.items())

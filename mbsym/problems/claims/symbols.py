@@ -11,19 +11,7 @@ from mbsym.algebra.base import Lowering
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.angles import LinearForm, linear_form
-from mbsym.expressions.tree import (
-    ZERO,
-    Call,
-    Expression,
-    Name,
-    Negative,
-    Number,
-    Operation,
-    add,
-    multiply,
-    names,
-    walk,
-)
+from mbsym.expressions.tree import ZERO, Call, Expression, Name, Negative, Number, Operation, add, multiply, names, walk
 from mbsym.mechanics.kinematics import Scene
 from mbsym.model.claims import Claim
 from mbsym.model.system import System

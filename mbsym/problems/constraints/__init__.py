@@ -19,17 +19,3 @@ Neimark & N. A. Fufaev, Dynamics of Nonholonomic Systems, chapter 1 (integrabili
 from mbsym.problems.constraints.analysis import Fault, Unsound, constraints, faults
 from mbsym.problems.constraints.motion import Embedded, embedded_equations
 from mbsym.problems.constraints.result import Constraints, Demanded, Integrability, Redundant, Solved
-
-__all__ = [
-    "Constraints",
-    "Demanded",
-    "Embedded",
-    "Fault",
-    "Integrability",
-    "Redundant",
-    "Solved",
-    "Unsound",
-    "constraints",
-    "embedded_equations",
-    "faults",
-]

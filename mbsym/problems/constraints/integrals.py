@@ -50,7 +50,7 @@ from mbsym.problems.constraints.motion import dependent_velocities
 from mbsym.problems.constraints.result import Constraints
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speed_integrals import GEOMETRIC, NORM, Candidate, candidates
+from mbsym.problems.in_speeds import GEOMETRIC, NORM, Candidate, candidates
 from mbsym.problems.integrals import ENERGY, Integral
 
 # Whether something vanishes along every motion of a constrained system.

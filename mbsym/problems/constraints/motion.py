@@ -26,9 +26,6 @@ from mbsym.mechanics.speeds import SpeedForm
 from mbsym.problems.constraints.result import Constraints, Solved
 from mbsym.problems.equations import Equations
 
-#: Kinds of generators that are analytic functions of positions, velocities and parameters, and not of the time.
-_SMOOTH = frozenset({"parameter", "coordinate", "velocity", "sine", "cosine", "reciprocal", "root"})
-
 
 @dataclass(frozen=True, repr=False)
 class Embedded(Shown):
@@ -146,10 +143,16 @@ def _eliminated(
 
 
 def felt_coordinates(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> tuple[str, ...] | None:
-    """The coordinates that the equations depend on; None where these are not analytic, or know other velocities."""
+    """The coordinates that the equations depend on.
+
+    None where these are not analytic, or know other velocities or the time: sin(chi) of a prescribed angle is a sine.
+    """
     entries = [*(x for row in embedded.mass_matrix.polynomials for x in row), *(x.polynomial for x in embedded.forcing)]
     held = [ring.generators[k] for k in ring.held(entries)]
-    if any(g.kind not in _SMOOTH or (g.kind == "velocity" and g.name not in embedded.free) for g in held):
+    if any(g.kinked or (g.kind == "velocity" and g.name not in embedded.free) for g in held):
+        return None
+    running = [g.name for g in ring.generators if g.kind in ("prescribed", "time")]
+    if any(ring.dependencies(x, running) for x in entries):
         return None
     felt = tuple(name for name in coordinates if any(ring.depends_on(x, name) for x in entries))
     return felt if {*felt} <= {*embedded.free} else None

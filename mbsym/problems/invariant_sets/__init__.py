@@ -50,15 +50,3 @@ from mbsym.problems.invariant_sets.result import (
     SecondVariation,
     StationarySet,
 )
-
-__all__ = [
-    "Definiteness",
-    "Family",
-    "FirstApproximation",
-    "Gap",
-    "InvariantSets",
-    "Kind",
-    "Relation",
-    "SecondVariation",
-    "StationarySet",
-]

@@ -18,7 +18,7 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import ANY, SIGN_SETS, SIGN_WORDS, Signs
 from mbsym.algebra.splitting import Branch, Solved
-from mbsym.expressions.message import Message
+from mbsym.algebra.terms import apart, coefficients_in, modulo
 from mbsym.formulas.formula import Formula
 
 # The ring in which problem 10 works: parameters, multipliers and variables as generators without relations.
@@ -101,19 +101,13 @@ def arena(
     """
     if len(integrals) > MOST_INTEGRALS:
         raise NoClosedForm(
-            Message(
-                "[[count]] integrals: families of at most [[most]] are looked at",
-                count=len(integrals),
-                most=MOST_INTEGRALS,
-            )
+            "[[count]] integrals: families of at most [[most]] are looked at", count=len(integrals), most=MOST_INTEGRALS
         )
     if len(field.variables) > MOST_VARIABLES:
         raise NoClosedForm(
-            Message(
-                "[[count]] variables: families of integrals of at most [[most]] are looked at",
-                count=len(field.variables),
-                most=MOST_VARIABLES,
-            )
+            "[[count]] variables: families of integrals of at most [[most]] are looked at",
+            count=len(field.variables),
+            most=MOST_VARIABLES,
         )
     variables = identifiers(field.variables, field.parameters)
     taken = {*field.parameters, *variables}
@@ -174,9 +168,7 @@ class Rule:
 
     def top(self, p: Polynomial, power: int) -> Polynomial:
         """The coefficient of generator^power in p."""
-        g = self.generator
-        terms = {(*m[:g], 0, *m[g + 1 :]): c for m, c in p.to_dict().items() if m[g] == power}
-        return p.context().from_dict(terms) if terms else p.context().constant(0)
+        return apart(p, (self.generator,)).get((power,), p.context().constant(0))
 
     def applied(self, p: Polynomial) -> Polynomial:
         """p times a power of ``leading``, of a lower degree in the generator than the equation."""
@@ -186,7 +178,7 @@ class Rule:
         while (power := p.degrees()[self.generator]) >= self.degree:
             p = self.leading * p - self.top(p, power) * g ** (power - self.degree) * self.equation
             if len(p) > MOST_TERMS:
-                raise NoClosedForm(Message("a polynomial of [[count]] terms", count=len(p)), limit=Limit.TERMS)
+                raise NoClosedForm("a polynomial of [[count]] terms", count=len(p), limit=Limit.TERMS)
         return p
 
 
@@ -410,14 +402,7 @@ def _as_it_is(p: Polynomial) -> Polynomial:
 
 def evaluate(p: Polynomial, values: Mapping[int, int]) -> int:
     """p modulo ``PRIME``."""
-    total = 0
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
-        for g, power in enumerate(monomial):
-            if power:
-                term = term * pow(values[g], power, PRIME) % PRIME
-        total += term
-    return total % PRIME
+    return modulo(p, values, PRIME)
 
 
 def rank(rows: Sequence[Sequence[int]]) -> int:
@@ -428,14 +413,7 @@ def rank(rows: Sequence[Sequence[int]]) -> int:
 
 
 def _roots(p: Polynomial, generator: int, values: Mapping[int, int]) -> list[int]:
-    coefficients = [0] * (p.degrees()[generator] + 1)
-    for monomial, c in p.to_dict().items():
-        term = int(c.p) % PRIME * pow(int(c.q) % PRIME, -1, PRIME) % PRIME
-        for g, power in enumerate(monomial):
-            if power and g != generator:
-                term = term * pow(values[g], power, PRIME) % PRIME
-        coefficients[monomial[generator]] = (coefficients[monomial[generator]] + term) % PRIME
-    found: Any = nmod_poly(coefficients, PRIME)
+    found: Any = nmod_poly([evaluate(c, values) for c in coefficients_in(p, generator)], PRIME)
     if found.degree() < 1:
         return []
     return [

@@ -11,14 +11,9 @@ import numpy as np
 from flint import arb, ctx, fmpq
 
 from mbsym.algebra.ring import Polynomial
+from mbsym.algebra.terms import coefficients_in
 from mbsym.problems.invariant_sets.branches import Place, Rule
-from mbsym.problems.invariant_sets.result import (
-    Definiteness,
-    FirstApproximation,
-    Gap,
-    Relation,
-    SecondVariation,
-)
+from mbsym.problems.invariant_sets.result import Definiteness, FirstApproximation, Gap, Relation, SecondVariation
 
 #: Points that are tried, values of free multipliers at each of them, bits of balls.
 POINTS, CHOICES, BITS = 60, 60, 128
@@ -185,13 +180,7 @@ def _along(place: Place, point: Point, free: Sequence[int], conditions: Sequence
 
 def _real_zeros(p: Polynomial, g: int, point: Mapping[int, arb]) -> list[float]:
     """Nearly, of p in one generator: they only say where to try."""
-    coefficients = [arb(0)] * (p.degrees()[g] + 1)
-    rest = dict(point) | {g: arb(1)}
-    for power in range(len(coefficients)):
-        part = {m: c for m, c in p.to_dict().items() if m[g] == power}
-        if part:
-            coefficients[power] = _sum(_terms_of(p.context().from_dict(part)), rest)
-    numbers = [float(c.mid()) for c in reversed(coefficients)]
+    numbers = [float(_sum(_terms_of(c), point).mid()) for c in reversed(coefficients_in(p, g))]
     return [float(x.real) for x in np.roots(numbers) if abs(x.imag) <= 1e-9 * (1 + abs(x))]
 
 

@@ -49,5 +49,3 @@ from mbsym.problems.normal_forms.result import (
     Vanishing,
     Why,
 )
-
-__all__ = ["Focus", "InSymbols", "Judged", "NormalForms", "Outcome", "Resonance", "Theorem", "Vanishing", "Why"]

@@ -17,11 +17,12 @@ from functools import cache
 from itertools import combinations, pairwise
 from typing import Any
 
-from flint import acb, acb_poly, arb, ctx, fmpq, fmpq_poly
+from flint import acb, acb_poly, arb, ctx, fmpq_poly
 
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.matrices import determinant_by_traces, faddeev, hurwitz
 from mbsym.algebra.rationals import fraction
+from mbsym.algebra.terms import univariate
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.expressions.message import Message
@@ -165,12 +166,10 @@ def _of_two_frequencies(
     if count != 2:
         besides = " without its cyclic coordinates" if found.cyclic else ""
         raise NotAlong(
-            Message(
-                "of systems whose energy is conserved exceptional values are listed where there are two "
-                "frequencies; this one has [[count]][[besides]]",
-                count=count,
-                besides=besides,
-            )
+            "of systems whose energy is conserved exceptional values are listed where there are two "
+            "frequencies; this one has [[count]][[besides]]",
+            count=count,
+            besides=besides,
         )
     try:
         _, tower, named = twist(found, values)
@@ -183,10 +182,10 @@ def _of_two_frequencies(
         )
         raise NotAlong(reason) from None
     if name not in tower.parameters:
-        raise NotAlong(Message("the expansion does not depend on [[name]]", name=name))
+        raise NotAlong("the expansion does not depend on [[name]]", name=name)
     for key, x in named.items():
         if x.is_zero():
-            raise NotAlong(Message("for all values of [[name]] this vanishes: [[key]]", name=name, key=key))
+            raise NotAlong("for all values of [[name]] this vanishes: [[key]]", name=name, key=key)
     return tower, named
 
 
@@ -197,10 +196,10 @@ def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tu
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1][::-1]
     m = len(coefficients) - 1
     if coefficients[m].is_zero():
-        raise NotAlong(Message("for all values of [[name]] a root is zero", name=name))
+        raise NotAlong("for all values of [[name]] a root is zero", name=name)
     last = determinant_by_traces(hurwitz(coefficients, tower.zero, m - 1), tower.zero, tower.one)
     if last.is_zero():
-        raise NotAlong(Message("for all values of [[name]] there are roots whose sum is zero", name=name))
+        raise NotAlong("for all values of [[name]] there are roots whose sum is zero", name=name)
     return tower, {"root": coefficients[m], "pair": last}
 
 
@@ -213,10 +212,7 @@ def _norm(tower: Tower, x: Element) -> fmpq_poly:
     for k in reversed(range(len(tower.squares))):
         if norm.top.degrees()[MOST_ROOTS - 1 - k] > 0:
             norm = norm * tower.conjugate(norm, k)
-    coefficients = [fmpq(0)] * (1 + max(0, int(norm.top.total_degree())))
-    for monomial, coefficient in norm.top.terms():
-        coefficients[int(monomial[MOST_ROOTS])] = coefficient
-    return fmpq_poly(coefficients)
+    return univariate(norm.top, MOST_ROOTS)
 
 
 def _refuse_singular(
@@ -237,11 +233,9 @@ def _refuse_singular(
         if factor not in known:
             at = root.str(8, radius=False)
             raise NotAlong(
-                Message(
-                    "the expansion is singular at [[name]] = [[at]]: choose an interval without this value",
-                    name=name,
-                    at=at,
-                )
+                "the expansion is singular at [[name]] = [[at]]: choose an interval without this value",
+                name=name,
+                at=at,
             )
 
 

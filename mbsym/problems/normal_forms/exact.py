@@ -12,13 +12,13 @@ from typing import Any
 
 from flint import Ordering, arb, arb_poly, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
-from mbsym.algebra import rationals
 from mbsym.algebra.base import Lowering
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint, message_of
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import evaluated
 from mbsym.algebra.tower import Element, Tower, angle_in
 from mbsym.algebra.truncated import Coefficients, Space, Truncated
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
@@ -244,20 +244,13 @@ def in_ring(tower: Tower, ring: Ring, x: Element) -> Polynomial:
     """The element as a formula of the ring.  Raises NoClosedForm where that outgrows its budget."""
 
     def carried(polynomial: Any) -> Polynomial:
-        total = ring.zero
-        for monomial, coefficient in polynomial.terms():
-            term = ring.number(rationals.fraction(coefficient))
-            for index, exponent in enumerate(monomial):
-                if exponent:
-                    term = ring.times(term, generator(index) ** int(exponent))
-            total = total + term
-        return ring.reduce(total)
+        return ring.reduce(evaluated(polynomial, lambda k, e: generator(k) ** e, ring.context.constant, ring.times))
 
     def generator(index: int) -> Polynomial:
         kind = tower.kind(index)
         return letter(ring, kind) if isinstance(kind, str) else ring.square_root(carried(kind))
 
-    return ring.reduce(ring.times(carried(x.top), ring.reciprocal(carried(x.bottom))))
+    return ring.ratio(carried(x.top), carried(x.bottom))
 
 
 def common_factor(tower: Tower, even: Sequence[Element], odd: Sequence[Element]) -> list[Element]:

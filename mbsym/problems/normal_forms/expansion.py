@@ -25,7 +25,6 @@ from mbsym.algebra.jet import Jet, Terms
 from mbsym.algebra.matrices import inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.truncated import Space, Truncated
-from mbsym.expressions.message import Message
 from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.energy import kinetic_energy
 from mbsym.mechanics.kinematics import Scene
@@ -95,7 +94,7 @@ def expansion(
             varying = unsteady(scene, constant)
             if varying:
                 raise NotExpanded(
-                    Message("terms of order [[count]] vary with [[names]]", count=len(key), names=", ".join(varying))
+                    "terms of order [[count]] vary with [[names]]", count=len(key), names=", ".join(varying)
                 )
             found[key] = constant
         return found

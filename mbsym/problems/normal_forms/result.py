@@ -14,8 +14,7 @@ from mbsym.algebra.point import Balls
 from mbsym.algebra.truncated import Truncated, bracket, flow
 from mbsym.formulas.formula import Formula, Shown
 from mbsym.problems.normal_forms.birkhoff import NormalForm
-from mbsym.problems.stability.theorems import HigherOrder
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import HigherOrder, Word
 
 
 class Outcome(StrEnum):

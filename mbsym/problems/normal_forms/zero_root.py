@@ -84,12 +84,7 @@ def on_double_root(whole: Truncated, root: acb) -> tuple[NormalForm, acb]:
     e = pairing(v, conjugate(u))
     shift = -pairing(u, conjugate(u)) / (2 * e)
     u = [a + shift * b for a, b in zip(u, v, strict=True)]
-    columns = (
-        tuple(v),
-        tuple(u),
-        tuple(x / e for x in conjugate(u)),
-        tuple(-x / e for x in conjugate(v)),
-    )
+    columns = (tuple(v), tuple(u), tuple(x / e for x in conjugate(u)), tuple(-x / e for x in conjugate(v)))
     space = whole.space
     nilpotent = Truncated(space, {(0, 1, 1, 0): acb(1)})
     return _formed(whole, Linear((root, root), columns), nilpotent, lambda key, value: None), e
@@ -304,13 +299,7 @@ def _determinant(rows: list[list[Any]], scalars: Scalars) -> arb:
     return scalars.enclosed(determinant_by_traces(rows, rows[0][0] * 0, rows[0][0] * 0 + 1))
 
 
-def _verify(
-    enclosed: Truncated,
-    frequencies: Sequence[arb],
-    place: int,
-    leading: tuple[int, arb],
-    delta: arb,
-) -> None:
+def _verify(enclosed: Truncated, frequencies: Sequence[arb], place: int, leading: tuple[int, arb], delta: arb) -> None:
     """The normal form by Lie series, with the same first term and the same signs.  Raises NotVerified."""
     order, a = leading
     other = acb(0, frequencies[0]) if frequencies else None

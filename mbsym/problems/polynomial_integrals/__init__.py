@@ -42,8 +42,7 @@ Example:
     ([(2, '')], True)
 """
 
-from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_polynomials
-from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
+from mbsym.problems.polynomial_integrals.darboux import cofactor_of, darboux_along, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.homogenised import (
@@ -82,45 +81,3 @@ from mbsym.problems.polynomial_integrals.result import (
 )
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals
 from mbsym.problems.polynomial_integrals.values import along
-
-__all__ = [
-    "FUNCTION",
-    "Along",
-    "Case",
-    "Cases",
-    "Count",
-    "DarbouxAlong",
-    "DarbouxCount",
-    "DarbouxPolynomial",
-    "DarbouxPolynomials",
-    "DarbouxSpecial",
-    "Generator",
-    "Grading",
-    "Obstacle",
-    "OnLevel",
-    "OtherLevel",
-    "OtherLevels",
-    "PolynomialIntegrals",
-    "Polynomials",
-    "Relation",
-    "Relations",
-    "Special",
-    "SpecialLevel",
-    "ZeroLevels",
-    "along",
-    "along_of",
-    "cases",
-    "cases_of",
-    "cofactor_of",
-    "darboux_along",
-    "darboux_along_of",
-    "darboux_of",
-    "darboux_polynomials",
-    "grading",
-    "levels",
-    "linear_relations",
-    "on_level",
-    "other_levels_of",
-    "polynomial_integrals",
-    "zero_levels_of",
-]

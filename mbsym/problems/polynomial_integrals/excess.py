@@ -26,7 +26,6 @@ from mbsym.problems.polynomial_integrals.levels import (
     on_level,
     standard,
 )
-from mbsym.problems.polynomial_integrals.lifting import monomial
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     SMALLER,
@@ -36,6 +35,7 @@ from mbsym.problems.polynomial_integrals.modular import (
     coupled,
     echelon,
     kernel,
+    monomial,
     monomials,
     remainder,
 )

@@ -28,8 +28,7 @@ from mbsym.algebra.failures import Limit, NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals.excess import Block, Excess, Line, dropped, larger, rational, roots
-from mbsym.problems.polynomial_integrals.lifting import primitive
-from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, monomials
+from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, monomials, primitive
 from mbsym.problems.polynomial_integrals.result import Case, Cases, PolynomialIntegrals
 from mbsym.problems.polynomial_integrals.values import special_of
 
@@ -125,9 +124,7 @@ def cases(usual: PolynomialIntegrals, positive: Sequence[str], budget: float = i
     listed = list(families(field, positive))
     if len(listed) > MOST_FAMILIES:
         message = Message(
-            "[[count]] parameters have more than [[most]] families",
-            count=len(field.parameters),
-            most=MOST_FAMILIES,
+            "[[count]] parameters have more than [[most]] families", count=len(field.parameters), most=MOST_FAMILIES
         )
         raise NoClosedForm(message, limit=Limit.WORK, remedy="put in numbers with --set, zeros above all")
     return _Search(usual, positive).found(listed, budget)

@@ -18,6 +18,7 @@ from itertools import product
 from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import grouped
 from mbsym.problems.polynomial_integrals.modular import Exponents, ModularField, Terms, matrix_of, monomials, times
 
 # Two unit vectors of one body, b and c, perpendicular to each other: relations that share their leading variables.
@@ -191,11 +192,7 @@ def _may_be_left_out(field: PolynomialField, weights: Sequence[int]) -> bool:
 def by_weight(field: PolynomialField, f: Any, weights: Sequence[int]) -> dict[int, Any]:
     """The parts of a polynomial, by their weights."""
     count = len(field.parameters)
-    parts: dict[int, dict[tuple[int, ...], Any]] = {}
-    for monomial, c in f.to_dict().items():
-        weight = sum(w * int(a) for w, a in zip(weights, monomial[count:], strict=True))
-        parts.setdefault(weight, {})[monomial] = c
-    return {weight: field.context.from_dict(terms) for weight, terms in parts.items()}
+    return grouped(f, lambda monomial: sum(w * int(a) for w, a in zip(weights, monomial[count:], strict=True)))
 
 
 def homogeneous_parts(field: PolynomialField, f: Any, grading: Grading) -> list[tuple[int, Any]]:

@@ -20,13 +20,19 @@ from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
-from mbsym.problems.polynomial_integrals.darboux import darboux_polynomials
-from mbsym.problems.polynomial_integrals.darboux_lines import darboux_along
+from mbsym.problems.polynomial_integrals.darboux import darboux_along, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
 from mbsym.problems.polynomial_integrals.levels import levels, on_level
-from mbsym.problems.polynomial_integrals.lifting import primitive
-from mbsym.problems.polynomial_integrals.modular import PRIMES, ModularField, Terms, at_random, echelon, remainder
+from mbsym.problems.polynomial_integrals.modular import (
+    PRIMES,
+    ModularField,
+    Terms,
+    at_random,
+    echelon,
+    primitive,
+    remainder,
+)
 from mbsym.problems.polynomial_integrals.other_levels import other_levels
 from mbsym.problems.polynomial_integrals.result import (
     UNITY,

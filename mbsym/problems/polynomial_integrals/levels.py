@@ -15,20 +15,21 @@ from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
-from mbsym.problems.polynomial_integrals.lifting import lifted
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     Exponents,
     ModularField,
     Terms,
     at_random,
+    echelon,
     kernel_of,
+    lifted,
     monomials,
     remainder,
     times,
 )
 from mbsym.problems.polynomial_integrals.result import UNITY, Count, Generator, OnLevel, PolynomialIntegrals
-from mbsym.problems.polynomial_integrals.search import echelon, products, sparsest
+from mbsym.problems.polynomial_integrals.search import products, sparsest
 
 
 @dataclass(frozen=True)

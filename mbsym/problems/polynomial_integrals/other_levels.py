@@ -30,14 +30,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.problems.polynomial_integrals.excess import Line, dropped, interpolated, others, rational, roots
-from mbsym.problems.polynomial_integrals.levels import (
-    Level,
-    cofactors,
-    kernel_on,
-    levels,
-    on_level,
-    standard,
-)
+from mbsym.problems.polynomial_integrals.levels import Level, cofactors, kernel_on, levels, on_level, standard
 from mbsym.problems.polynomial_integrals.modular import (
     PRIMES,
     Exponents,
@@ -149,12 +142,7 @@ class _Search:
     def result(self) -> OtherLevel:
         source = Random("levels")
         numbers = {name: source.randrange(1, PRIMES[0]) for name in self.usual.field.parameters}
-        line = Line(
-            self.field,
-            PRIMES[0],
-            numbers | {self.name: 0},
-            dict.fromkeys(numbers, 0) | {self.name: 1},
-        )
+        line = Line(self.field, PRIMES[0], numbers | {self.name: 0}, dict.fromkeys(numbers, 0) | {self.name: 1})
         total = nmod_poly([1], PRIMES[0])
         for weight in self.weights:
             total = total * self._drops(line.at(source.randrange(1, PRIMES[0])), weight, source)

@@ -18,8 +18,9 @@ from flint import fmpq_mpoly_ctx
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import with_quotient
 from mbsym.problems.polynomial_integrals.darboux import is_regular_on
-from mbsym.problems.polynomial_integrals.lifting import coefficients, primitive
+from mbsym.problems.polynomial_integrals.modular import coefficients, primitive
 from mbsym.problems.polynomial_integrals.result import Relation, Relations
 
 #: Cases that are followed for one leading variable, and terms of an equation.
@@ -155,7 +156,7 @@ class _Leading:
             cases = []
             if not self._nonzero(slope, state):
                 cases.append(_put(state, (slope, rest)))
-            kept = tuple(self._replaced(p, place, -rest, slope) for p in state.equations)
+            kept = tuple(with_quotient(p, place, -rest, slope) for p in state.equations)
             if not any(slope in (c, -c) for c in state.conditions):
                 apart = [] if slope.is_constant() else [p for p, _ in irreducible_factors(slope)[1]]
                 nonzero = (*state.nonzero, *(p for p in apart if not self._nonzero(p, state)))
@@ -176,10 +177,10 @@ class _Leading:
             if degrees[k] == 1 and slope.is_constant():
                 top = -(f - slope * self.context.gen(k)) / slope.leading_coefficient()
                 one = self.context.constant(1)
-                equations = tuple(self._replaced(p, k, top, one) for p in state.equations)
+                equations = tuple(with_quotient(p, k, top, one) for p in state.equations)
                 kept = []
                 for p in state.conditions:  # those that change are equations again
-                    moved = self._replaced(p, k, top, one)
+                    moved = with_quotient(p, k, top, one)
                     if moved == p:
                         kept.append(p)
                     elif p.degrees()[k] == 1 and p.derivative(k).is_constant():
@@ -187,11 +188,11 @@ class _Leading:
                         equations = (*equations, moved)
                     else:
                         equations = (*equations, moved)
-                nonzero = tuple(self._replaced(p, k, top, one) for p in state.nonzero)
+                nonzero = tuple(with_quotient(p, k, top, one) for p in state.nonzero)
                 if any(p == 0 for p in nonzero):
                     return _State((one,), (), (), ())
                 solved = tuple(
-                    (place, self._replaced(a, k, top, one), self._replaced(b, k, top, one))
+                    (place, with_quotient(a, k, top, one), with_quotient(b, k, top, one))
                     for place, a, b in state.solved
                 )
                 return _State(equations, (*kept, f), nonzero, solved)
@@ -210,19 +211,6 @@ class _Leading:
             return None
         _, place, slope = min(able, key=lambda one: one[:2])
         return place, slope
-
-    def _replaced(self, p: Any, place: int, top: Any, bottom: Any) -> Any:
-        """p with top/bottom in the place of a generator, times the power of bottom that is needed."""
-        most = p.degrees()[place]
-        if p == 0 or not most:
-            return p
-        parts: dict[int, dict[tuple[int, ...], Any]] = {}
-        for m, c in p.to_dict().items():
-            parts.setdefault(int(m[place]), {})[(*m[:place], 0, *m[place + 1 :])] = c
-        total = self.context.constant(0)
-        for power, terms in parts.items():
-            total += self.context.from_dict(terms) * top**power * bottom ** (most - power)
-        return total
 
     def _has_unknowns(self, f: Any) -> bool:
         return any(f.degrees()[self.count : self.count + len(self.others)])
@@ -252,7 +240,7 @@ class _Leading:
             f = f + a * variables[j]
         free = set(range(self.count, self.count + len(self.others)))
         for place, top, bottom in state.solved:
-            f = self._replaced(f, place, top, bottom)
+            f = with_quotient(f, place, top, bottom)
             free.discard(place)
         if any(f.degrees()[place] for place in free):
             self.complete = False  # a whole pencil of relations: its members are integrals, which are listed elsewhere
@@ -284,7 +272,7 @@ class _Leading:
             if k is not None:
                 slope = one.derivative(k)
                 top = -(one - slope * self.context.gen(k)) / slope.leading_coefficient()
-                p = self._replaced(p, k, top, self.context.constant(1))
+                p = with_quotient(p, k, top, self.context.constant(1))
         return bool(p == 0)
 
     def _never(self, p: Any, nonzero: Sequence[Any]) -> bool:
@@ -320,12 +308,5 @@ def divides(field: PolynomialField, f: Any, conditions: Sequence[Any]) -> bool:
     place = next(k for k in field.places if f.degrees()[k])
     slope = f.derivative(place)
     rest = f - slope * field.context.gen(place)
-    parts: dict[int, Any] = {}
-    for m, c in rate.to_dict().items():
-        term = field.context.from_dict({(*m[:place], 0, *m[place + 1 :]): c})
-        parts[int(m[place])] = parts.get(int(m[place]), field.context.constant(0)) + term
-    most = max(parts, default=0)
-    total = field.context.constant(0)
-    for power, part in parts.items():
-        total += part * (-rest) ** power * slope ** (most - power)
-    return all(c == 0 or any(divmod(c, p)[1] == 0 for p in conditions) for c in coefficients(field, total).values())
+    rate = with_quotient(rate, place, -rest, slope)
+    return all(c == 0 or any(divmod(c, p)[1] == 0 for p in conditions) for c in coefficients(field, rate).values())

@@ -17,7 +17,6 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.expressions.message import Message
 from mbsym.problems.polynomial_integrals import gradings as frames
 from mbsym.problems.polynomial_integrals.gradings import Grading, beyond, homogeneous_parts
-from mbsym.problems.polynomial_integrals.lifting import lifted, primitive
 from mbsym.problems.polynomial_integrals.modular import (
     MOST_MONOMIALS,
     PRIMES,
@@ -29,7 +28,9 @@ from mbsym.problems.polynomial_integrals.modular import (
     count,
     echelon,
     kernel,
+    lifted,
     monomials,
+    primitive,
     times,
 )
 from mbsym.problems.polynomial_integrals.result import FUNCTION, Count, Generator, PolynomialIntegrals
@@ -279,9 +280,7 @@ def products(
         reached = further
         if len(reached) > MOST_PRODUCTS:
             message = Message(
-                "the integrals have more than [[most]] products of weight [[weight]]",
-                most=MOST_PRODUCTS,
-                weight=weight,
+                "the integrals have more than [[most]] products of weight [[weight]]", most=MOST_PRODUCTS, weight=weight
             )
             raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
     return [terms for at, terms in reached if at == weight or not exactly]

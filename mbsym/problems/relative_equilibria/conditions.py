@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_systems import Limits
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import apart
 from mbsym.expressions.message import Message
 from mbsym.mechanics.charts import Chart, moments
 from mbsym.mechanics.rest import Rest
@@ -89,12 +89,6 @@ class Conditions:
             and g.argument is None
             and g.kind in ("sine", "cosine", "coordinate", "prescribed", "time")
         ]
-        parts: dict[tuple[int, ...], dict[tuple[int, ...], Any]] = {}
-        for monomial, coefficient in x.terms():
-            rest_of = list(monomial)
-            for k in indices:
-                rest_of[k] = 0
-            parts.setdefault(tuple(monomial[k] for k in indices), {})[tuple(rest_of)] = coefficient
         if len(present) > 1:
             self._incomplete(
                 Message(
@@ -102,14 +96,10 @@ class Conditions:
                     present=", ".join(present),
                 )
             )
-        for terms in parts.values():
-            part = ring.context.from_dict(terms)
+        for part in apart(x, indices).values():
             if ring.dependencies(part, moving):
                 raise NoClosedForm(
-                    Message(
-                        "the equations vary with [[names]] in a way that cannot be separated",
-                        names=", ".join(present),
-                    )
+                    "the equations vary with [[names]] in a way that cannot be separated", names=", ".join(present)
                 )
             yield part
 
@@ -221,7 +211,7 @@ def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> 
         rows, case = pending.pop()
         looked_at += 1
         if looked_at > MOST_CASES:
-            raise NoClosedForm(Message("more than [[count]] cases of the rank of constraints", count=MOST_CASES))
+            raise NoClosedForm("more than [[count]] cases of the rank of constraints", count=MOST_CASES)
         if case.zero and not possible(case.zero, case.nonzero):
             continue
         place = _pivot(rows)

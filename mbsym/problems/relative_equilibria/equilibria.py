@@ -37,6 +37,7 @@ from flint import fmpq_poly
 from mbsym.algebra.failures import Constrained
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, Family, Limits, Solutions, solve
 from mbsym.algebra.ring import Polynomial
+from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Counted, Message, joined
 from mbsym.mechanics.charts import Chart, charts, with_cyclic_last_angles
 from mbsym.mechanics.kinematics import Scene
@@ -57,10 +58,17 @@ from mbsym.problems.relative_equilibria.listing import (
     groups,
 )
 from mbsym.problems.relative_equilibria.oriented import orientations
-from mbsym.problems.relative_equilibria.place import PRECISION, Place, Unknowns, angle_of, exact_rates
+from mbsym.problems.relative_equilibria.place import (
+    PRECISION,
+    Place,
+    Unknowns,
+    angle_of,
+    candidate_at,
+    described_place,
+    exact_rates,
+)
 from mbsym.problems.relative_equilibria.search import WITHIN, SearchInBoxes
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 __all__ = [
     "CERTIFIED",
@@ -94,7 +102,7 @@ def equilibria(
     """
     first = rest(at_numbers(system, values))
     rank = rank_of(first) if rank is None else rank
-    found = _listed(first, first.system, within, limits or Limits(), rank)
+    found = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
     if found.complete or not found.families:
         return found
     symmetric, changed = with_cyclic_last_angles(first)
@@ -112,8 +120,18 @@ def equilibria(
     return replace(counted, remarks=(*counted.remarks, *turns))
 
 
-def _listed(first: Rest, described_by: System, within: float, limits: Limits, rank: int | None) -> Equilibria:
-    """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``."""
+def _listed(
+    first: Rest,
+    described_by: System,
+    within: float,
+    limits: Limits,
+    rank: int | None,
+    described: Mapping[str, LinearForm] | None = None,
+) -> Equilibria:
+    """The relative equilibria of a system at numbers, in sets of angles that begin with those of ``first``.
+
+    ``described``: the place of the unperturbed motion, which no search may find if it is no simple root.
+    """
     remarks: list[str] = []
     solutions: list[Solution] = []
     families: list[EquilibriumFamily] = []
@@ -129,6 +147,8 @@ def _listed(first: Rest, described_by: System, within: float, limits: Limits, ra
                 search.points = _off_families(search, within, limits)
         if first.rows and not all(x.complete for x in searches):
             _search_whole(searches)
+        if described and chart is covering[0] and not all(x.complete for x in searches):
+            any(x.add_described(described) for x in searches)
         _counted_once(searches)
         uncounted += [x.is_real for x in searches if rank is not None and x.case.rank < rank and x.leaves_none]
         for search in searches:
@@ -199,11 +219,9 @@ def rank_of(first: Rest) -> int | None:
 
     if first.tied_in_motion:
         raise Constrained(
-            Message(
-                "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
-                "looked for",
-                names=", ".join(first.tied_in_motion),
-            ),
+            "relative equilibria: constraints tie what moves ([[names]]), and which velocities go with it is not "
+            "looked for",
+            names=", ".join(first.tied_in_motion),
             remedy="'mbsym run' judges such a motion where the description gives it",
         )
     plain = first.system.without_speeds
@@ -329,6 +347,18 @@ class _ChartSearch(SearchInBoxes):
                 self._search_numerically(bisect=True)
             return
         self._solve_exactly()
+
+    def add_described(self, forms: Mapping[str, LinearForm]) -> bool:
+        """Whether the place with these coordinates is one of rest of this case, which then is listed."""
+        candidate, names = candidate_at(self.found, forms), self.occurring
+        if self.impossible or not {*names} <= {*forms} or not all(map(candidate.vanishes, self.equations)):
+            return False
+        if any(map(candidate.vanishes, self.nonzero)):
+            return False
+        place = candidate.place(self.found, exact_rates(self.found))
+        if not any(self._same(place, x.place) for x in self.points):
+            self._add(place, EXACT)
+        return True
 
     @property
     def leaves_none(self) -> bool:

@@ -26,9 +26,8 @@ from mbsym.mechanics.symmetry import Reflection, reflections
 from mbsym.problems.relative_equilibria.conditions import Case, Conditions
 from mbsym.problems.relative_equilibria.place import PRECISION, Place, exact_rates
 from mbsym.problems.relative_equilibria.verdict import LinearAtRest, linear_at_rest
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.verdict import Verdict, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 #: Other values of coordinates that may have any, where their verdicts are compared: t, or 2 atan(t) of angles.
 ELSEWHERE = (fmpq(1, 3), fmpq(-2), fmpq(7, 5))

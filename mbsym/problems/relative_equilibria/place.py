@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 from flint import arb, ctx, fmpq, fmpq_poly, fmpz
@@ -14,9 +15,13 @@ from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
 from mbsym.algebra.polynomial_systems import AlgebraicPoint, context, inverse_modulo
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.angles import LinearForm, linear_form
+from mbsym.expressions.tree import number, substitute
 from mbsym.formulas.python import python_text
+from mbsym.mechanics.motion import motion_values
 from mbsym.mechanics.rest import Rest
+from mbsym.model.system import System
 
 #: Working precision of enclosures, in bits.
 PRECISION = 200
@@ -109,18 +114,8 @@ class Place:
             return fmpq_poly([0])
         if self.modulus is None:
             return fmpq_poly([x.leading_coefficient()]) if x.is_constant() else None
-        total = fmpq_poly([0])
-        used = occurring([x])
-        generators = {k: self._generator(k) for k in used}
-        if any(value is None for value in generators.values()):
-            return None
-        for monomial, coefficient in x.terms():
-            term = fmpq_poly([coefficient])
-            for k in used:
-                for _ in range(int(monomial[k])):
-                    term = term * generators[k] % self.modulus
-            total += term
-        return total % self.modulus
+        generators = {k: self._generator(k) for k in occurring([x])}
+        return None if None in generators.values() else residue(x, generators, self.modulus)
 
     def _generator(self, index: int) -> Any:
         if index not in self._exact:
@@ -288,6 +283,19 @@ def candidates(found: Rest, names: Sequence[str], equations: Sequence[Polynomial
         candidate = candidate_at(found, forms)
         if all(candidate.vanishes(x) for x in equations):
             yield candidate
+
+
+def described_place(system: System, there: Rest, values: Mapping[str, Any]) -> dict[str, LinearForm] | None:
+    """The constant coordinates on the unperturbed motion; None where one is no number and no multiple of pi."""
+    numbers = {name: number(x) for name, x in values.items() if isinstance(x, Fraction)}
+    forms = {}
+    for name, (value, _) in motion_values(system).items():
+        if name in there.constant:
+            form = linear_form(substitute(value, numbers))
+            if form is None or form.coefficients:
+                return None
+            forms[name] = form
+    return forms
 
 
 def candidate_at(found: Rest, forms: Mapping[str, LinearForm]) -> Candidate:

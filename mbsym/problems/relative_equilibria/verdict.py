@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -19,23 +19,22 @@ from mbsym.algebra.matrices import ScalarMatrix, echelon, null_vectors, skew, sy
 from mbsym.algebra.point import Balls
 from mbsym.algebra.ring import Polynomial
 from mbsym.expressions.message import Message
+from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.loads.kinds import generalized_forces
-from mbsym.mechanics.rest import Rest
-from mbsym.mechanics.symmetry import free_spin
+from mbsym.mechanics.rest import Rest, at_numbers, rest
+from mbsym.mechanics.symmetry import constantly_curved, free_spin
 from mbsym.problems import dissipation, knowledge
 from mbsym.problems import energy as energies
-from mbsym.problems.conserved import Conserved, by_integrals, conserved
 from mbsym.problems.constrained_balance import ConstrainedBalance
 from mbsym.problems.dissipation import EnergyLaw
 from mbsym.problems.energy import Energy
-from mbsym.problems.relative_equilibria.place import PRECISION, Place
-from mbsym.problems.stability.bundle import Element, NumberField, by_potential
+from mbsym.problems.relative_equilibria.place import PRECISION, Place, candidate_at, described_place, exact_rates
+from mbsym.problems.stability.bundle import Conserved, Element, NumberField, by_integrals, by_potential, conserved
 from mbsym.problems.stability.enclosed import blocks, enclosed_verdict_with_cyclic
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import Fact
-from mbsym.problems.stability.verdict import Verdict, combine, concluded, drifting, undecided
+from mbsym.problems.stability.verdict import Verdict, by_geodesics, coasting, combine, drifting, undecided
+from mbsym.problems.stability.words import Because
 
 #: Matrices by their entries, which are numbers.
 Rows = list[list[list[Any]]]
@@ -93,7 +92,7 @@ class LinearAtRest:
         stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
         forces = (x for row in (*stiffness, *self.matrices[2]) for x in row)
         if self.law is EnergyLaw.CONSERVED and all(ring.is_zero(x) is True for x in forces):
-            return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
+            return coasting(Because.ALIKE) if self._alike else by_geodesics()
         of = [names[i] for i in kept]
 
         def derivative(i: int, j: int, *further: int) -> Element | None:
@@ -110,6 +109,14 @@ class LinearAtRest:
         conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
         verdict = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
+
+    @property
+    def _alike(self) -> bool:
+        """Whether all positions are alike for the kinetic energy."""
+        try:
+            return constantly_curved(self.found.ring, self.matrices[0], self.found.system.coordinates)
+        except Failure:
+            return False
 
     @property
     def conservative(self) -> bool:
@@ -307,3 +314,35 @@ def _rational_verdict(
         free=True,
     )
     return verdict_at(system, {}).verdict
+
+
+# Problem 6 where the first approximation leaves the verdict at the description's values open.
+#
+# The system is taken at its numbers, the unperturbed motion as one of its relative equilibria, and judged as
+# ``mbsym equilibria`` judges these: by an energy that the equations have though L knows the time, by terms of higher
+# order of the potential energy (``stability.degenerate``) and by combinations of first integrals
+# (``stability.bundle``).
+
+
+#: Larger systems are not derived again at their numbers.
+MOST_COORDINATES = 8
+
+
+def decided_at(verdict: Verdict, scene: Scene, values: Mapping[str, Any]) -> Verdict:
+    """An open verdict at rational values of all parameters of an open tree, decided where that is possible."""
+    system = scene.system
+    if len(system.coordinates) > MOST_COORDINATES:
+        return verdict
+    try:
+        there = rest(at_numbers(system, values))
+        forms = described_place(system, there, values)
+        if forms is None:
+            return verdict
+        candidate = candidate_at(there, forms)
+        if not all(candidate.vanishes(x) for x in there.at_rest):
+            return verdict
+        place = candidate.place(there, exact_rates(there))
+        again = linear_at_rest(there).verdict(place)
+        return verdict if again.word.open else again
+    except NOT_THERE:
+        return verdict

@@ -122,7 +122,7 @@ class Order:
         grown, polynomial = self.split(p, what)
         if grown != 0:
             raise NoClosedForm(
-                Message("[[what]] grows with the rate of the phase: more has to be small than was told", what=what)
+                "[[what]] grows with the rate of the phase: more has to be small than was told", what=what
             )
         return polynomial
 
@@ -135,11 +135,9 @@ class Order:
             power -= sum(monomial[at] for at in self.rates)
             if power < -1:
                 raise NoClosedForm(
-                    Message(
-                        "[[what]] grows with the rate of the phase as its square: it would move the system by much "
-                        "within one turn of the phase, and the averages mean nothing",
-                        what=what,
-                    )
+                    "[[what]] grows with the rate of the phase as its square: it would move the system by much "
+                    "within one turn of the phase, and the averages mean nothing",
+                    what=what,
                 )
             if power <= 0:
                 found[power + 1][monomial] = c
@@ -169,11 +167,9 @@ class Order:
             for *_, itself in self.phases:
                 if monomial[itself]:
                     raise NoClosedForm(
-                        Message(
-                            "[[what]] holds [[name]] outside of sines and cosines",
-                            what=what,
-                            name=self.ring.generators[itself].name,
-                        )
+                        "[[what]] holds [[name]] outside of sines and cosines",
+                        what=what,
+                        name=self.ring.generators[itself].name,
                     )
             powers = [(monomial[sine], monomial[cosine]) for sine, cosine, _ in self.phases]
             if any(a % 2 or b % 2 for a, b in powers):
@@ -261,11 +257,7 @@ class Order:
             hidden = dict.fromkeys(self.ring.generators[j].name for j in within if j in watched)
             if hidden:
                 raise NoClosedForm(
-                    Message(
-                        "[[what]] holds [[names]] in a denominator, root or function",
-                        what=what,
-                        names=", ".join(hidden),
-                    )
+                    "[[what]] holds [[names]] in a denominator, root or function", what=what, names=", ".join(hidden)
                 )
             inside += within
 
@@ -311,7 +303,7 @@ def averaged(
     moving = without_constants(ring, names)
     mass = [[order.leading(x, Message("the mass matrix")) for x in row] for row in energy.A2.polynomials]
     if any(order.holds_phase(x) for row in mass for x in row):
-        raise NoClosedForm(Message("the mass matrix depends on [[phase]]", phase=phase))
+        raise NoClosedForm("the mass matrix depends on [[phase]]", phase=phase)
     linear = [order.leading(x.polynomial, "T") for x in energy.A1]
     rest = order.leading(energy.A0.polynomial, "T")
     grown, force = order.split(energy.force_function.polynomial, "U")
@@ -321,11 +313,14 @@ def averaged(
         if any(order.holds_phase(order.unscaled(x)) for x in parts):
             told = ", ".join(orders)
             raise NoClosedForm(
-                Message("[[what]] depends on [[phase]] also where [[told]] = 0", what=what, phase=phase, told=told),
+                "[[what]] depends on [[phase]] also where [[told]] = 0",
+                what=what,
+                phase=phase,
+                told=told,
                 remedy=_REMEDY,
             )
     if not ring.vanishes(moving(order.mean(grown, "U"))):
-        raise NoClosedForm(Message("the mean of U over [[phase]] grows with the rate of the phase", phase=phase))
+        raise NoClosedForm("the mean of U over [[phase]] grows with the rate of the phase", phase=phase)
     means = [order.mean(x, "T") for x in linear]
     added = [mean - order.unshaken(x) for mean, x in zip(means, linear, strict=True)]
     for i, a in enumerate(names):
@@ -384,9 +379,7 @@ def _order(ring: Ring, phases: Mapping[str, str], orders: Mapping[str, int]) -> 
     """Raises NoClosedForm where no sine or cosine of a phase occurs: nothing oscillates with it."""
     for phase in phases:
         if not all(ring.has(kind, phase) for kind in ("sine", "cosine", "prescribed")):
-            raise NoClosedForm(
-                Message("no sine or cosine of [[phase]] occurs: nothing oscillates with it", phase=phase)
-            )
+            raise NoClosedForm("no sine or cosine of [[phase]] occurs: nothing oscillates with it", phase=phase)
     return Order(
         ring,
         {ring.index("parameter", name): power for name, power in orders.items()},
@@ -408,11 +401,12 @@ def _force_function(ring: Ring, forces: Mapping[str, Polynomial]) -> Polynomial:
     for name, force in forces.items():
         if any(not ring.vanishes(ring.velocity_derivative(force, other)) for other in forces):
             raise NoClosedForm(
-                Message("the force on [[name]] holds products of what is small and the rate of the phase", name=name)
+                "the force on [[name]] holds products of what is small and the rate of the phase", name=name
             )
         if not ring.is_zero(ring.derivative(total, name) - force):
             raise NoClosedForm(
-                Message("a mean force on [[name]] is left that is not seen to be of a potential", name=name),
+                "a mean force on [[name]] is left that is not seen to be of a potential",
+                name=name,
                 remedy="write it as a potential",
             )
     return ring.reduce(total)
@@ -450,24 +444,20 @@ def _other_loads(
             slopes = {a: [ring.velocity_derivative(x, a) for x in (grown, force)] for a in system.coordinates}
             bends = [ring.velocity_derivative(x, b) for _, x in slopes.values() for b in system.coordinates]
         except NoClosedForm as jump:
-            raise NoClosedForm(Message("[[what]] is not linear in the velocities", what=what)) from jump
+            raise NoClosedForm("[[what]] is not linear in the velocities", what=what) from jump
         if any(not ring.vanishes(x) for x, _ in slopes.values()):
-            raise NoClosedForm(Message("[[what]] holds velocities and grows with the rate of the phase", what=what))
+            raise NoClosedForm("[[what]] holds velocities and grows with the rate of the phase", what=what)
         if any(order.holds_phase(x) for _, x in slopes.values()):
             raise NoClosedForm(
-                Message(
-                    "[[what]] depends on [[phase]] and on velocities: its mean is no potential", what=what, phase=phase
-                )
+                "[[what]] depends on [[phase]] and on velocities: its mean is no potential", what=what, phase=phase
             )
         if any(not ring.vanishes(x) for x in bends):
-            raise NoClosedForm(Message("[[what]] is not linear in the velocities", what=what))
+            raise NoClosedForm("[[what]] is not linear in the velocities", what=what)
         if order.holds_phase(order.unscaled(generalized_force)):
-            raise NoClosedForm(
-                Message("[[what]] depends on [[phase]] by itself", what=what, phase=phase), remedy=_REMEDY
-            )
+            raise NoClosedForm("[[what]] depends on [[phase]] by itself", what=what, phase=phase, remedy=_REMEDY)
         if not ring.is_zero(order.mean(grown, what)):
             raise NoClosedForm(
-                Message("the mean of [[what]] over [[phase]] grows with the rate of the phase", what=what, phase=phase)
+                "the mean of [[what]] over [[phase]] grows with the rate of the phase", what=what, phase=phase
             )
         pushes[name], steady[name] = grown, ring.reduce(order.mean(force, what) - order.unshaken(force))
         if not ring.vanishes(order.unshaken(force)):
@@ -510,9 +500,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str
         elif len(found) > 1:
             found = []
         if not found:
-            raise NoClosedForm(
-                Message("which parameters are small is not plain: name what [[phase]] shakes", phase=phase)
-            )
+            raise NoClosedForm("which parameters are small is not plain: name what [[phase]] shakes", phase=phase)
         orders |= dict.fromkeys(found, 1)
     shaken = [parameters[name] for name in orders]
     means = {what: order.mean(p, what) for what, p in loads.items()}
@@ -520,9 +508,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str
         (m, what) for what, p in loads.items() for m in (p - means[what]).to_dict() if not any(m[k] for k in shaken)
     ]
     if not (waves or left):
-        raise NoClosedForm(
-            Message("[[phase]] occurs in no equation of motion: nothing oscillates with it", phase=phase)
-        )
+        raise NoClosedForm("[[phase]] occurs in no equation of motion: nothing oscillates with it", phase=phase)
     if not left:
         return orders
     hidden = _hidden(ring, (*kinetic, *loads.values()))
@@ -536,9 +522,7 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str
         powers = [_power(free[n], order.rates, [m for m, _ in left], n in pure, slow) for n in few]
         if None not in powers:
             return orders | {n: power for n, power in zip(few, powers, strict=True) if power is not None}
-    raise NoClosedForm(
-        Message("of which order what [[phase]] does in the loads is, is not plain", phase=phase), remedy=_REMEDY
-    )
+    raise NoClosedForm("of which order what [[phase]] does in the loads is, is not plain", phase=phase, remedy=_REMEDY)
 
 
 def _has_mass_without(ring: Ring, energy: Energy, at: int) -> bool:

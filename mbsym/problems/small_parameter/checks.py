@@ -10,8 +10,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx, fmpq_poly
 
 from mbsym.algebra.quotients import Quotient, Series
 from mbsym.algebra.tower import MOST_ROOTS, Element
-from mbsym.problems.small_parameter.oscillation_result import Harmonics, Oscillation
-from mbsym.problems.small_parameter.result import ScaledField
+from mbsym.problems.small_parameter.result import Harmonics, Oscillation, ScaledField
 
 #: Numerators and denominators of the random states.
 _SIZE = 40
@@ -118,16 +117,9 @@ class Numbers:
         return p
 
     def _of(self, p: Any) -> Any:
-        total = self.context.constant(0)
-        for monomial, c in p.to_dict().items():
-            term = self.context.constant(c)
-            for k, e in enumerate(monomial):
-                if e and k < MOST_ROOTS:
-                    term = term * self.roots[MOST_ROOTS - 1 - k] ** e
-                elif e:
-                    term = term * self.values[k - MOST_ROOTS] ** e
-            total = total + term
-        return total
+        images = [*self.roots[::-1], *map(self.context.constant, self.values)]
+        absent = [self.context.constant(0)] * (MOST_ROOTS - len(self.roots))
+        return p.compose(*absent, *images, ctx=self.context)
 
     def __call__(self, x: Element) -> Any:
         bottom = self._of(x.bottom)

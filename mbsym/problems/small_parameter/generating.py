@@ -12,11 +12,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import prod
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import faddeev
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.algebra.terms import coefficients_in, evaluated
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower, angle_in
 from mbsym.expressions.angles import LinearForm
 from mbsym.expressions.message import Message
@@ -82,12 +84,9 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
             if len(rest) > 1 or any(e > 1 for _, e in rest):
                 told = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
                 raise NoClosedForm(
-                    Message(
-                        "the equations are not quasi-linear: without the small parameter that of [[name]] holds "
-                        "[[told]]",
-                        name=names[i],
-                        told=told,
-                    ),
+                    "the equations are not quasi-linear: without the small parameter that of [[name]] holds [[told]]",
+                    name=names[i],
+                    told=told,
                     remedy="declare which variables are small: 'small parameter: {eps: {powers: {x: 1}}}'",
                 )
             for j, e in enumerate(exponents):
@@ -154,10 +153,7 @@ def _roots_of(found: Generating, block: tuple[int, ...]) -> _Roots:
     tower = found.tower
     if len(block) > MOST_BLOCK:
         raise NoClosedForm(
-            Message(
-                "more than [[most]] variables oscillate together without the small parameter",
-                most=MOST_BLOCK,
-            )
+            "more than [[most]] variables oscillate together without the small parameter", most=MOST_BLOCK
         )
     whole = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
     coefficients = without_zeros(whole)
@@ -216,12 +212,9 @@ def _factors(tower: Tower, polynomial: Sequence[Element]) -> list[list[Element]]
     whole = sum((c.top * (common / c.bottom) * free**k for k, c in enumerate(polynomial)), context.constant(0))
     factors: list[list[Element]] = []
     for factor, exponent in whole.factor()[1]:
-        top = factor.degrees()[-1]
-        if top > 0:
-            parts: list[dict[Any, Any]] = [{} for _ in range(top + 1)]
-            for monomial, number in factor.to_dict().items():
-                parts[monomial[-1]][(*monomial[:-1], 0)] = number
-            factors += [[tower.made(context.from_dict(part), context.constant(1)) for part in parts]] * int(exponent)
+        parts = coefficients_in(factor, len(gens) - 1)
+        if len(parts) > 1:
+            factors += [[tower.made(part, context.constant(1)) for part in parts]] * int(exponent)
     return factors
 
 
@@ -251,10 +244,8 @@ def graded_rows(
     zero = (0,) * len(field.variables)
     if set(below[0]) != {zero}:
         raise NoClosedForm(
-            Message(
-                "the equations are not quasi-linear: without [[small]] the mass matrix depends on the state",
-                small=small,
-            ),
+            "the equations are not quasi-linear: without [[small]] the mass matrix depends on the state",
+            small=small,
             remedy=Message(
                 "declare that the deviations are small: 'small parameter: {[[small]]: {powers: {x: 1}}}'", small=small
             ),
@@ -267,11 +258,9 @@ def graded_rows(
         above = {k - shift: part for k, part in above.items()}
         if any(k < 0 for k in above):
             raise NoClosedForm(
-                Message(
-                    "[[name]]' grows without bound as [[small]] tends to 0: nothing oscillates at a rate of order 1",
-                    name=name,
-                    small=small,
-                ),
+                "[[name]]' grows without bound as [[small]] tends to 0: nothing oscillates at a rate of order 1",
+                name=name,
+                small=small,
                 remedy="see 'mbsym expand' for slow manifolds, and the powers that are declared",
             )
         graded: _Graded = {}
@@ -342,14 +331,12 @@ def adjoined(tower: Tower, field: PolynomialField) -> dict[str, Element]:
         if inside is not None:
             elements[name] = tower.sin_cos(LinearForm(((inside[1], Fraction(1, inside[2])),)))[0]
             continue
-        total = tower.zero
-        for monomial, c in square.to_dict().items():
-            product = tower.element(c)
-            for other, e in zip(field.parameters, monomial, strict=False):
-                for _ in range(int(e)):
-                    product = product * (elements[other] if other in elements else tower.parameter(other))
-            total = total + product
-        root = tower.square_root(total)
+
+        def power(k: int, exponent: int) -> Element:
+            other = field.parameters[k]
+            return prod([elements[other] if other in elements else tower.parameter(other)] * exponent, start=tower.one)
+
+        root = tower.square_root(evaluated(square, power, tower.element))
         number = tower.rational(root)
         if number is not None:
             root = tower.element(abs(number))

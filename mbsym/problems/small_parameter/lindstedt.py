@@ -23,7 +23,7 @@ from mbsym.algebra.matrices import echelon, faddeev
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message
 from mbsym.problems.small_parameter.generating import Generating, Mode, without_zeros
-from mbsym.problems.small_parameter.oscillation_result import Divisor, Drift, Harmonics
+from mbsym.problems.small_parameter.result import Divisor, Drift, Harmonics
 
 
 class Resonance(NoClosedForm):
@@ -74,12 +74,7 @@ class Orders:
             if not (entry[0].is_zero() and entry[1].is_zero()):
                 break
         else:
-            raise NoClosedForm(
-                Message(
-                    "[[name]] does not take part in this mode",
-                    name=self.system.names[self.leading],
-                )
-            )
+            raise NoClosedForm("[[name]] does not take part in this mode", name=self.system.names[self.leading])
         #: v with (i omega - A) v = 0 and v = 1 in the leading variable; l with l (i omega - A) = 0.
         self.right = [_over(tower, (real[r][column], imaginary[r][column]), entry) for r in range(size)]
         self.left = [(real[place][c], imaginary[place][c]) for c in range(size)]
@@ -256,10 +251,8 @@ class Orders:
         answer = solved(tower, [*upper, *lower], [*(-c for c, _ in loads), *(-s for _, s in loads)])
         if answer is None:
             raise Resonance(
-                Message(
-                    "resonance: two oscillations of [[block]] have one frequency",
-                    block=", ".join(self.system.names[i] for i in block),
-                )
+                "resonance: two oscillations of [[block]] have one frequency",
+                block=", ".join(self.system.names[i] for i in block),
             )
         self._divided(block, 1, order, [*answer, shift])
         known = [(zero, zero)] * size

@@ -14,12 +14,13 @@ from dataclasses import field as dataclass_field
 from typing import Any
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.algebra.terms import coefficients_in
 from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.expressions.message import Message, joined
 from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.generating import Generating, Mode, Rows, generating
 from mbsym.problems.small_parameter.lindstedt import Demand, NotPeriodic, Orders
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics, Oscillation
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics, Oscillation
 
 #: A condition on the amplitude may first appear in this order.
 LATEST = 4
@@ -186,7 +187,7 @@ def _times(a: Mapping[int, Harmonics], b: Sequence[Harmonics], most: int) -> dic
 def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mode:
     if leading:
         if leading not in there.names:
-            raise NoClosedForm(Message("the equations do not depend on [[name]]", name=leading))
+            raise NoClosedForm("the equations do not depend on [[name]]", name=leading)
         own = [mode for mode in system.modes if there.names.index(leading) in mode.block]
     else:
         own = list(system.modes)
@@ -195,25 +196,21 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         if open_blocks:
             names = ", ".join(there.names[i] for block in open_blocks for i in block)
             raise NoClosedForm(
-                Message(
-                    "without [[small]] the frequencies of [[names]] were not found as square roots",
-                    small=there.small,
-                    names=names,
-                ),
+                "without [[small]] the frequencies of [[names]] were not found as square roots",
+                small=there.small,
+                names=names,
                 remedy="with numbers for parameters, where they factor: --set NAME=VALUE",
             )
         damped = [there.names[i] for block in system.damped for i in block]
         if damped:
             raise NotPeriodic(
-                Message(
-                    "no periodic solution near those of the linear system: without [[small]] no pair of "
-                    "imaginary roots was found for [[damped]]",
-                    small=there.small,
-                    damped=", ".join(damped),
-                )
+                "no periodic solution near those of the linear system: without [[small]] no pair of "
+                "imaginary roots was found for [[damped]]",
+                small=there.small,
+                damped=", ".join(damped),
             )
         if leading:
-            raise NoClosedForm(Message("[[name]] does not oscillate where the small parameter is zero", name=leading))
+            raise NoClosedForm("[[name]] does not oscillate where the small parameter is zero", name=leading)
         raise NoClosedForm("nothing oscillates where the small parameter is zero")
     if len({mode.block for mode in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in mode.block) for mode in own])
@@ -224,8 +221,8 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
         )
         names = ", ".join(there.names[i] for i in own[0].block)
         if len(own) == 1:
-            raise NoClosedForm(Message(one, names=names, which=which))
-        raise NoClosedForm(Message(more, names=names, count=len(own), which=which))
+            raise NoClosedForm(one, names=names, which=which)
+        raise NoClosedForm(more, names=names, count=len(own), which=which)
     return own[which - 1]
 
 
@@ -262,17 +259,13 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
     if not squares and imaginary and not unsolved and of_parameters.is_constant():
         if any(name != AMPLITUDE for name in there.values):
             raise NotPeriodic(
-                Message(
-                    "with the constants that were given secular terms are removed only where the amplitude of "
-                    "[[name]] is imaginary: its square is < 0",
-                    name=leading,
-                )
-            )
-        raise NotPeriodic(
-            Message(
-                "secular terms are removed only where the amplitude of [[name]] is imaginary: its square is < 0",
+                "with the constants that were given secular terms are removed only where the amplitude of "
+                "[[name]] is imaginary: its square is < 0",
                 name=leading,
             )
+        raise NotPeriodic(
+            "secular terms are removed only where the amplitude of [[name]] is imaginary: its square is < 0",
+            name=leading,
         )
     if not squares:
         raise _not_solved(there, demand) if unsolved else _secular(there, demand.order, of_parameters)
@@ -291,10 +284,7 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
 
 def _by_powers(tower: Tower, p: Any, place: int) -> list[Element]:
     """The coefficients of the powers of a generator, from low to high."""
-    parts: list[dict[Any, Any]] = [{} for _ in range(p.degrees()[place] + 1)]
-    for monomial, c in p.to_dict().items():
-        parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
-    return [tower.made(tower.context.from_dict(part), tower.context.constant(1)) for part in parts]
+    return [tower.made(part, tower.context.constant(1)) for part in coefficients_in(p, place)]
 
 
 def _squares(there: Equations, coefficients: Sequence[Element]) -> list[Element] | None:
@@ -327,13 +317,11 @@ def _not_solved(there: Equations, demand: Demand) -> NoClosedForm:
     top = _but_powers(tower, demand)
     condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
     return NoClosedForm(
-        Message(
-            "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
-            "amplitudes that square roots do not express are not followed",
-            order=demand.order,
-            small=there.small,
-            condition=condition,
-        )
+        "in the order [[order]] of [[small]] secular terms remain unless [[condition]] = 0: "
+        "amplitudes that square roots do not express are not followed",
+        order=demand.order,
+        small=there.small,
+        condition=condition,
     )
 
 
@@ -342,13 +330,11 @@ def _other_amplitude(there: Equations, demand: Demand) -> NotPeriodic:
     top = _but_powers(tower, demand)
     condition = there.told(tower.made(top / top.leading_coefficient(), tower.context.constant(1)))
     return NotPeriodic(
-        Message(
-            "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
-            "has to fulfil [[condition]] = 0",
-            order=demand.order,
-            small=there.small,
-            condition=condition,
-        )
+        "with this amplitude secular terms remain in the order [[order]] of [[small]]: the amplitude "
+        "has to fulfil [[condition]] = 0",
+        order=demand.order,
+        small=there.small,
+        condition=condition,
     )
 
 
@@ -363,18 +349,16 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
         none = Message("no periodic solution near those of the linear system with the constants that were given")
     where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
-        return NotPeriodic(Message("[[none]]: [[where]] for every real amplitude", none=none, where=where))
+        return NotPeriodic("[[none]]: [[where]] for every real amplitude", none=none, where=where)
     told = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
         return NoClosedForm(
-            Message(
-                "[[where]] unless [[told]] = 0: values of variables that this determines are not found here",
-                where=where,
-                told=told,
-            )
+            "[[where]] unless [[told]] = 0: values of variables that this determines are not found here",
+            where=where,
+            told=told,
         )
-    return NotPeriodic(Message("[[none]]: [[where]] unless [[told]] = 0", none=none, where=where, told=told))
+    return NotPeriodic("[[none]]: [[where]] unless [[told]] = 0", none=none, where=where, told=told)
 
 
 def _but_powers(tower: Tower, demand: Demand) -> Any:
@@ -389,7 +373,7 @@ def _with_corrections(there: Equations, orders: Orders, order: int, first: int) 
     """All orders; each correction of the amplitude from the condition in which it stands first."""
     tower, names = there.tower, orders.corrections
     if first > LATEST:
-        raise NoClosedForm(Message("a condition on the amplitude appears in the order [[first]] only", first=first))
+        raise NoClosedForm("a condition on the amplitude appears in the order [[first]] only", first=first)
     while orders.complete <= order + first:
         try:
             orders.go_on()
@@ -418,15 +402,11 @@ def _put(orders: Orders, place: int, value: Element) -> None:
     images[place] = tower.context.constant(0)
 
     def change(x: Element) -> Element:
-        degree = x.top.degrees()[place]
-        if degree <= 0:
+        if x.top.degrees()[place] <= 0:
             return x
-        parts: list[dict[Any, Any]] = [{} for _ in range(degree + 1)]
-        for monomial, c in x.top.to_dict().items():
-            parts[monomial[place]][(*monomial[:place], 0, *monomial[place + 1 :])] = c
         total = tower.zero
-        for part in reversed(parts):
-            total = total * value + tower.made(tower.context.from_dict(part), tower.context.constant(1))
+        for part in reversed(_by_powers(tower, x.top, place)):
+            total = total * value + part
         return total / tower.made(x.bottom, tower.context.constant(1))
 
     for i, one in enumerate(orders.series):

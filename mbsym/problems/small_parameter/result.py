@@ -9,6 +9,8 @@ from typing import Any
 
 from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.algebra.quotients import Quotient, Series
+from mbsym.algebra.terms import grouped
+from mbsym.algebra.tower import Element, Tower
 
 
 class Outcome(Enum):
@@ -152,16 +154,10 @@ def scaled(field: PolynomialField, small: str, powers: Mapping[str, int]) -> Sca
     for name, power in powers.items():
         if name in names:
             weights[names.index(name)] = power
-    own = names.index(small) if small in names else None
+    own = [names.index(small)] if small in names else []
 
     def graded(p: Polynomial) -> dict[int, Polynomial]:
-        parts: dict[int, dict[tuple[int, ...], Any]] = {}
-        for monomial, c in p.to_dict().items():
-            order = sum(weights[k] * int(e) for k, e in enumerate(monomial) if e)
-            if own is not None:
-                monomial = (*monomial[:own], 0, *monomial[own + 1 :])
-            parts.setdefault(order, {})[monomial] = c
-        return {k: field.context.from_dict(part) for k, part in parts.items()}
+        return grouped(p, lambda m: sum(weights[k] * int(e) for k, e in enumerate(m) if e), own)
 
     denominator = graded(field.denominator)
     least = min(denominator)
@@ -172,3 +168,173 @@ def scaled(field: PolynomialField, small: str, powers: Mapping[str, int]) -> Sca
         tuple({k - least: p for k, p in graded(row).items()} for row in field.numerators),
         {k - least: p for k, p in denominator.items()},
     )
+
+
+# What is known of a periodic solution near one of a linear system: series, frequency, divisors, what was checked.
+
+
+class Amplitude(Enum):
+    """Whether periodic solutions are a family, or one with a certain amplitude, near those of the linear system."""
+
+    FREE = "free"
+    DETERMINED = "determined"
+
+
+@dataclass(frozen=True)
+class Divisor:
+    """What was divided by at ``harmonic`` in the equations of ``variables``: resonance where it vanishes.
+
+    With damping that is ``value`` + i k omega ``damping``: resonance where both vanish.
+    """
+
+    variables: tuple[str, ...]
+    harmonic: int
+    order: int
+    value: Element
+    damping: Element | None = None
+
+    @property
+    def parts(self) -> tuple[Element, ...]:
+        return (self.value,) if self.damping is None else (self.value, self.damping)
+
+
+@dataclass(frozen=True)
+class Drift:
+    """A variable that no equation needs: x = x(0) + sum_n eps^n (rates[n] t + waves[n](T))."""
+
+    variable: str
+    rates: tuple[Element, ...]
+    waves: tuple[Harmonics, ...]
+
+
+@dataclass(frozen=True)
+class Oscillation:
+    """x_i = sum_n eps^n series[i][n](T), n <= order, T' = frequency (1 + sum_n eps^n corrections[n - 1]).
+
+    ``leading``: the variable whose term cos T is ``amplitude`` at eps = 0 and that has no term sin T.  Where the
+    amplitude is free it is the variable's value at T = 0 in all orders, where it is ``DETERMINED`` its first
+    approximation; ``constants``: variables that keep their value at eps = 0, with it; it is theirs at T = 0 in all
+    orders.  ``names`` are the variables in the order of ``series``; ``powers``: x stands for x eps^power.
+    ``others``: variables and the square of a frequency that is left out; ``damped``, ``with_zero``, ``not_known``:
+    variables with roots that are surely not imaginary, zero, or not found.
+    ``residuals``: the order of eps that is left in each equation when all this is put into it (None: nothing).
+    """
+
+    tower: Tower
+    small: str
+    order: int
+    names: tuple[str, ...]
+    powers: tuple[tuple[str, int], ...]
+    leading: str
+    block: tuple[str, ...]
+    frequency: Element
+    corrections: tuple[Element, ...]
+    kind: Amplitude
+    amplitude: Element
+    constants: tuple[tuple[str, Element], ...]
+    series: tuple[tuple[Harmonics, ...], ...]
+    drifts: tuple[Drift, ...]
+    divisors: tuple[Divisor, ...]
+    others: tuple[tuple[tuple[str, ...], Element], ...]
+    damped: tuple[tuple[str, ...], ...]
+    with_zero: tuple[tuple[str, ...], ...] = ()
+    not_known: tuple[tuple[str, ...], ...] = ()
+    residuals: tuple[int | None, ...] = ()
+    #: What is zero for other amplitudes at which secular terms are removed, too; in the symbol of the amplitude.
+    other_amplitudes: Element | None = None
+    #: Of a single cycle in a plane: (m, c), so that motions near it come closer or part like exp(c eps^m t).
+    exponent: tuple[int, Element] | None = None
+
+    @property
+    def verified(self) -> bool:
+        """Whether what is left is of higher order than the expansion in every equation."""
+        return bool(self.residuals) and all(residual is None or residual > self.order for residual in self.residuals)
+
+
+# Trigonometric polynomials of one phase over the elements of a tower: sum_k C_k cos(k T) + S_k sin(k T).
+
+
+#: k >= 0 -> (C_k, S_k); S_0 is zero.  What is zero is left out.
+Waves = Mapping[int, tuple[Element, Element]]
+
+
+class Harmonics:
+    """sum of ``waves`` in the phase T."""
+
+    __slots__ = ("tower", "waves")
+
+    def __init__(self, tower: Tower, waves: Waves) -> None:
+        self.tower = tower
+        self.waves = {k: (c, s) for k, (c, s) in waves.items() if not (c.is_zero() and s.is_zero())}
+
+    @classmethod
+    def constant(cls, tower: Tower, value: Element) -> Harmonics:
+        return cls(tower, {0: (value, tower.zero)})
+
+    @property
+    def is_zero(self) -> bool:
+        return not self.waves
+
+    def wave(self, k: int) -> tuple[Element, Element]:
+        return self.waves.get(k, (self.tower.zero, self.tower.zero))
+
+    @property
+    def mean(self) -> Element:
+        return self.wave(0)[0]
+
+    @property
+    def start(self) -> Element:
+        """The value at T = 0."""
+        return sum((c for c, _ in self.waves.values()), self.tower.zero)
+
+    def __add__(self, other: Harmonics) -> Harmonics:
+        total = dict(self.waves)
+        for k, (c, s) in other.waves.items():
+            total[k] = (total[k][0] + c, total[k][1] + s) if k in total else (c, s)
+        return Harmonics(self.tower, total)
+
+    def __sub__(self, other: Harmonics) -> Harmonics:
+        return self + other.scaled(-self.tower.one)
+
+    def scaled(self, factor: Element) -> Harmonics:
+        return Harmonics(self.tower, {k: (c * factor, s * factor) for k, (c, s) in self.waves.items()})
+
+    def __mul__(self, other: Harmonics) -> Harmonics:
+        total: dict[int, tuple[Element, Element]] = {}
+        half, zero = self.tower.number(1) / self.tower.number(2), self.tower.zero
+
+        def add(k: int, c: Element, s: Element) -> None:
+            if k < 0:
+                k, s = -k, -s
+            if k == 0:
+                s = zero
+            total[k] = (total[k][0] + c, total[k][1] + s) if k in total else (c, s)
+
+        for m, (a, b) in self.waves.items():
+            for n, (c, d) in other.waves.items():
+                if m == 0 or n == 0:
+                    # exact: neither product with sin(0) is there
+                    add(m + n, a * c, a * d if m == 0 else b * c)
+                    continue
+                ac, bd, ad, bc = a * c, b * d, a * d, b * c
+                add(m + n, (ac - bd) * half, (ad + bc) * half)
+                add(m - n, (ac + bd) * half, (bc - ad) * half)
+        return Harmonics(self.tower, total)
+
+    def slope(self) -> Harmonics:
+        """d/dT."""
+        return Harmonics(self.tower, {k: (s * k, -(c * k)) for k, (c, s) in self.waves.items() if k})
+
+    def sum_from_zero(self) -> Harmonics:
+        """The integral from T = 0 of what has no mean."""
+        tower, parts = self.tower, {}
+        total = tower.zero
+        for k, (c, s) in self.waves.items():
+            if k:
+                parts[k] = (-(s / tower.number(k)), c / tower.number(k))
+                total = total - parts[k][0]
+        parts[0] = (total, tower.zero)
+        return Harmonics(tower, parts)
+
+    def mapped(self, change: Any) -> Harmonics:
+        return Harmonics(self.tower, {k: (change(c), change(s)) for k, (c, s) in self.waves.items()})

@@ -5,7 +5,7 @@ With slow variables s and fast ones z of  D x' = N(s, z, eps)  the manifold is i
     N_z(s, h, eps) = sum_j dh/ds_j N_j(s, h, eps),
 
 times eps^k_i in row i, so that its lowest order in eps is 0.  Where the part of lowest order g(s, z) = 0 has a root
-z = h_0(s) that is found by elimination (``root``), and L(s) = dg/dz there has det L != 0,
+z = h_0(s) that is found by elimination (below), and L(s) = dg/dz there has det L != 0,
 
     h  <-  h - L^-1 (what is left in these equations),      first h = h_0,
 
@@ -17,16 +17,226 @@ perturbations, Springer 2014, chapter 2.)
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import combinations
 from operator import add
 
+from flint import fmpq_mpoly_ctx
+
+from mbsym.algebra import matrices
+from mbsym.algebra.factors import irreducible_factors, occurring, square_apart
 from mbsym.algebra.failures import Limit, NoClosedForm
-from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Series
-from mbsym.expressions.message import Message
-from mbsym.problems.small_parameter.result import Adjoined, ScaledField
-from mbsym.problems.small_parameter.root import Root, Roots, roots
+from mbsym.algebra.matrices import determinant_by_traces, faddeev
+from mbsym.algebra.polynomial_field import PolynomialField, in_lowest_terms
+from mbsym.algebra.quotients import LOWER, Composition, Polynomial, Quotient, Series
+from mbsym.algebra.terms import apart
+from mbsym.problems.small_parameter.result import Adjoined, Hurwitz, ScaledField, SteadyStates
+
+# The lowest order of the equations of fast variables, solved: z = h_0(s), and the matrix L of derivatives there.
+#
+# A root that is a square root of slow variables or parameters, rho^2 = d, is made rational by another choice of these:
+# where d is linear in one of them, d = a k + b, rho stands in the place of  k = (rho^2 - b)/a.
+
+
+@dataclass(frozen=True)
+class Root:
+    """g(s, z) = 0 at z = ``values``(s), where ``determinant`` = det dg/dz is not zero.
+
+    ``inverse`` is that of the matrix dg/dz at the root.
+    """
+
+    values: tuple[Quotient, ...]
+    inverse: tuple[tuple[Quotient, ...], ...]
+    determinant: Quotient
+
+
+@dataclass(frozen=True)
+class Roots:
+    """``known`` ones; ``squares``: what needs a square root for two more each; ``others``: how many are neither."""
+
+    known: tuple[Root, ...] = ()
+    squares: tuple[Polynomial, ...] = ()
+    others: int = 0
+
+    @property
+    def any(self) -> bool:
+        return bool(self.known or self.squares)
+
+
+def roots(there: ScaledField, fast: Sequence[int], constant: bool = False) -> Roots:
+    """Of the rows ``fast`` at their lowest order; none where they do not determine these variables.
+
+    Equations are taken that are linear in one variable with a factor that holds no fast variable, one after the other;
+    what they give is put into the others.  Where none is left, one that holds a single fast variable is taken apart
+    into factors of degree 1 and 2.  With ``constant`` the matrix must be one of parameters alone.
+    """
+    first = len(there.field.parameters)
+    if any(-there.scales[i] not in there.rows[i] for i in fast):
+        return Roots()
+    rows = [there.rows[i][-there.scales[i]] for i in fast]
+    places = [first + i for i in fast]
+    slopes = [[row.derivative(place) for place in places] for row in rows]
+    if constant and any(any(x.degrees()[first:]) for line in slopes for x in line if x != 0):
+        return Roots()
+    known, squares, others = [], [], 0
+    for solved in _solutions([Quotient.of(row) for row in rows], places):
+        if isinstance(solved, int):
+            others += solved
+        elif isinstance(solved, dict):
+            found = inverse([[put(x, solved) for x in line] for line in slopes])
+            if found is not None:
+                inverted, determinant = found
+                known.append(Root(tuple(solved[k] for k in places), tuple(map(tuple, inverted)), determinant))
+        else:
+            squares.append(solved)
+    return Roots(tuple(known), tuple(squares), others)
+
+
+def _solutions(left: Sequence[Quotient], unknown: Sequence[int]) -> Iterator[dict[int, Quotient] | Polynomial | int]:
+    """Values of the generators ``unknown``, each free of all of them; what needs a square root; how many others."""
+    if not unknown:
+        yield {}
+        return
+    linear = _linear_in_one(left, unknown)
+    for chosen in [linear] if linear is not None else _by_factors(left, unknown):
+        if not isinstance(chosen, tuple):
+            yield chosen
+            continue
+        at, place, value = chosen
+        further = [put(x.top, {place: value}) for k, x in enumerate(left) if k != at]
+        for solved in _solutions(further, [k for k in unknown if k != place]):
+            if not isinstance(solved, dict):
+                yield solved
+            elif not (below := put(value.bottom, solved)).is_zero:
+                yield solved | {place: put(value.top, solved) / below}
+
+
+def _by_factors(
+    left: Sequence[Quotient], unknown: Sequence[int]
+) -> Iterator[tuple[int, int, Quotient] | Polynomial | int]:
+    """What ``_linear_in_one`` gives, by the factors of the shortest equation that holds a single unknown one."""
+    held = [
+        (len(row.top), at, places[0])
+        for at, row in enumerate(left)
+        if len(places := [k for k in unknown if row.top.degrees()[k] > 0]) == 1
+    ]
+    if not held:
+        return
+    _, at, place = min(held)
+    for factor, exponent in irreducible_factors(left[at].top)[1]:
+        degree = factor.degrees()[place]
+        if degree < 1 or exponent > 1:  # of a multiple root L is singular
+            continue
+        slope = factor.derivative(place)
+        z = factor.context().gen(place)
+        if degree == 1:
+            yield at, place, Quotient.of(slope * z - factor, slope)
+        elif degree == 2:
+            a = slope.derivative(place) / 2
+            b = slope - 2 * a * z
+            yield square_apart(b**2 - 4 * a * (factor - a * z**2 - b * z))[1]
+        else:
+            yield int(degree)
+
+
+def adjoined(
+    field: PolynomialField, square: Polynomial, held: Collection[str]
+) -> tuple[PolynomialField, Adjoined] | None:
+    """The field with rho in the place of a parameter or variable k, rho^2 = ``square`` = a k + b, not one of ``held``.
+
+    With a variable in ``square`` it is one of those:  rho' = (d square/dt)/(2 rho).  None where there is no such k.
+    """
+    names, first = field.context.names(), len(field.parameters)
+    inside = occurring([square])
+    moving = [k for k in inside if k >= first]
+    linear = [k for k in moving or inside if names[k] not in held and square.degrees()[k] == 1]
+    if not linear:
+        return None
+    k = min(linear, key=lambda k: (len(square.derivative(k)), not square.derivative(k).is_constant()))
+    rho, slope = field.context.gen(k), square.derivative(k)
+    value = Quotient.of(rho**2 - (square - slope * rho), slope)
+    rates, below = [*field.numerators], field.denominator
+    if moving:
+        rates[k - first] = field.derivative(square)
+        rates = [x if i == k - first else x * 2 for i, x in enumerate(rates)]
+    moved = [put(x, {k: value}) for x in (below * 2 if moving else below, *rates)]
+    if moving:
+        moved = [x if i == k - first + 1 else x * Quotient.of(rho) for i, x in enumerate(moved)]
+    common = field.context.constant(1)
+    for x in moved:
+        common = common * (x.bottom / x.bottom.gcd(common))
+    cleared = [x.top * (common / x.bottom) for x in moved]
+    label = f"sqrt({square})"
+    context = fmpq_mpoly_ctx.get([label if i == k else name for i, name in enumerate(names)], field.context.ordering())
+
+    def renamed(p: Polynomial) -> Polynomial:
+        return context.from_dict(p.to_dict())
+
+    tops, bottom = in_lowest_terms(cleared[1:], cleared[0])
+    polynomial_field = replace(
+        field,
+        context=context,
+        parameters=tuple(context.names()[:first]),
+        variables=tuple(context.names()[first:]),
+        numerators=tuple(map(renamed, tops)),
+        denominator=renamed(bottom),
+        relations=tuple(renamed(put(p, {k: value}).top) for p in field.relations),
+    )
+    return polynomial_field, Adjoined(label, k, names[k], square, Quotient(renamed(value.top), renamed(value.bottom)))
+
+
+def _linear_in_one(left: Sequence[Quotient], unknown: Sequence[int]) -> tuple[int, int, Quotient] | None:
+    """(row, place, value) of the shortest equation p z + q = 0 with p free of the unknown ones."""
+    found = []
+    for at, row in enumerate(left):
+        for place in unknown:
+            factor = row.top.derivative(place)
+            if factor != 0 and not any(factor.degrees()[k] > 0 for k in unknown):
+                found.append((len(row.top), at, place, factor))
+    if not found:
+        return None
+    _, at, place, factor = min(found, key=lambda one: one[:3])
+    rest = left[at].top - factor * factor.context().gen(place)
+    return at, place, Quotient.of(-rest, factor)
+
+
+def put(p: Polynomial, values: Mapping[int, Quotient]) -> Quotient:
+    """p with quotients in place of some generators.  Raises NoClosedForm where it becomes too long."""
+    total = Quotient.of(p.context().constant(0))
+    for key, part in apart(p, values).items():
+        term = Quotient.of(part)
+        for place, exponent in zip(values, key, strict=True):
+            for _ in range(exponent):
+                term = term * values[place]
+        total = total + term
+    return total
+
+
+def inverse(matrix: Sequence[Sequence[Quotient]]) -> tuple[list[list[Quotient]], Quotient] | None:
+    """Gauss-Jordan's, exactly, and the determinant; None for a singular matrix."""
+    n = len(matrix)
+    context = matrix[0][0].top.context()
+    quotient, nothing = Quotient.of(context.constant(1)), Quotient.of(context.constant(0))
+    work = [[*row, *(quotient if i == j else nothing for j in range(n))] for i, row in enumerate(matrix)]
+    determinant = quotient
+    for column in range(n):
+        pivot = next((r for r in range(column, n) if not work[r][column].is_zero), None)
+        if pivot is None:
+            return None
+        if pivot != column:
+            work[column], work[pivot] = work[pivot], work[column]
+            determinant = -determinant
+        lead = work[column][column]
+        determinant = determinant * lead
+        work[column] = [x / lead for x in work[column]]
+        for r in range(n):
+            factor = work[r][column]
+            if r != column and not factor.is_zero:
+                work[r] = [a - factor * b for a, b in zip(work[r], work[column], strict=True)]
+    return [row[n:] for row in work], determinant
+
 
 #: Choices of fast variables that are looked at.
 MOST_CHOICES = 2000
@@ -43,9 +253,8 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
     swift = [i for i, k in enumerate(there.scales) if k > 0]
     if not swift:
         raise NoClosedForm(
-            Message(
-                "no variable is fast: no derivative grows without bound as [[small]] tends to 0", small=there.small
-            ),
+            "no variable is fast: no derivative grows without bound as [[small]] tends to 0",
+            small=there.small,
             remedy="see 'powers' of the small parameter: {p2: -1} says that p2 is large",
         )
     others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
@@ -61,7 +270,7 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
                 found.append(places)
         if len(found) > 1:
             told = "; ".join(", ".join(names[i] for i in one) for one in found[:3])
-            raise NoClosedForm(Message("which variables are fast is not clear: [[told]]", told=told), remedy=DECLARE)
+            raise NoClosedForm("which variables are fast is not clear: [[told]]", told=told, remedy=DECLARE)
         if found:
             return tuple(names[i] for i in found[0])
     raise NoClosedForm(
@@ -76,12 +285,10 @@ def roots_of(there: ScaledField, fast: Sequence[str]) -> Roots:
     found = roots(there, [there.field.variables.index(name) for name in fast])
     if not found.any:
         raise NoClosedForm(
-            Message(
-                "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
-                "singular, or not solved by equations that are linear or quadratic in one of them",
-                small=there.small,
-                fast=", ".join(fast),
-            )
+            "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
+            "singular, or not solved by equations that are linear or quadratic in one of them",
+            small=there.small,
+            fast=", ".join(fast),
         )
     return found
 
@@ -114,11 +321,9 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int, start: Root | 
             changed.append(function.up_to(order + 1).exactly())
         functions = changed
     raise NoClosedForm(
-        Message(
-            "the coefficients up to order [[order]] do not settle within [[most]] steps",
-            order=order,
-            most=MOST_STEPS,
-        ),
+        "the coefficients up to order [[order]] do not settle within [[most]] steps",
+        order=order,
+        most=MOST_STEPS,
         limit=Limit.WORK,
         remedy=LOWER,
     )
@@ -172,7 +377,7 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
     below = on(there.denominator, near, None)
     if 0 not in below.coefficients:
         raise NoClosedForm(
-            Message("the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small)
+            "the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small
         )
     found = {}
     for name, row in zip(there.field.variables, there.rows, strict=True):
@@ -203,3 +408,139 @@ def free_without_root(free: tuple[str, ...], root: Adjoined, names: Sequence[str
     if root.label in free:
         return tuple(root.instead if name == root.label else name for name in free)
     return () if any(not root.value.derivative(names.index(name)).is_zero for name in free) else free
+
+
+# The first approximation on a slow manifold about a steady state, and whether the manifold attracts there.
+#
+# With A the matrix of all variables and A_s(eps) that of the flow on the manifold, det(S - A_s) divides det(S - A): the
+# quotient belongs to the fast variables.  Its coefficients are found as series in eps by division; what remains must be
+# of higher order than the expansion, which checks both.  By Hurwitz all roots of a polynomial have negative real parts
+# if all leading minors D_1, ..., D_n are positive, so that for all sufficiently small eps > 0 their first coefficients
+# decide.
+
+
+#: Characteristic polynomials of a higher degree are not expanded.
+MOST_VARIABLES = 8
+
+
+def steady_states(
+    there: ScaledField,
+    flow: Mapping[str, Series],
+    functions: Mapping[str, Series],
+    values: Mapping[str, Quotient],
+    order: int,
+) -> SteadyStates:
+    """Of the steady state ``values`` (by variable).  Raises NoClosedForm where it is none."""
+    field = there.field
+    first = len(field.parameters)
+    names = field.variables
+    if len(names) > MOST_VARIABLES:
+        raise NoClosedForm(
+            "more than [[most]] variables: no characteristic polynomial is expanded", most=MOST_VARIABLES
+        )
+    context = field.context
+
+    def at(c: Quotient) -> Quotient:
+        return _put(c, first, [values[name] for name in names])
+
+    def on(x: Series) -> Series:
+        quotients = {k: at(c) for k, c in x.coefficients.items()}
+        return Series(context, {k: c for k, c in quotients.items() if not c.is_zero}, x.known)
+
+    for name, one in flow.items():
+        if on(one).coefficients:
+            raise NoClosedForm(
+                "the motion is no steady state on the manifold: [[name]] does not stay constant", name=name
+            )
+    for name, function in functions.items():
+        series = Series.constant(values[name])
+        if (on(function) - series).coefficients:
+            raise NoClosedForm("the motion does not lie on the manifold: [[name]] is another one there", name=name)
+    slow = list(flow)
+    small = [[on(flow[i].derivative(first + names.index(j))) for j in slow] for i in slow]
+    rows = [Series(context, {k: Quotient.of(p) for k, p in row.items()}) for row in there.rows]
+    below = on(Series(context, {k: Quotient.of(p) for k, p in there.denominator.items()}))
+    # D x' = N and N = 0 on the motion: A = (dN/dx)/D there.
+    if any(on(row).coefficients for row in rows):
+        raise NoClosedForm("the motion is no steady state of the equations")
+    scaled = [[on(row.derivative(first + k)) for k in range(len(names))] for row in rows]
+    full = characteristic(context, scaled)  # det(S - D A), in which S^(n-k) has the k-th power of D too many
+    whole, power = [], Series.constant(Quotient.of(context.constant(1)))
+    deep = 2 * order + 8 + 2 * sum(max(0, k) for k in there.scales)
+    for c in full:
+        whole.append(c.over(power, deep) if c.coefficients else c)
+        power = power * below
+    zeros = 0
+    while len(whole) > 1 and whole[-1].is_zero:
+        whole.pop()
+        zeros += 1
+    narrow = characteristic(context, small)
+    if zeros > len(narrow) - 1:
+        raise NoClosedForm("more roots are zero than there are slow variables")
+    for c in narrow[len(narrow) - zeros :]:
+        if c.coefficients:
+            raise NoClosedForm("the flow on the manifold does not keep the zero roots: the expansion is wrong")
+    narrow = narrow[: len(narrow) - zeros]
+    quotient, rest = divided(whole, narrow)
+    for one in rest:
+        if one.coefficients:
+            raise NoClosedForm("the roots of the flow on the manifold are none of the system: the expansion is wrong")
+    remainder = min((one.known for one in rest if one.known is not None), default=order + 1)
+    free = _free(there, values)
+    return SteadyStates(
+        zeros, hurwitz(context, narrow), hurwitz(context, quotient), remainder, free if len(free) == zeros else ()
+    )
+
+
+def _free(there: ScaledField, values: Mapping[str, Quotient]) -> tuple[str, ...]:
+    """The variables of which every one, and all together, may have any values in a steady state, eps being what it is.
+
+    Empty where each may, but not all together: then Omega is no plane along axes.
+    """
+    field, first = there.field, len(there.field.parameters)
+    formulas = [p for row in there.rows for p in row.values()] + list(field.relations)
+
+    def steady(free: Sequence[str]) -> bool:
+        at = [
+            Quotient.of(x) if name in free else values[name]
+            for name, x in zip(field.variables, field.context.gens()[first:], strict=True)
+        ]
+        return all(_put(Quotient.of(p), first, at).is_zero for p in formulas)
+
+    free = tuple(name for name in field.variables if steady((name,)))
+    return free if steady(free) else ()
+
+
+def characteristic(context: object, matrix: Sequence[Sequence[Series]]) -> list[Series]:
+    """det(S - A), coefficients from S^n down, by Faddeev and LeVerrier."""
+    return faddeev(matrix, *_units(context))[1][::-1]
+
+
+def _units(context: object) -> tuple[Series, Series]:
+    """0 and 1."""
+    series = Series.constant(Quotient.of(context.constant(1)))  # type: ignore[attr-defined]
+    return series - series, series
+
+
+def divided(dividend: Sequence[Series], divisor: Sequence[Series]) -> tuple[list[Series], list[Series]]:
+    """Quotient and remainder of polynomials, coefficients from the highest down; the divisor is monic."""
+    work = list(dividend)
+    count = len(dividend) - len(divisor) + 1
+    for k in range(count):
+        for n, c in enumerate(divisor[1:], start=1):
+            work[k + n] = work[k + n] - work[k] * c
+    return work[:count], work[count:]
+
+
+def hurwitz(context: object, polynomial: Sequence[Series]) -> Hurwitz:
+    """The leading minors of Hurwitz's matrix of a monic polynomial."""
+    n = len(polynomial) - 1
+    nothing, series = _units(context)
+    minors = [determinant_by_traces(matrices.hurwitz(polynomial, nothing, k), nothing, series) for k in range(1, n + 1)]
+    return Hurwitz(tuple(polynomial), tuple(minors))
+
+
+def _put(c: Quotient, first: int, values: Sequence[Quotient]) -> Quotient:
+    """c with quotients in place of the variables."""
+    images = dict(enumerate(values, first))
+    return put(c.top, images) / put(c.bottom, images)

@@ -47,16 +47,3 @@ from mbsym.problems.stabilisation.result import (
     Region,
     Stabilisation,
 )
-
-__all__ = [
-    "Control",
-    "Dissipation",
-    "EnergyFunction",
-    "Feedback",
-    "Gyroscopic",
-    "Locus",
-    "Motion",
-    "Rank",
-    "Region",
-    "Stabilisation",
-]

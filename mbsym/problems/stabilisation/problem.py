@@ -252,7 +252,7 @@ def _undamped(
         return None
     below, above = (whole.ring.project(x.polynomial) for x in (factor[0], factor[2]))
     ring = whole.ring.whole
-    square = ring.reduce(ring.times(factor[0].polynomial, ring.reciprocal(factor[2].polynomial)))
+    square = ring.ratio(factor[0].polynomial, factor[2].polynomial)
     kernel = annihilator(damping, whole.known, len(mass))[1]
     shape: Sequence[Any] | None = None
     if len(kernel) == 1:
@@ -301,12 +301,7 @@ def _controlled(
     control = tuple(_control(whole, linear, at, there) for at in blocks)
     least = () if whole is None else _least(whole, linear)
     if len(every) > MOST_COORDINATES:
-        return (
-            control,
-            least,
-            None,
-            Message("there are more than [[most]] coordinates", most=MOST_COORDINATES),
-        )
+        return (control, least, None, Message("there are more than [[most]] coordinates", most=MOST_COORDINATES))
     if there is None:
         return control, least, None, "the description gives no values of all parameters"
     with ctx.workprec(BITS):

@@ -71,13 +71,3 @@ from mbsym.problems.stability.problem import (
     stability,
     with_verdict,
 )
-
-__all__ = [
-    "ExactVerdicts",
-    "Stability",
-    "SubsystemStability",
-    "because",
-    "parameter_values",
-    "stability",
-    "with_verdict",
-]

@@ -10,14 +10,14 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from typing import Any
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq, fmpz_poly
 
 from mbsym.algebra.factors import occurring
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.algebra.plane.elements import Element, ElementMatrix
+from mbsym.algebra.plane.elements import Element, ElementMatrix, SimpleField
 from mbsym.algebra.plane.numbers import AlgebraicNumber
-from mbsym.algebra.plane.point_field import SimpleField
 from mbsym.algebra.ring import ParameterRing, Polynomial, Ring
+from mbsym.algebra.terms import residue
 from mbsym.expressions.tree import divide, number
 from mbsym.mechanics.kinematics import Scene
 from mbsym.mechanics.motion import determined
@@ -52,22 +52,12 @@ class AlgebraicPoint:
     def value(self, p: Polynomial) -> Element:
         """p at the point."""
         top, bottom = self._put(p)
-        found = self._at(top)
+        found = residue(top, self._images, self._field.modulus)
         for factor, exponent in bottom:
-            inverse = self._field.inverse(self._at(factor))
+            inverse = self._field.inverse(residue(factor, self._images, self._field.modulus))
             for _ in range(exponent):
                 found = self._field.times(found, inverse)
         return Element(self._field, found)
-
-    def _at(self, p: Polynomial) -> Any:
-        total = fmpq_poly([0])
-        for powers, coefficient in p.to_dict().items():
-            term = fmpq_poly([fmpq(coefficient)])
-            for k, power in enumerate(powers):
-                for _ in range(int(power)):
-                    term = self._field.times(term, self._images[k])
-            total += term
-        return total
 
 
 def algebraic_point(

@@ -18,12 +18,10 @@ from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly_ctx, fmpq_poly, fmpz_poly
 
 from mbsym.algebra.factors import Polynomial
 from mbsym.algebra.failures import TooLargeError
-from mbsym.algebra.plane.fields import Extension, Over
+from mbsym.algebra.plane.fields import Extension, Over, Point
 from mbsym.algebra.plane.numbers import AlgebraicNumber, number, primitive, roots_between, sign
-from mbsym.algebra.plane.points import Point
 from mbsym.algebra.ring import Ring
 from mbsym.expressions.angles import linear_form
-from mbsym.expressions.message import Message
 from mbsym.model.system import System
 
 #: Of cos(pi/D), D is at most this.
@@ -59,11 +57,7 @@ class Constant:
             worst = 2 * axes[0] * axes[1] * int(self.number.polynomial.degree()) ** 2
             if worst > MOST_IN_A_PLANE:
                 raise TooLargeError(
-                    Message(
-                        "a resultant of degree up to [[worst]], more than [[most]]",
-                        worst=worst,
-                        most=MOST_IN_A_PLANE,
-                    )
+                    "a resultant of degree up to [[worst]], more than [[most]]", worst=worst, most=MOST_IN_A_PLANE
                 )
         return self._modulus(context).resultant(p, context.names()[-1])
 

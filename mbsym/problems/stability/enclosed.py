@@ -18,10 +18,8 @@ from flint import acb, acb_mat, arb, arb_mat, ctx
 from mbsym.algebra.matrices import components, leading_determinants
 from mbsym.algebra.roots import Root, enclosures
 from mbsym.problems.stability.linear_form import state_matrix
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact, implied
 from mbsym.problems.stability.verdict import Verdict, bounded, concluded, drifting, exactly, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Reason, Word, implied
 
 Rows = Sequence[Sequence[Any]]  # flint.arb; an entry known to vanish is exactly 0
 

@@ -16,7 +16,6 @@ from mbsym.algebra.matrices import Operators, leading_determinants, null_vectors
 from mbsym.algebra.roots import RootCount, counted, rational
 from mbsym.problems.stability import nonholonomic
 from mbsym.problems.stability.linear_form import LinearSystem, state_matrix
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.routh import (
     ENERGY_BESIDES,
     besides_cyclic,
@@ -25,7 +24,6 @@ from mbsym.problems.stability.routh import (
     momenta_are_constant,
     only_momenta,
 )
-from mbsym.problems.stability.theorems import Fact, Ground, implied
 from mbsym.problems.stability.verdict import (
     Flaw,
     Verdict,
@@ -40,7 +38,7 @@ from mbsym.problems.stability.verdict import (
     only_drifts,
     undecided,
 )
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, implied
 
 # Exactly linear equations: x' = A x is decided by A alone, at any numbers.
 #

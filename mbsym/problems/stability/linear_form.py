@@ -9,7 +9,7 @@ from typing import Any
 from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.matrices import dot
 from mbsym.problems.displacements import Basis
-from mbsym.problems.stability.theorems import Fact
+from mbsym.problems.stability.words import Fact
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,8 @@ from flint import acb_poly, arb, arb_mat, ctx
 
 from mbsym.algebra.roots import counted
 from mbsym.problems.stability.linear_form import NonholonomicForm, state_matrix
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, bounded, concluded, drifting, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Reason, Word
 
 #: What is concluded where roots are imaginary and simple.
 OPEN = (Reason(Because.IMAGINARY_NONHOLONOMIC), Reason(Because.HIGHER_ORDER))
@@ -80,12 +78,7 @@ def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
 
 
 def enclosed(
-    form: NonholonomicForm,
-    matrices: Sequence[Any],
-    zero_power: int,
-    bits: int,
-    even: bool = False,
-    exact: bool = False,
+    form: NonholonomicForm, matrices: Sequence[Any], zero_power: int, bits: int, even: bool = False, exact: bool = False
 ) -> Verdict:
     """The verdict with entries in balls, M, D, G, K, N.
 

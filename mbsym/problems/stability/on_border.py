@@ -14,6 +14,7 @@ from mbsym.algebra.characteristic import Matrix, Polynomial
 from mbsym.algebra.factors import irreducible_factors, occurring
 from mbsym.algebra.failures import Failure
 from mbsym.algebra.signs import ContradictionError, Signs
+from mbsym.algebra.terms import with_quotient
 from mbsym.problems.stability.linear_form import LinearSystem
 from mbsym.problems.stability.verdict import Verdict, depends, weakest
 
@@ -97,12 +98,4 @@ def _solved(
 
 def _put(x: Polynomial, k: int, slope: Polynomial, rest: Polynomial, power: int) -> Polynomial:
     """x times slope^power, with -rest/slope in place of the generator k."""
-    parts: dict[int, dict[tuple[int, ...], object]] = {}
-    for monomial, coefficient in x.terms():
-        exponents = list(map(int, monomial))
-        degree, exponents[k] = exponents[k], 0
-        parts.setdefault(degree, {})[tuple(exponents)] = coefficient
-    context, total = x.context(), x * 0
-    for degree, terms in parts.items():
-        total += context.from_dict(terms) * (-rest) ** degree * slope ** (power - degree)
-    return total
+    return with_quotient(x, k, -rest, slope, power)

@@ -40,12 +40,11 @@ from mbsym.problems.stability.algebraic_values import algebraic_point
 from mbsym.problems.stability.enclosed import Spectrum, enclosed_verdict_with_cyclic, from_characteristic, from_matrices
 from mbsym.problems.stability.exact import on_the_motion, verdict_at, verdict_over
 from mbsym.problems.stability.linear_form import LinearSystem, NonholonomicForm, null_rows
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import Cell, Lift, Requirement, cells_of, everywhere, joined
 from mbsym.problems.stability.sentences import named
 from mbsym.problems.stability.symbolic import Theory, analyse
 from mbsym.problems.stability.verdict import Verdict, combine, exactly, undecided
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 if TYPE_CHECKING:
     from mbsym.problems.reduction import Reduction
@@ -190,11 +189,7 @@ def with_verdict(found: Stability, verdict: Verdict) -> Stability:
 
 
 def stability(
-    scene: Scene,
-    balance: Balance,
-    linear: Linearisation,
-    equilibrium: Equilibrium,
-    signs: Signs,
+    scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
 ) -> Stability:
     """Judges every subsystem.
 
@@ -557,12 +552,7 @@ class ExactVerdicts:
     """The verdict at any exact parameter values; what does not depend on them is made once."""
 
     def __init__(
-        self,
-        scene: Scene,
-        balance: Balance,
-        linear: Linearisation,
-        equilibrium: Equilibrium,
-        signs: Signs,
+        self, scene: Scene, balance: Balance, linear: Linearisation, equilibrium: Equilibrium, signs: Signs
     ) -> None:
         self.scene, self.equilibrium, self.linear = scene, equilibrium, linear
         self.balance = balance
@@ -663,7 +653,7 @@ def _polynomial(
         common = ring.common_factor(common, x)
     if not common.is_zero() and not common.is_constant() and signs.sign(common) == "positive":
         scaled = [[[divmod(x, common)[0] for x in row] for row in matrix] for matrix in scaled]
-        factor = ring.reduce(ring.times(factor, ring.reciprocal(common)))
+        factor = ring.ratio(factor, common)
     made = [Matrix.of(ring, matrix) for matrix in scaled]
     return (made[0], made[1], made[2], made[3], made[4]), Formula(ring, factor)
 

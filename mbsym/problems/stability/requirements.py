@@ -19,9 +19,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.semialgebraic import EVERYTHING, NOTHING, Atom, ParameterSet, atom, where
 from mbsym.algebra.signs import MOST_TERMS, Condition, Signs
 from mbsym.expressions.message import Message
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.verdict import Verdict, combine, depends, undecided, unstable_inside, weakest
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 #: How labels are made of other labels: of a condition reversed, of one of several factors, of a part of a condition.
 REVERSED, OF_FACTOR, PART = "-([[label]])", "[[label]] of factor [[number]]", "[[label]], [[part]]"

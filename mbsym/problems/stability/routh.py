@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from mbsym.algebra.characteristic import Matrix, adjugate, determinant
 from mbsym.problems.stability.linear_form import LinearSystem, is_zero
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import Fact
 from mbsym.problems.stability.verdict import Verdict, concluded
+from mbsym.problems.stability.words import Because, Fact, Reason
 
 
 def only_momenta(system: LinearSystem) -> bool:
@@ -87,13 +86,7 @@ def momenta_are_constant(system: LinearSystem) -> bool:
 
 #: What Lagrange's theorem needs where K is that of ``besides_cyclic``.
 ENERGY_BESIDES = frozenset(
-    {
-        Fact.MASS_POSITIVE,
-        Fact.POTENTIAL,
-        Fact.STIFFNESS_POSITIVE,
-        Fact.DAMPING_SEMIDEFINITE,
-        Fact.ENERGY_NEVER_GROWS,
-    }
+    {Fact.MASS_POSITIVE, Fact.POTENTIAL, Fact.STIFFNESS_POSITIVE, Fact.DAMPING_SEMIDEFINITE, Fact.ENERGY_NEVER_GROWS}
 )
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from mbsym.expressions.message import Message, enumerated, joined
 from mbsym.formulas.formula import Formula
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Reason, Word
 
 HIGHER_ORDER = "Terms of higher order decide."
 
@@ -146,6 +145,12 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
     Because.COASTING: (
         "All coordinates of this part are cyclic: their momenta are constant, so their velocities stay near theirs; "
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
+    ),
+    Because.ALIKE: (
+        "Nothing acts, and for the kinetic energy all positions and directions are alike (constant curvature): "
+        "displacements that change no equation lead to every position near by, as cyclic coordinates do. Velocities, "
+        "measured by the kinetic energy, stay near theirs; positions drift away if they are disturbed, so that with "
+        "them counted the motion is unstable."
     ),
     Because.VELOCITIES: (
         "All coordinates of this part are cyclic, and the kinetic energy of a disturbance does not grow: velocities "

@@ -63,7 +63,6 @@ from mbsym.problems.stability.linear_form import (
     null_rows,
 )
 from mbsym.problems.stability.on_border import where_zero
-from mbsym.problems.stability.reasons import Because, Reason
 from mbsym.problems.stability.requirements import (
     BUT_TURNED,
     BUT_ZERO,
@@ -93,7 +92,6 @@ from mbsym.problems.stability.routh import (
     momenta_are_constant,
     only_momenta,
 )
-from mbsym.problems.stability.theorems import Fact, Ground, applying, implied
 from mbsym.problems.stability.verdict import (
     Flaw,
     Verdict,
@@ -107,7 +105,7 @@ from mbsym.problems.stability.verdict import (
     only_drifts,
     undecided,
 )
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Ground, Reason, Word, applying, implied
 
 #: More damped coordinates have too many principal minors.
 MOST_DAMPED = 4
@@ -489,8 +487,7 @@ def _requirements(
         if left_out:
             remarks.append(
                 Message(
-                    "Not written out, but in the coefficients, because of their length: [[labels]].",
-                    labels=left_out,
+                    "Not written out, but in the coefficients, because of their length: [[labels]].", labels=left_out
                 )
             )
         requirements += reduced if even else _without_implied(_spared(reduced, len(p) - 1), known)
@@ -694,10 +691,7 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
         nonsingular = differs("det K", stiff[-1].polynomial, known)
         complete = facts | {Fact.DAMPING_POSITIVE}
         destroyed = complete | {Fact.STIFFNESS_NEGATIVE_SOMEWHERE, Fact.STIFFNESS_NONSINGULAR}
-        return (
-            Case(stiff, (), concluded(complete | minimum)),
-            Case((nonsingular,), negative, concluded(destroyed)),
-        )
+        return (Case(stiff, (), concluded(complete | minimum)), Case((nonsingular,), negative, concluded(destroyed)))
     if is_potential(system):
         growing = concluded({Fact.ROOT_RIGHT}, Reason(Because.REAL_ROOT))
         return Case(stiff, (), _conservative(minimum)), Case((), negative, growing)

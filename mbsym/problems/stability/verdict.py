@@ -29,19 +29,20 @@ from enum import Enum, auto
 from mbsym.expressions.message import joined
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability import sentences
-from mbsym.problems.stability.reasons import Because, Reason
-from mbsym.problems.stability.theorems import (
+from mbsym.problems.stability.words import (
     LAGRANGE,
     LINEAR,
     MALKIN,
     ROUTH,
+    Because,
     Fact,
     Ground,
+    Reason,
+    Word,
     applying,
     implied,
     reason_of,
 )
-from mbsym.problems.stability.word import Word
 
 
 class Flaw(Enum):
@@ -271,6 +272,25 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
     return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
 
 
+class Extremum(Enum):
+    """What is proved of a stationary point of the potential energy."""
+
+    MINIMUM = "strict minimum"
+    NONE = "no minimum"
+    OPEN = "open"
+
+
+def by_extremum(order: int, extremum: Extremum, conserved: bool) -> Verdict | None:
+    """The verdict by what terms of this order make of V, where the energy does not grow; ``conserved``: nor fall."""
+    if extremum is Extremum.MINIMUM:
+        facts = {Fact.MINIMUM_OF_HIGHER_ORDER, Fact.ENERGY_NEVER_GROWS}
+        return concluded(facts, Reason(Because.HIGHER_MINIMUM, (order,)))
+    if extremum is Extremum.NONE and conserved:
+        facts = {Fact.NO_MINIMUM_IN_LOWEST_FORM, Fact.NO_OTHER_FORCES, Fact.ENERGY_CONSERVED}
+        return concluded(facts, Reason(Because.NO_MINIMUM, (order,)))
+    return None
+
+
 def bounded(shown: Set[Fact], *reasons: Reason) -> Verdict:
     """The verdict where the first approximation is stable; ``reasons`` say what that leaves open.
 
@@ -392,10 +412,15 @@ def off_the_leaf(verdict: Verdict) -> Verdict:
     return Verdict(row.word, names, reasons, tuple(grounds.items()), flaws)
 
 
-def coasting() -> Verdict:
-    """All coordinates are cyclic and nothing acts on them: M q'' = 0."""
+def coasting(because: Because = Because.COASTING) -> Verdict:
+    """All coordinates are cyclic and nothing acts on them: M q'' = 0; or so it is in other coordinates (ALIKE)."""
     every = tuple((ground, ()) for ground in Ground if ground is not Ground.LINEAR)
-    return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(Because.COASTING),), every, frozenset({Flaw.CYCLIC}))
+    return Verdict(Word.STABLE_BUT_CYCLIC, (), (Reason(because),), every, frozenset({Flaw.CYCLIC}))
+
+
+def by_geodesics() -> Verdict:
+    """The verdict on a rest where nothing acts at all, and positions are not shown to be alike."""
+    return concluded({Fact.POTENTIAL_CONSTANT, Fact.NOT_GYROSCOPIC, Fact.ENERGY_CONSERVED})
 
 
 def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:

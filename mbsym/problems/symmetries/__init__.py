@@ -31,13 +31,4 @@ Example:
     [('psi', 'momentum of psi'), ('time', 'generalised energy')]
 """
 
-from mbsym.problems.symmetries.search import (
-    Blocks,
-    Gradients,
-    Symmetries,
-    Symmetry,
-    blocks,
-    symmetries,
-)
-
-__all__ = ["Blocks", "Gradients", "Symmetries", "Symmetry", "blocks", "symmetries"]
+from mbsym.problems.symmetries.search import Blocks, Gradients, Symmetries, Symmetry, blocks, symmetries

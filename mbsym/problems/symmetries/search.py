@@ -27,7 +27,7 @@ from mbsym.model.system import System
 from mbsym.problems import integrals
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.in_speeds.speed_integrals import Field
+from mbsym.problems.in_speeds import Field
 from mbsym.problems.integrals import Integral
 from mbsym.problems.polynomial_integrals.modular import PRIMES, null_space
 from mbsym.problems.polynomial_integrals.result import FUNCTION
@@ -184,9 +184,7 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     unknowns = _unknowns(blocks)
     if len(unknowns) > MOST_UNKNOWNS:
         message = Message(
-            "a field of degree one has [[count]] constants, more than [[most]]",
-            count=len(unknowns),
-            most=MOST_UNKNOWNS,
+            "a field of degree one has [[count]] constants, more than [[most]]", count=len(unknowns), most=MOST_UNKNOWNS
         )
         raise NoClosedForm(message, limit=Limit.WORK)
     bound = _bound(system, blocks, unknowns)

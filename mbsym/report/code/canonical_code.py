@@ -18,7 +18,7 @@ from mbsym.report.code.programs import programs_of
 
 if TYPE_CHECKING:
     from mbsym.analysis import Analysis
-    from mbsym.problems.canonical.canonical import Hamilton, Routh
+    from mbsym.problems.canonical import Hamilton, Routh
 
 
 @dataclass(frozen=True)

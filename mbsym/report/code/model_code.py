@@ -32,7 +32,16 @@ from mbsym.mechanics.programs import (
 )
 from mbsym.mechanics.variables import program_environment
 from mbsym.model.system import INERTIAL, acceleration_name
-from mbsym.problems.integrals import ENERGY, GYROSCOPIC, WITH_FORCES, Integral, identifiers, whole_momenta
+from mbsym.problems.integrals import (
+    ENERGY,
+    GYROSCOPIC,
+    OF_A_PART,
+    WITH_FORCES,
+    WITH_IMPULSE,
+    Integral,
+    identifiers,
+    whole_momenta,
+)
 from mbsym.report.code import programs as open_trees
 from mbsym.report.code.named_dynamics import NamedDynamics, named_dynamics
 
@@ -210,7 +219,7 @@ def first_integrals(analysis: Analysis, problems: Sequence[int]) -> Integrals:
                 carry = Carrier(analysis.ring, code.program, dict(code.environment))
                 lagrangian[key] = carry(item.formula.polynomial)
     for item, key in zip(integrals, keys, strict=True):
-        if item.kind in (WITH_FORCES, GYROSCOPIC):
+        if item.kind in (WITH_FORCES, OF_A_PART, GYROSCOPIC, WITH_IMPULSE):
             carry = Carrier(analysis.ring, code.program, dict(code.environment))
             lagrangian[key] = carry(item.formula.polynomial)
     if all(key in lagrangian for key in keys):

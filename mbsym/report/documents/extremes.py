@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from msgspec import UNSET, UnsetType
 
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.documents.base import From, Head, Part, words
 from mbsym.report.documents.parts import TheoremName
 

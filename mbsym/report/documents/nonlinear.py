@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from mbsym.problems.normal_forms.result import Outcome, Theorem, Why
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.documents.base import Format, From, Part, told_apart_by, words
 
 NUMBER = "a number: exactly where it is rational, else an enclosure, [mid +/- radius]"

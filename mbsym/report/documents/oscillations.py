@@ -6,7 +6,7 @@ from typing import Annotated
 
 from msgspec import UNSET, UnsetType, field
 
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.result import Amplitude
 from mbsym.report.documents.base import ASIDE, Format, From, Part, SystemName, Version, told_apart_by, version
 
 
@@ -69,7 +69,7 @@ class LeftOut(Part, frozen=True):
 
 class Error(Part, frozen=True):
     variable: Annotated[str, "name"]
-    errors: Annotated[list[float], "the largest at each part"]
+    errors: Annotated[list[float | None], "the largest at each part; null where there is no motion"]
     order: Annotated[float | None, "log2 of the ratio of the last two that rounding leaves; null: there are none"]
 
 
@@ -80,6 +80,9 @@ class Measured(Part, frozen=True):
     small: Annotated[float | UnsetType, "the small parameter by the description's numbers"] = UNSET
     time: Annotated[float | UnsetType, "the period at the last part"] = UNSET
     parts: Annotated[list[str] | UnsetType, "parts of it at which errors were measured"] = UNSET
+    relative: Annotated[
+        list[float | None] | UnsetType, "at each part, the largest error as a part of the largest value of its variable"
+    ] = UNSET
     errors: Annotated[list[Error] | UnsetType, "by variable, in scaled variables", told_apart_by("variable")] = UNSET
 
 

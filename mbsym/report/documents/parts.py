@@ -7,9 +7,7 @@ from typing import Annotated, Any
 from flint import fmpq
 from msgspec import Meta
 
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import THEOREMS, HigherOrder
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import THEOREMS, Because, HigherOrder, Word
 from mbsym.report.documents.base import ASIDE, SHA256, From, Named, Part, Write, or_null, words
 
 

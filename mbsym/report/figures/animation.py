@@ -15,7 +15,6 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from mbsym.algebra.failures import Failure
-from mbsym.expressions.message import Message
 from mbsym.model.quantities import time_unit, with_unit
 from mbsym.picture.sketch import Dot, Film, Ink, Mark, Place
 from mbsym.report.viewer.motion import moving_picture
@@ -69,12 +68,10 @@ def animation_mp4(run: Simulation) -> bytes:
             frames = b"".join(drawn.frame(k).tobytes() for k in drawn.marks)
             done = subprocess.run(words, input=frames, capture_output=True, check=False)
         except OSError as error:
-            raise Failure(Message("ffmpeg cannot be run: [[why]]", why=error.strerror or str(error))) from error
+            raise Failure("ffmpeg cannot be run: [[why]]", why=error.strerror or str(error)) from error
         if done.returncode != 0 or not path.is_file():
             last = done.stderr.decode(errors="replace").strip().splitlines()[-1:]
-            raise Failure(
-                Message("ffmpeg made no video: [[why]]", why=" ".join(last) or f"exit code {done.returncode}")
-            )
+            raise Failure("ffmpeg made no video: [[why]]", why=" ".join(last) or f"exit code {done.returncode}")
         return path.read_bytes()
 
 
@@ -86,7 +83,7 @@ def _picture(run: Simulation, most: int) -> _Picture:
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     drawn = _Picture(film, [int(k) for k in chosen], run)
     if not drawn.size > 0:
-        raise Failure(Message("no body has a place that could be drawn"))
+        raise Failure("no body has a place that could be drawn")
     return drawn
 
 

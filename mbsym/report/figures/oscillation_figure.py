@@ -12,7 +12,7 @@ from mbsym.expressions.message import Message
 from mbsym.formulas.latex import LatexNames
 from mbsym.model.quantities import time_unit, unit_of
 from mbsym.model.system import System
-from mbsym.problems.small_parameter.oscillation_result import Oscillation
+from mbsym.problems.small_parameter.result import Oscillation
 from mbsym.report.figures.drawing import BLUE, RED, pictures
 from mbsym.report.language import Language
 from mbsym.report.unit_text import labelled

@@ -16,7 +16,7 @@ from mbsym.formulas.latex import LatexNames
 from mbsym.maps.mapping import float_of
 from mbsym.model.quantities import unit_of
 from mbsym.model.system import System
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.figures.drawing import named
 from mbsym.report.maps.words import rational_text
 from mbsym.report.unit_text import labelled

@@ -19,7 +19,7 @@ from mbsym.maps.result import Cell, Counted, Lack, Map, Of, Shape
 from mbsym.maps.soft_borders import Onset
 from mbsym.maps.verdicts import Judged
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.content import exact
 
 #: Of several conditions that vanish on one curve, the first says most about it.
@@ -28,6 +28,7 @@ _TELLING = (
     Origin.MEETING,
     *(Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.UNDEFINED, Origin.MASS, Origin.LEADING),
     *(Origin.DAMPING, Origin.UNDAMPED, Origin.POTENTIAL, Origin.NOT_GYROSCOPIC, Origin.CYCLIC, Origin.ENERGY),
+    Origin.HIGHER_ORDER,
     *(Origin.SINGULAR, Origin.LEAVING),
 )
 
@@ -46,6 +47,7 @@ _CONDITIONS = {
     Origin.NOT_GYROSCOPIC: "no gyroscopic forces: G = 0",
     Origin.CYCLIC: "cyclic coordinates set free",
     Origin.ENERGY: "sign that the energy depends on",
+    Origin.HIGHER_ORDER: "first term of the potential energy",
     Origin.ASSUMPTION: "assumption",
     Origin.SIGN: "declared sign",
     Origin.INERTIA: "triangle inequality",

@@ -30,7 +30,7 @@ from mbsym.report.content import (
 from mbsym.report.results import no_result
 
 if TYPE_CHECKING:
-    from mbsym.problems.canonical.canonical import Brackets, Hamilton, Routh
+    from mbsym.problems.canonical import Brackets, Hamilton, Routh
     from mbsym.report.results import Results
 
 

@@ -23,11 +23,10 @@ from mbsym.problems.stability import Stability
 from mbsym.problems.stability.enclosed import RootNumbers, numbers
 from mbsym.problems.stability.linear_form import CONSERVATIVE
 from mbsym.problems.stability.problem import SubsystemStability
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.requirements import OF_FACTOR, PART, REVERSED, Place
 from mbsym.problems.stability.sentences import sentence
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.conditions import (
     CaseStatement,
     Shown,

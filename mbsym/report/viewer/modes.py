@@ -91,10 +91,10 @@ def modes(analysis: Analysis) -> Modes:
     linear, scene = analysis.judgeable, analysis.parameters_scene
     values = parameter_values(scene, analysis.equilibrium)
     if values is None or stability.numerical is None:
-        raise NoClosedForm(Message("not all parameters have values, so that no mode has numbers"))
+        raise NoClosedForm("not all parameters have values, so that no mode has numbers")
     if not stability.spectra:
         reasons = [sentence(reason) for reason in stability.numerical.reasons] or [worded(stability.numerical.word)]
-        raise NoClosedForm(Message("at these values there are none: [[why]]", why=joined(reasons, " ")))
+        raise NoClosedForm("at these values there are none: [[why]]", why=joined(reasons, " "))
     listed: list[Mode] = []
     for part in stability.spectra:
         blocks = [_floats(rows) for rows in matrices_at(scene, linear, part.coordinates, values)]

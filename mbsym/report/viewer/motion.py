@@ -70,7 +70,7 @@ def motion(
 def moving_picture(run: Simulation) -> tuple[Picture, Motion]:
     """A run with the system that moves in it.  Raises Failure with why there is nothing to be seen."""
     if len(run.times) < 2:
-        raise Failure(Message("the run ended where it began"))
+        raise Failure("the run ended where it began")
     return picture_at(Start(_drawn(run))), motion_of(run)
 
 
@@ -120,7 +120,7 @@ def _unwound(dynamics: StateDynamics, states: Any) -> Any:
     """The coordinates of states, without jumps of whole turns, which would be seen between frames."""
     rows = in_coordinates(dynamics, states)
     if rows is None:
-        raise Failure(Message("the coordinates do not follow from the declared variables"))
+        raise Failure("the coordinates do not follow from the declared variables")
     return np.unwrap(rows, axis=1)
 
 

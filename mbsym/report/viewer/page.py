@@ -26,9 +26,8 @@ from mbsym.model.system import System, rational, with_values
 from mbsym.picture.build import picture
 from mbsym.picture.encode import as_json, number
 from mbsym.problems.relative_equilibria.equilibria import CoordinateValue
-from mbsym.problems.stability.theorems import THEOREMS
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import THEOREMS, Word
 from mbsym.report.documents import parts
 from mbsym.report.documents.base import plain
 from mbsym.report.html.environment import embedded, hash_of

@@ -15,7 +15,7 @@ from mbsym.problems.claims.counterexample import THE_MOTION, Counterexample
 from mbsym.problems.claims.result import ENTRY
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.content import Inline, Name, Number, Phrase, Relation, Said, Strong, joined, say
 from mbsym.report.plain_writer import Writer
 

@@ -25,6 +25,8 @@ NO_NUMBERS = "the description does not give all numbers and an initial state"
 DIVIDED = "a denominator vanishes at the given numbers"
 #: How far below the expected order a measured one may be.
 SLACK = 0.25
+#: A series is called valid where its error is no larger part of what it stands for.
+VALID = 0.01
 #: A distance from the averaged motion, as a part of its size, that has to shrink as expected at once.
 FAR = 0.5
 #: One that shrinks faster than expected from so far on was none of an averaged motion.

@@ -10,7 +10,7 @@ from flint import arb
 
 from mbsym.expressions.message import worded
 from mbsym.problems.normal_forms import Focus, InSymbols, Judged, NormalForms, Outcome, Theorem, Why
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.content import Gaps, Math, Notation, Number, Relation, Said, named, say
 
 #: Digits of enclosed numbers.

@@ -10,7 +10,7 @@ from mbsym.algebra.tower import Element
 from mbsym.expressions.message import worded
 from mbsym.expressions.rates import without_velocity
 from mbsym.formulas.formula import Formula
-from mbsym.problems.small_parameter.oscillation_result import Amplitude, Harmonics
+from mbsym.problems.small_parameter.result import Amplitude, Harmonics
 from mbsym.report.content import (
     Definitions,
     Gaps,
@@ -25,7 +25,7 @@ from mbsym.report.content import (
     named,
     say,
 )
-from mbsym.report.words.expansion_measured import SLACK
+from mbsym.report.words.expansion_measured import SLACK, VALID
 from mbsym.report.words.expansion_words import Coefficient, Sums, scaled, summed
 
 if TYPE_CHECKING:
@@ -105,6 +105,17 @@ _MEASURED = (
 _ROUNDING = (
     "Measured at the given numbers, over one period, against motions that begin in the same state: with [[small]] = "
     "[[to]] the errors of [[names]] are no more than rounding."
+)
+_VALID = (
+    "Over one period it stays within [[error]] of each variable's largest value with [[small]] = [[given]], as given."
+)
+_VALID_UP_TO = (
+    "Over one period it stays within 1 % of each variable's largest value up to [[small]] = [[bound]], of the values "
+    "that were tried, not with [[given]], as given."
+)
+_NOWHERE_VALID = (
+    "Over one period it is not within 1 % of each variable's largest value with any [[small]] that was tried, from "
+    "[[given]], as given, down to [[bound]]."
 )
 _EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
 _TOO_SLOW = (
@@ -259,6 +270,12 @@ def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Ite
     values: Gaps = {"small": Name(told.found.small), "expected": str(expected)}
     rows = tuple(zip(measured.names, measured.orders, measured.halved, strict=True))
     at = [f"{measured.small * float(part):.3g}" for part in measured.parts]
+    within = next((k for k, error in enumerate(measured.relative) if error <= VALID), None)
+    if within == 0:
+        yield say(_VALID, **values, given=at[0], error=_percent(measured.relative[0]))
+    else:
+        sentence, bound = (_NOWHERE_VALID, at[-1]) if within is None else (_VALID_UP_TO, at[within])
+        yield say(sentence, **values, given=at[0], bound=bound)
     if rounding := tuple(name for name, order, _ in rows if order is None):
         yield say(_ROUNDING, **values, to=at[-1], names=named(rounding))
     for place in sorted({k for _, order, k in rows if order is not None}):
@@ -271,6 +288,12 @@ def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Ite
     late = [name for name, order, _ in rows if order is not None and order < expected - SLACK]
     if late:
         yield say(_TOO_SLOW, **values, names=named(late))
+
+
+def _percent(part: float) -> str:
+    """A part of a whole in per cent, rounded up to two digits."""
+    shown = float(f"{part * 100:.1e}")
+    return f"{shown if shown >= part * 100 else float(f'{part * 105:.1e}'):g} %"
 
 
 def of_no_oscillation(small: str, reason: str) -> Iterator[Said]:

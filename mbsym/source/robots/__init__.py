@@ -1,5 +1,3 @@
 """Robots that somebody described for a simulator, URDF and MJCF, as descriptions."""
 
 from mbsym.source.robots.convert import Converted, convert, is_robot
-
-__all__ = ["Converted", "convert", "is_robot"]

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from decimal import Decimal
 from fractions import Fraction
 
 from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Complaints
-from mbsym.source.robots.geoms import checked, is_solid, matter_of, shape_of, weighs
-from mbsym.source.robots.orientation import TURNING, Angles, orientation
+from mbsym.model.admissibility import ROUNDING, inertia_violation
+from mbsym.source.robots.geoms import TURNING, Angles, checked, is_solid, matter_of, orientation, shape_of, weighs
 from mbsym.source.robots.reader import (
     NOWHERE,
     Element,
@@ -26,7 +27,7 @@ from mbsym.source.robots.reader import (
     number,
     words_of,
 )
-from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Robot, Turns, ties
+from mbsym.source.robots.robot import GROUND, Inertial, Joint, Link, Moments, Robot, Turns, ties
 
 _KINDS = {"hinge": "turn", "slide": "slide", "ball": "ball", "free": "free"}
 
@@ -254,7 +255,8 @@ class _Bodies:
         self.site_links: dict[str, str] = {}
         self.world_frames: set[str] = {GROUND}
         self.bodies = {element.get("name") for element in inside if element.tag == "body"}
-        for key in ("balanceinertia", "boundmass", "boundinertia"):
+        self.balanced = compiler.get("balanceinertia", "false") == "true"
+        for key in ("boundmass", "boundinertia"):
             if compiler.get(key, "0") not in ("0", "false", "-1"):
                 reader.leave_out(f"setting of the compiler ({key})")
         if compiler.get("coordinate", "local") != "local":
@@ -470,13 +472,26 @@ class _Bodies:
         if element.get("fullinertia") and turned_besides:
             message = f"<inertial> has 'fullinertia' and '{turned_besides[0]}'"
             reader.error("conflicting-keys", message, element, "'fullinertia' is in the axes of the body")
+        xx = yy = zz = xy = xz = yz = "0"
         if element.get("fullinertia"):
             xx, yy, zz, xy, xz, yz = reader.numbers(element, "fullinertia", 6)
-            return Inertial(mass, place, turned, (xx, xy, xz, yy, yz, zz))
-        if element.get("diaginertia"):
+        elif element.get("diaginertia"):
             xx, yy, zz = reader.three(element, "diaginertia")
-            return Inertial(mass, place, turned, (xx, "0", "0", yy, "0", zz))
-        return Inertial(mass, place, turned)
+        return Inertial(mass, place, turned, self.of_a_body((xx, xy, xz, yy, yz, zz), element))
+
+    def of_a_body(self, tensor: Moments, element: Element) -> Moments:
+        """A tensor that a body may have, but for rounding; with 'balanceinertia' equal moments in place of others."""
+        xx, xy, xz, yy, yz, zz = map(Fraction, tensor)
+        why = inertia_violation(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)), ROUNDING)
+        if why is None:
+            return tensor
+        if self.balanced:
+            trace = xx + yy + zz
+            mean = number(str(Decimal(trace.numerator) / Decimal(3 * trace.denominator)))
+            return (mean, "0", "0", mean, "0", mean)
+        hint = 'MuJoCo refuses it, too; with <compiler balanceinertia="true"/> the mean of its moments is taken'
+        self.reader.error("impossible-inertia", why, element, hint)
+        return tensor
 
 
 class Defaults:

@@ -16,6 +16,9 @@ from mbsym.source.robots.reader import NOWHERE, Element, Reader, Texts, angle, n
 #: (axis, angle) of the turns that lead from one set of axes to another.
 Turns = tuple[tuple[int, str], ...]
 
+#: xx, xy, xz, yy, yz, zz.
+Moments = tuple[str, str, str, str, str, str]
+
 #: The link on which the first one stands.
 GROUND = "0"
 
@@ -27,7 +30,7 @@ class Inertial:
     mass: str
     centre: Texts = NOWHERE
     turned: Turns = ()
-    tensor: tuple[str, str, str, str, str, str] = ("0",) * 6
+    tensor: Moments = ("0",) * 6
 
 
 @dataclass(frozen=True, slots=True)

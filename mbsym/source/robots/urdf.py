@@ -20,6 +20,7 @@ from mbsym.source.robots.reader import (
     Texts,
     check_spelling,
     is_nonnegative,
+    is_of_a_body,
     number,
     words_of,
 )
@@ -285,6 +286,8 @@ def _inertial(element: Element, reader: Reader) -> Inertial:
     if not is_nonnegative(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
         reader.leave_out("tensor of inertia with which a kinetic energy could be negative")
         xx = xy = xz = yy = yz = zz = "0"
+    elif not is_of_a_body(*map(Fraction, (xx, xy, xz, yy, yz, zz))):
+        reader.leave_out("the triangle inequality of a tensor of inertia (no body has it; it is taken as it stands)")
     if mass is None:
         reader.error("missing-key", "this <inertial> has no <mass>", element)
     amount = "0" if mass is None else reader.number(mass, "value", None)

@@ -2,5 +2,3 @@
 
 from mbsym.source.units.reading import read_units
 from mbsym.source.units.system import checked_units
-
-__all__ = ["checked_units", "read_units"]

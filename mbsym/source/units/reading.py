@@ -177,10 +177,7 @@ def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -
                 else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
             )
             reading.error(
-                "bad-unit",
-                Message("[[what]] is no unit: [[reason]]", what=ascii_safe(one.text), reason=reason),
-                one.span,
-                hint,
+                "bad-unit", "[[what]] is no unit: [[reason]]", one.span, hint, what=ascii_safe(one.text), reason=reason
             )
     return tuple(found.values())
 

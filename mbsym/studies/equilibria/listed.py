@@ -16,7 +16,7 @@ from mbsym.problems.relative_equilibria.equilibria import (
     RelativeEquilibrium,
 )
 from mbsym.problems.relative_equilibria.permanent_rotations import PermanentRotations
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.content import (
     Block,
     Graded,

@@ -229,7 +229,11 @@ def _of_cells(found: Map) -> list[str]:
         told = [Message(text, **gaps)]
     origins = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
     if all(condition.origin in origins for conditions in found.boundaries.conditions for condition in conditions):
-        told.append(Message("no condition of stability depends on the axes"))
+        open_ = any(region.word is not None and region.word.open for region in found.regions)
+        text = "no condition of stability depends on the axes"
+        if open_:
+            text = "no condition of the first approximation depends on the axes; terms of higher order may"
+        told.append(Message(text))
     if not any(region.judged is not None for region in found.regions):
         told.append(Message("no verdict anywhere: map.json says at every point what is not kept there"))
     vanishing = dict.fromkeys(condition_words(condition, found) for condition in found.boundaries.vanishing)

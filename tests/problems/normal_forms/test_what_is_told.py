@@ -188,6 +188,19 @@ def test_what_parameters_of_their_signs_cannot_make_zero_is_not_told_to_vanish()
     assert "it vanishes where" in told_of(quartic.replace("SIGN", "real"))
 
 
+def test_a_resonance_is_one_of_real_frequencies():
+    """x'' = 2 g y' + a^2 x, y'' = -2 g x' + a^2 y: frequencies g +- sqrt(g^2 - a^2).
+
+    They are 1:2 at 9 a^2 = 8 g^2, 1:3 at 4 a^2 = 3 g^2.  Of ratios -1:2, which are none, it would be a^2 + 8 g^2.
+    """
+    text = SPRINGS.replace("x**2*y", "x**4 + x**2*y").replace("x**2/2 + y**2", "-a**2*(x**2 + y**2)/2")
+    text = text.replace("bodies:", "parameters: {a: real, g: real}\nbodies:")
+    text = text.replace("loads:\n", "loads:\n  - {generalized force: {x: 2*g*y_dot, y: -2*g*x_dot}}\n")
+    vanishing = mbsym.loads(text, (11,)).normal_forms.in_symbols.vanishing
+    told = {ratio: str(formula) for ratio, formula in vanishing.resonances}
+    assert told == {(1, 2): "9*a**2 - 8*g**2", (1, 3): "4*a**2 - 3*g**2"}
+
+
 DRIVEN = """
 mbsym: 1
 name: an oscillator and one that is damped

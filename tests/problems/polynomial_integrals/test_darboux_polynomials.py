@@ -22,8 +22,7 @@ from mbsym.problems.polynomial_integrals import (
     polynomial_integrals,
 )
 from mbsym.problems.polynomial_integrals.darboux import rest_means
-from mbsym.problems.polynomial_integrals.lifting import lifted
-from mbsym.problems.polynomial_integrals.modular import PRIMES
+from mbsym.problems.polynomial_integrals.modular import PRIMES, lifted
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 

@@ -11,6 +11,7 @@ import operator
 from fractions import Fraction
 from math import comb
 
+import numpy as np
 import pytest
 from conftest import SHIPPED, reference
 from msgspec import UNSET
@@ -20,11 +21,11 @@ from mbsym.algebra.failures import NoClosedForm
 from mbsym.analysis.oscillating import oscillating
 from mbsym.problems.small_parameter.checks import oscillation_orders
 from mbsym.problems.small_parameter.lindstedt import NotPeriodic, Resonance
-from mbsym.problems.small_parameter.oscillation_result import Amplitude
+from mbsym.problems.small_parameter.result import Amplitude
 from mbsym.report.oscillation_json import oscillation_data
 from mbsym.report.plain_writer import Writer
-from mbsym.report.words.oscillation_words import numerator, sentences
-from mbsym.simulation.oscillating import measured_orders
+from mbsym.report.words.oscillation_words import measured_sentences, numerator, sentences
+from mbsym.simulation.oscillating import ROWS, measured_orders
 
 POINT = """mbsym: 1
 name: A point
@@ -243,6 +244,32 @@ def test_a_pendulum_about_its_rest_by_its_amplitude(tmp_path):
     measured = measured_orders(analysis.system, oscillating(analysis, 2))
     assert measured.simulated
     assert all(order > 2.9 for order in measured.orders)
+
+
+@pytest.mark.parametrize(("size", "within"), [("1/4", True), ("2", False)])
+def test_how_far_duffings_series_is_from_the_motion_with_eps_as_it_is_given(tmp_path, size, within):
+    """x = a cos T + eps a^3 (cos 3T - cos T)/32, T' = 1 + 3 eps a^2/8, beside another method for the motion."""
+    from scipy.integrate import solve_ivp
+
+    more = f"values: {{w: 1, k: 0, eps: 1}}\ninitial: {{x: {{position: {size}, velocity: 0}}}}\n"
+    analysis = point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"], more=more)
+    told = oscillating(analysis, 1)
+    measured = measured_orders(analysis.system, told)
+    a, rate = float(Fraction(size)), 1 + 3 * float(Fraction(size)) ** 2 / 8
+    times = np.linspace(0, 2 * np.pi / rate, ROWS + 1)[1:]
+    motion = solve_ivp(
+        lambda t, y: (y[1], -y[0] - y[0] ** 3), (0, times[-1]), (a, 0), "DOP853", times, rtol=1e-12, atol=1e-14
+    )
+    phase = rate * times
+    series = a * np.cos(phase) + a**3 * (np.cos(3 * phase) - np.cos(phase)) / 32
+    speed = -rate * a * np.sin(phase) + a**3 * (np.sin(phase) - 3 * np.sin(3 * phase)) / 32  # to the order eps
+    pairs = (series, motion.y[0]), (speed, motion.y[1])
+    expected = max(np.abs(x - y).max() / np.abs(x).max() for x, y in pairs)
+    assert measured.relative[0] == pytest.approx(expected, rel=0.02)
+    assert bool(expected < 0.01) is within
+    first = Writer().said(next(iter(measured_sentences(told, measured))))
+    assert ("with eps = 1, as given" in first) is within
+    assert ("up to eps = " in first) is not within
 
 
 GYROSTAT = reference("gyrostat-oscillation")

@@ -19,7 +19,7 @@ from mbsym.analysis.expanding import expansion
 from mbsym.problems.small_parameter import slow
 from mbsym.problems.small_parameter.checks import residual_orders
 from mbsym.problems.small_parameter.result import Outcome, scaled
-from mbsym.problems.small_parameter.steady import steady_states
+from mbsym.problems.small_parameter.slow import steady_states
 from mbsym.report.words.expansion_words import sentences
 
 REFERENCE = reference("satellite-with-damper-slow")

@@ -14,7 +14,7 @@ from mbsym.algebra.polynomial_field import PolynomialField
 from mbsym.analysis.expanding import expansion
 from mbsym.formulas.formula import Formula
 from mbsym.problems.small_parameter.result import Choice, Outcome, scaled
-from mbsym.problems.small_parameter.root import adjoined, roots
+from mbsym.problems.small_parameter.slow import adjoined, roots
 from mbsym.simulation.expanded import measured
 
 #: eps m z'' = m g - c (1 + z/h) z'^2: a light ball in a fluid that grows denser.

@@ -15,7 +15,7 @@ from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability import Stability
 from mbsym.problems.stability.bundle import NumberField, definite_combination
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 RATIONALS = NumberField(fmpq_poly([0, 1]), lambda element: arb(element[0]))
 INTEGRALS = "Chetaev's combination of integrals"

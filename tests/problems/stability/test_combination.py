@@ -20,9 +20,8 @@ from properties import settings
 import mbsym
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.theorems import Ground
 from mbsym.problems.stability.verdict import LAW, PLAIN, Flaw, Verdict, coasting, combine, row_of
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Ground, Word
 
 CASES = Path(__file__).parents[2] / "cases" / "statements"
 

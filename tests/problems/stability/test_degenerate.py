@@ -11,7 +11,7 @@ import mbsym
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 BLOCK = """
 mbsym: 1
@@ -118,11 +118,18 @@ motion: {a: 0}
 @pytest.mark.parametrize(
     ("position", "coordinates", "loads", "word"),
     [
-        # T = (1 + x^2) x'^2/2 keeps its value: |x'| stays away from zero.
-        ("[x, x**2/2, 0]", "x: 0", "", Word.UNSTABLE),
-        # Geodesics of a surface, and straight lines in polar coordinates, leave every small circle.
+        # One coordinate is a function of the length of its path, straight lines know no polar coordinates, a cone is
+        # cut open, and on a sphere all places are alike: the same words as of x'' = 0.
+        ("[x, x**2/2, 0]", "x: 0", "", Word.STABLE_BUT_CYCLIC),
+        ("[r*cos(a), r*sin(a), 0]", "r: 1, a: 0", "", Word.STABLE_BUT_CYCLIC),
+        ("[x, y + x**2, 0]", "x: 0, y: 0", "", Word.STABLE_BUT_CYCLIC),
+        ("[r*cos(a), r*sin(a), 2*r]", "r: 1, a: 0", "", Word.STABLE_BUT_CYCLIC),
+        ("[cos(b)*cos(a), cos(b)*sin(a), sin(b)]", "a: 0, b: 0", "", Word.STABLE_BUT_CYCLIC),
+        ("[r*cos(b)*cos(a), r*cos(b)*sin(a), r*sin(b)]", "a: 0, b: 0, r: 1", "", Word.STABLE_BUT_CYCLIC),
+        # Geodesics of a surface whose places differ, and of a sphere beside a line, leave every small circle.
         ("[x, y, x**2/2 + y**2 + x**2*y/2]", "x: 0, y: 0", "", Word.UNSTABLE),
-        ("[r*cos(a), r*sin(a), 0]", "r: 1, a: 0", "", Word.UNSTABLE),
+        ("[(2 + cos(b))*cos(a), (2 + cos(b))*sin(a), sin(b)]", "a: 0, b: 0", "", Word.UNSTABLE),
+        ("[2*cos(b)*cos(a), cos(b)*sin(a), sin(b)]", "a: 0, b: 0", "", Word.UNSTABLE),
         # x'' = y', y'' = -x' but for terms of third order: circles of radius |v| about places near by.
         ("[x, y, x*y]", "x: 0, y: 0", "generalized force: {x: y_dot, y: -x_dot}", None),
         # Friction stops it near by: x'' (1 + x^2) + x x'^2 = -x'.
@@ -143,3 +150,29 @@ bodies:
     assert found is not None
     assert found.word is word if word is not None else found.word is not Word.UNSTABLE
     assert ("motion along geodesics" in found.theorems) == (word is Word.UNSTABLE)
+
+
+@pytest.mark.parametrize(
+    ("relation", "coordinates", "word"),
+    [
+        ("x**2 + y**2 = 1", "x: 0, y: 1", Word.STABLE_BUT_CYCLIC),
+        ("x**2 + 2*y**2 = 1", "x: 1, y: 0", Word.STABLE_BUT_CYCLIC),
+        ("x**2 + y**2 + z**2 = 1", "x: 0, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
+        ("x**2 + 2*y**2 + 3*z**2 = 3", "x: 0, y: 0, z: 1", Word.UNSTABLE),
+    ],
+)
+def test_no_forces_at_all_but_constraints(relation: str, coordinates: str, word: Word) -> None:
+    """On a curve and on a sphere all places are alike, on an ellipsoid they are not."""
+    names = [one.partition(":")[0].strip() for one in coordinates.split(",")]
+    position = ", ".join([*names, "0"][:3])
+    text = f"""
+mbsym: 1
+name: Free
+bodies:
+  - {{name: one, attached to: 0, connection point: [{position}], mass: 1, coordinates: [{", ".join(names)}]}}
+constraints: [{{relation: {relation}}}]
+motion: {{{coordinates}}}
+"""
+    found = mbsym.loads(text).stability.numerical
+    assert found is not None
+    assert found.word is word

@@ -9,8 +9,7 @@ from flint import arb
 
 import mbsym
 from mbsym.problems.stability.enclosed import enclosed_verdict
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.words.claims import decided
 
 NOTHING = [[arb(0), arb(0)], [arb(0), arb(0)]]

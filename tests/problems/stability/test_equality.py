@@ -20,7 +20,7 @@ from terminal import told
 
 import mbsym
 from mbsym.problems.stability.requirements import Place
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.conditions import statements
 
 FIELD = """

@@ -13,8 +13,7 @@ import pytest
 from terminal import told
 
 import mbsym
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 from mbsym.report.targets import TARGETS
 
 # --- rational matrices, as lists of rows ---

@@ -16,9 +16,7 @@ from sympy import Matrix, Symbol, lambdify
 
 import mbsym
 from mbsym.problems.constraints.motion import oscillating_position
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.theorems import CHAPLYGIN
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import CHAPLYGIN, Because, Word
 
 SYSTEMS = Path(__file__).parents[3] / "systems"
 DISC = (SYSTEMS / "rolling-disc.yaml").read_text(encoding="utf-8")
@@ -77,6 +75,78 @@ def test_a_force_that_keeps_the_reversal_leaves_the_disc_stable() -> None:
     """A torque lean' spin'/100 about the vertical is q' A(q, w); gyroscopic, as of a rotor in the disc."""
     verdict = mbsym.loads(_disc("  - generalized force: {yaw: lean_dot*spin_dot/100}")).stability.numerical
     assert verdict.theorems == (CHAPLYGIN,)
+
+
+#: y'' + y = (a force) beside x and z, z' = y x'.
+BESIDE = """mbsym: 1
+name: beside
+prescribed: {chi: {rate: 3}}
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, z], mass: 1, coordinates: [x, y, z]}
+loads:
+  - potential: y**2/2
+  - generalized force: {y: FORCE}
+constraints:
+  - velocity: z_dot = y*x_dot
+motion: {x: {value: 0, rate: 1}}
+"""
+
+
+@pytest.mark.parametrize("force", ["y**2*sin(3*t)", "y**2*sin(chi)"])
+def test_a_position_that_knows_the_time_is_no_centre(force: str) -> None:
+    """y'' + y = y^2 sin(3 t) is a resonance of third order: by numbers, of any size, disturbances grow."""
+    verdict = mbsym.loads(BESIDE.replace("FORCE", force)).stability.numerical
+    assert verdict.word is Word.UNDECIDED
+
+    def far(_t: float, state: np.ndarray) -> float:
+        return float(abs(state[0]) - 0.6)
+
+    far.terminal = True  # type: ignore[attr-defined]
+    for small in (0.1, 0.05):
+        start = [small * np.cos(1), small * np.sin(1)]
+        run = solve_ivp(lambda t, s: [s[1], -s[0] + s[0] ** 2 * np.sin(3 * t)], (0, 300), start, events=far, rtol=1e-9)
+        assert run.t_events[0].size
+
+
+@pytest.mark.parametrize("force", ["y_dot**2", "1 - exp(y_dot**2)", "y**2*y_dot**2 - y**3"])
+def test_an_even_force_leaves_a_centre(force: str) -> None:
+    assert mbsym.loads(BESIDE.replace("FORCE", force)).stability.numerical.theorems == (CHAPLYGIN,)
+
+
+@pytest.mark.parametrize("force", ["y_dot**3", "sqrt(1 + y_dot**3) - 1", "exp(y_dot**3) - 1", "sin(y_dot)**3"])
+def test_an_odd_force_leaves_none(force: str) -> None:
+    """Here the energy grows by y'^4, or so."""
+    verdict = mbsym.loads(BESIDE.replace("FORCE", force)).stability.numerical
+    assert verdict.word is Word.CRITICAL
+
+
+def test_a_position_that_moves_on_is_no_centre() -> None:
+    """q' = v, v' = w1, w1' = v w2, w2' = -v w1 + v w1^2 sin(3 q): the imaginary roots are of w, in resonance with q."""
+    text = """mbsym: 1
+name: moving
+bodies:
+  - {name: p, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+  - {name: q, attached to: 0, connection point: [0, 0, q], mass: 1, coordinates: [q]}
+  - {name: s, attached to: 0, connection point: [0, 0, s], mass: 0, coordinates: [s]}
+loads:
+  - generalized force: {q: x_dot, x: q_dot*y_dot, y: -q_dot*x_dot + q_dot*x_dot**2*sin(3*q)}
+constraints:
+  - velocity: s_dot = x_dot*sin(q)
+motion: {q: {value: 0, rate: 1}}
+"""
+    assert mbsym.loads(text).stability.numerical.word is Word.UNDECIDED
+
+    def far(_t: float, state: np.ndarray) -> float:
+        return float(np.hypot(*state[2:]) - 0.5)
+
+    far.terminal = True  # type: ignore[attr-defined]
+    for small in (0.05, 0.02):
+        start = [0, 1, small * np.cos(1), small * np.sin(1)]
+        run = solve_ivp(
+            lambda _t, s: [s[1], s[2], s[1] * s[3], -s[1] * s[2] + s[1] * s[2] ** 2 * np.sin(3 * s[0])],
+            (0, 500), start, events=far, rtol=1e-9, atol=1e-12,
+        )  # fmt: skip
+        assert run.t_events[0].size
 
 
 @pytest.mark.parametrize(("load", "returns"), [("", True), (BREAKING[0], False), (BREAKING[1], False)])

@@ -16,11 +16,9 @@ import mbsym
 from mbsym.algebra.signs import Signs
 from mbsym.problems.stability.exact import verdict_at
 from mbsym.problems.stability.linear_form import LinearSystem
-from mbsym.problems.stability.reasons import Because
 from mbsym.problems.stability.symbolic import analyse
-from mbsym.problems.stability.theorems import Fact, Ground, applying
 from mbsym.problems.stability.verdict import concluded
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Fact, Ground, Word, applying
 from mbsym.report.targets import TARGETS
 
 NONE = fmpq_mpoly_ctx.get(["unused"])

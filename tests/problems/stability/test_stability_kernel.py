@@ -42,7 +42,7 @@ from mbsym.problems.stability.problem import _even
 from mbsym.problems.stability.requirements import Requirement, definiteness
 from mbsym.problems.stability.symbolic import Theory, _spared, _without_implied, analyse
 from mbsym.problems.stability.verdict import Verdict, combine
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 
 Matrix = Any
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 import pytest
 
 import mbsym
-from mbsym.problems.stability.reasons import Because
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Because, Word
 
 TEXT = """
 mbsym: 1

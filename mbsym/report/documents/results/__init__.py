@@ -150,8 +150,10 @@ class Integral(Part, frozen=True):
         words(
             "generalised energy",
             "energy with the potential of the forces",
+            "energy of a part",
             "cyclic momentum",
             "gyroscopic momentum",
+            "momentum with the impulse of forces",
             "linear momentum",
             "angular momentum",
             "speed momentum",
@@ -164,7 +166,11 @@ class Integral(Part, frozen=True):
         "dW/dq are the forces without a force function; of unit vectors the length or a product is constant, of a "
         "quaternion the norm; the last two only where problem 9 is asked for, too",
     ]
-    of: Annotated[str, "the coordinate or axis; time for the energy; directions of a symmetry, weight of a polynomial"]
+    of: Annotated[
+        str,
+        "the coordinate or axis; time for the energy, coordinates of a part; directions of a symmetry, weight of a "
+        "polynomial",
+    ]
     formula: Annotated[Formula, "I(q, q', t), constant on every motion"]
     status: Annotated[str, words("proved", "verified numerically"), "how that is known"]
 

@@ -7,7 +7,7 @@ from typing import Annotated
 from msgspec import UNSET, Meta, UnsetType
 
 from mbsym.problems.stability.requirements import Method, Place
-from mbsym.problems.stability.word import Word
+from mbsym.problems.stability.words import Word
 from mbsym.report.documents.base import From, Part, counted_from, told_apart_by, words
 from mbsym.report.documents.parts import Formula, TheoremName, Verdict
 
