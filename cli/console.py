@@ -29,7 +29,9 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.status import Status
 
+    from mbsym.expressions.place import Complaints
     from mbsym.model.system import System
+    from mbsym.report.language import Language
     from mbsym.report.plain_writer import Line
 
 
@@ -249,8 +251,9 @@ def paused() -> Iterator[None]:
 def read_description(path: Path, unconstrained: str = "", moving: str = "") -> System | None:
     """The system of a file, or None after printing every complaint on standard error.
 
-    ``unconstrained`` names a command that does not know constraints: each of them is complained about.  ``moving``
-    names one that needs equations of motion, which a system that is given by its matrices has not.
+    ``unconstrained`` names a command that does not know constraints: relations that give coordinates are put in, others
+    are complained about.  ``moving`` names one that needs equations of motion, which a system that is given by its
+    matrices has not.
     """
     from mbsym.report.language import Language
     from mbsym.source import load, render
@@ -262,9 +265,8 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
         from mbsym.analysis.soundness import complain as complain_of
 
         complain_of(system, complaints)
-    for one in system.constraints if system is not None and unconstrained else ():
-        message = Message("'mbsym [[command]]' does not take constraints into account yet", command=unconstrained)
-        complaints.error("constraints", message, one.span, "without it this would be another system")
+    if system is not None and system.constraints and unconstrained and not complaints.errors:
+        system = _in_free_coordinates(path, system, unconstrained, complaints)
     if system is not None and system.linear is not None and moving:
         words = "'mbsym [[command]]' is about bodies, and this system is given by its matrices"
         message = Message(words, command=moving)
@@ -275,6 +277,28 @@ def read_description(path: Path, unconstrained: str = "", moving: str = "") -> S
         many = "[[count]] errors; nothing was written." if count > 1 else "[[count]] error; nothing was written."
         complain(path, say(Message(many, count=count)))
     return None if complaints.errors else system
+
+
+def _in_free_coordinates(path: Path, system: System, command: str, complaints: Complaints) -> System:
+    """The system in the coordinates that relations leave, which is said; a complaint about each other constraint."""
+    from mbsym.analysis.constrained import in_free_coordinates
+    from mbsym.model.constraints import is_holonomic
+    from mbsym.report.language import Language
+
+    free = in_free_coordinates(system)
+    for one in free.constraints:
+        words = "'mbsym [[command]]' takes no constraint but relations that give a coordinate by others"
+        hint = "choose coordinates that keep it, or write it as  relation: x = r*phi"
+        if not is_holonomic(one):
+            hint = (
+                "no coordinates keep what ties velocities; 'mbsym integrals' and problems 6 and 7 take it into account"
+            )
+        complaints.error("constraints", Message(words, command=command), one.span, hint)
+    if not free.constraints:
+        names = ", ".join(name for name in system.coordinates if name not in free.coordinates)
+        words = "note: for '[[command]]' the relations are put in, and [[names]] left out"
+        complain(path, Language(system.language).say(Message(words, command=command, names=names)))
+    return free
 
 
 def read_held(file: Path, command: str, constrained: bool = False, moving: bool = True) -> System | None:
@@ -307,7 +331,12 @@ _LOOK = 1_000_000
 
 
 def speaking(*files: Path | str) -> Callable[[str], str]:
-    """Says messages in the language of these descriptions; in English where they differ, or are none."""
+    """Says messages in the language of these descriptions."""
+    return language_of_files(*files).say
+
+
+def language_of_files(*files: Path | str) -> Language:
+    """The language of these descriptions; English where they differ, or are none."""
     from mbsym.report.language import Language
     from mbsym.source.text_lines import language_of
 
@@ -320,7 +349,7 @@ def speaking(*files: Path | str) -> Callable[[str], str]:
                 languages.add(language_of(stream.read(_LOOK).decode("utf-8", "replace")))
         except (OSError, ValueError):
             languages.add("")
-    return Language(languages.pop() if len(languages) == 1 else "").say
+    return Language(languages.pop() if len(languages) == 1 else "")
 
 
 def complain(path: Path | str, text: str, say: Callable[[str], str] | None = None) -> None:
@@ -371,7 +400,7 @@ class OutPath(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         if not str(value).strip():
-            self.fail("it is empty (an unset variable?); write . for this folder", param, ctx)
+            self.fail(Message("it is empty (an unset variable?); write . for this folder"), param, ctx)
         return super().convert(value, param, ctx)
 
 

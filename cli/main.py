@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import re
+import os
 import sys
+from collections.abc import Callable, Sequence
 from copy import copy
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import click
@@ -129,9 +131,15 @@ class LazyGroup(click.Group):
         if name not in COMMANDS and not name.startswith("-"):
             from difflib import get_close_matches
 
+            from mbsym.expressions.message import Message
+
             near = get_close_matches(name, COMMANDS, 1)
-            known = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(COMMANDS)}"
-            context.fail(f"there is no command '{name}'; {known}")
+            if near:
+                context.fail(
+                    Message("there is no command '[[name]]'; did you mean '[[near]]'?", name=name, near=near[0])
+                )
+            known = ", ".join(COMMANDS)
+            context.fail(Message("there is no command '[[name]]'; there are [[known]]", name=name, known=known))
         return super().resolve_command(context, args)
 
     def main(self, *args: Any, **extra: Any) -> Any:
@@ -164,6 +172,7 @@ class LazyGroup(click.Group):
         from mbsym_cli.console import Debugging, Force, defect, listening, reason_of, trace
 
         Debugging.wanted = Force.wanted = False
+        words = [*context._protected_args, *context.args]
         try:
             with listening() as defects:
                 try:
@@ -172,10 +181,12 @@ class LazyGroup(click.Group):
                     if defects.tell() and ended.code in (Exit.OK, None):
                         ended.code = Exit.FAILED
                     raise
-        except click.UsageError as error:
-            if meant := _meant(error):
-                raise click.UsageError(error.message + meant, error.ctx) from error
+        except click.exceptions.NoArgsIsHelpError:
             raise
+        except click.UsageError as error:
+            from mbsym_cli.usage import Misused
+
+            raise Misused(error, _said_in(words)) from error
         except (click.ClickException, click.exceptions.Exit, click.Abort):
             raise
         except OSError as error:
@@ -184,21 +195,21 @@ class LazyGroup(click.Group):
         except Exception as error:
             defect(error)
         except KeyboardInterrupt:
-            print("interrupted; what has been written is whole", file=sys.stderr)
+            print(_said_in(words)("interrupted; what has been written is whole"), file=sys.stderr)
             sys.exit(Exit.INTERRUPTED)
         sys.exit(Exit.FAILED)
 
 
-def _meant(error: click.UsageError) -> str:
-    """With which option a word that is too much would be understood; nothing where that is nobody's guess."""
-    extra = re.search(r"extra arguments? \((\S+).*\)", error.message)
-    if extra is None or error.ctx is None:
-        return ""
-    word = extra[1]
-    options = {name for parameter in error.ctx.command.params for name in parameter.opts}
-    fitting = (("--set", "=" in word), ("--time", re.fullmatch(r"[\d.]+(e\d+)?", word) is not None), ("--out", True))
-    option = next((name for name, fits in fitting if fits and name in options), "")
-    return f"; did you mean '{option} {word}'?" if option else ""
+def _said_in(words: Sequence[str]) -> Callable[[str], str]:
+    """Says messages in the language that a command line asks for, or in that of the descriptions on it."""
+    from mbsym.report.language import LANGUAGES, Language
+    from mbsym_cli.console import speaking
+
+    named = [other for word, other in pairwise(words) if word == "--language"]
+    named += [word.partition("=")[2] for word in words if word.startswith("--language=")]
+    if named and named[-1] in LANGUAGES:
+        return Language(named[-1]).say
+    return speaking(*(word for word in words if os.path.isfile(word)))
 
 
 def _command(module: str) -> click.Command:

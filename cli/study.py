@@ -237,10 +237,10 @@ class _Run:
                 raise
             self._complaints((refusal.text, *refusal.more))
             return refusal.code
-        if self.among:
-            self.told = asked, request, found
-        elif self.as_json:
+        if self.as_json:
             click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
+        elif self.among:
+            self.told = asked, request, found
         else:
             with self._in_letters(asked.system) as used:
                 self._tell(asked, answer, used)
@@ -265,7 +265,8 @@ class _Run:
             tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
         for one in answer.lines if loud or not answer.brief else answer.brief:
             if isinstance(one, Line) and (loud or one.always):
-                tell(*one.parts, whole=one.whole)
+                parts = (self.say(x) if isinstance(x, str) else (self.say(x[0]), x[1]) for x in one.parts)
+                tell(*parts, whole=one.whole)
             elif not isinstance(one, Line) and (loud or answer.brief):
                 show([one], asked.system.language)
         if loud:

@@ -29,7 +29,7 @@ from mbsym_cli.batch.folders import Descriptions, chosen, found_in, share
 from mbsym_cli.batch.machine import Locks, memory_is_bounded
 from mbsym_cli.batch.store import COMMAND, FolderStore
 from mbsym_cli.batch.table import complaints, totals, watcher
-from mbsym_cli.console import printable, speaking
+from mbsym_cli.console import language_of_files, printable
 from mbsym_cli.files import MANIFEST, deliver, delivered, obstacle, read_manifest
 from mbsym_cli.options import DESCRIPTIONS_HAVE, nothing_here
 
@@ -72,7 +72,8 @@ def run(request: Request) -> int:
         return Exit.BAD_INPUT
     found = found_in(request.folders, request.out)
     places = chosen(found.places, request.patterns)
-    say = speaking(*(place.file for place in places or found.places))
+    language = language_of_files(*(place.file for place in places or found.places))
+    say = language.say
     if not places and not found.unreadable:
         print("\n".join(map(say, _nothing(request, found))), file=sys.stderr)
         return Exit.BAD_INPUT
@@ -80,10 +81,10 @@ def run(request: Request) -> int:
         places = share(places, *request.shard)
     if request.budget.memory and not memory_is_bounded():
         print(say(Message("--memory has no effect here: this system has no such bound")), file=sys.stderr)
-    summary, stopped = _summed_up(request, places, found, started)
+    summary, stopped = _summed_up(request, places, found, started, say)
     wanted = {place.folder for place in found.places}
     gone = forget_gone(request.out, summary_name(request), request.folders, wanted)
-    whole = write_files(request, summary, say)
+    whole = write_files(request, summary, language)
     if request.output_format != "text":
         sys.stdout.write(_for_programs(request, summary))
     elif not request.quiet:
@@ -98,12 +99,14 @@ def run(request: Request) -> int:
     return summary.exit_code if whole else summary.exit_code or Exit.FAILED
 
 
-def _summed_up(request: Request, places: list[Place], found: Descriptions, started: float) -> tuple[Summary, bool]:
+def _summed_up(
+    request: Request, places: list[Place], found: Descriptions, started: float, say: Callable[[str], str]
+) -> tuple[Summary, bool]:
     """Every row, and whether the batch was stopped."""
     version = derivation()
     refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
     width = max((len(printable(place.file)) for place in places), default=0)
-    told = watcher(len(places), width, request.quiet or request.output_format != "text", request.changed)
+    told = watcher(len(places), width, request.quiet or request.output_format != "text", request.changed, say)
     store = FolderStore(request.out, request.asked, version)
     batch = Batch(places, store, told, request.budget, request.fail_fast, request.strict_claims)
     stopped = False
@@ -157,14 +160,14 @@ def _of_part(request: Request, name: str) -> str:
     return "{}-{}-of-{}{}{}".format(stem, *request.shard, dot, ending)
 
 
-def summary_files(request: Request, summary: Summary) -> Mapping[str, str]:
+def summary_files(request: Request, summary: Summary, language: Language) -> Mapping[str, str]:
     """The files about the whole batch, by their names in its folder."""
     name = summary_name(request)
     return {
         name: summary_text(summary),
         _of_part(request, junit.FILENAME): junit.junit(summary),
         _of_part(request, "mbsym.sarif"): sarif(findings(summary), summary.version),
-        _of_part(request, index_page.FILENAME): index_page.index_page(summary, name),
+        _of_part(request, index_page.FILENAME): index_page.index_page(summary, name, language),
     }
 
 
@@ -178,14 +181,14 @@ def _for_programs(request: Request, summary: Summary) -> str:
     return github_annotations(found) if request.output_format == "github" else json_lines(found)
 
 
-def write_files(request: Request, summary: Summary, say: Callable[[str], str]) -> bool:
+def write_files(request: Request, summary: Summary, language: Language) -> bool:
     """Each of them whole; whether all could be written.
 
     Of one that cannot be, the reason is told, and none is left of an earlier batch, which would speak for this one.
     """
     writers: dict[str, Callable[[], object]] = {
         name: partial(deliver, request.out, {name: text}, SUMMARY, ())
-        for name, text in summary_files(request, summary).items()
+        for name, text in summary_files(request, summary, language).items()
     }
     if request.appendix:
         name = _of_part(request, APPENDIX)
@@ -197,7 +200,7 @@ def write_files(request: Request, summary: Summary, say: Callable[[str], str]) -
         except OSError as error:
             whole = False
             print(
-                say(
+                language.say(
                     Message(
                         "[[file]] cannot be written: [[why]]",
                         file=printable(request.out / name),

@@ -17,6 +17,7 @@ from mbsym.batch import digests
 from mbsym.batch.coordinator import Place
 from mbsym.batch.outcome import FORMAT, ComplaintRow, Outcome, Row
 from mbsym.batch.transport import MALFORMED, BatchOptions, Finished, Task, read_row, row_data
+from mbsym.expressions.message import Message
 from mbsym.report.targets import FORMATS
 from mbsym_cli.batch.machine import Locks
 from mbsym_cli.files import deliver, delivered, digest_of, obstacle, recover
@@ -83,7 +84,9 @@ class FolderStore:
         if finished.same:
             kept = self._kept(folder)
             if kept is None:  # somebody has been there since
-                return replace(row, outcome=Outcome.NOT_WRITTEN, message="its files were changed in the meantime")
+                return replace(
+                    row, outcome=Outcome.NOT_WRITTEN, message=Message("its files were changed in the meantime")
+                )
             row = replace(read_row(kept["row"]), complaints=row.complaints, cached=True, seconds=row.seconds)
             row = replace(row, file=task.file, folder=task.folder)
         elif not finished.files:
@@ -95,7 +98,8 @@ class FolderStore:
             deliver(folder, files | {OUTCOME: self._text(task, finished.meaning, row)}, COMMAND)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
-            return replace(row, outcome=Outcome.NOT_WRITTEN, files=(), message=f"the files cannot be written: {reason}")
+            message = Message("the files cannot be written: [[why]]", why=reason)
+            return replace(row, outcome=Outcome.NOT_WRITTEN, files=(), message=message)
         return row
 
     def _text(self, task: Task, meaning: str, row: Row) -> str:
@@ -133,4 +137,4 @@ def _content(path: Path) -> tuple[bytes, str]:
         with path.open("rb") as file:
             return file.read(_MOST_BYTES), ""
     except (OSError, ValueError) as error:
-        return b"", f"the file cannot be read: {getattr(error, 'strerror', None) or error}"
+        return b"", Message("the file cannot be read: [[why]]", why=getattr(error, "strerror", None) or error)

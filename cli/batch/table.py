@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from mbsym.batch.outcome import ComplaintRow, Outcome, Row, Summary
-from mbsym.expressions.message import Counted, Message, joined, worded
+from mbsym.expressions.message import Counted, Message, duration, joined, worded
 from mbsym_cli.console import console, printable, speaking
 
 if TYPE_CHECKING:
@@ -24,8 +24,9 @@ _MOST_LINES = 16
 class Lines:
     """The ``Watcher`` that prints a line when a description is finished."""
 
-    def __init__(self, total: int, width: int, quiet: bool, changed: bool) -> None:
-        self.total, self.width = total, width
+    def __init__(self, total: int, width: int, quiet: bool, changed: bool, tongue: Callable[[str], str]) -> None:
+        """``tongue`` says what is about no row."""
+        self.total, self.width, self.tongue = total, width, tongue
         self.quiet, self.changed = quiet, changed
         self.finished = 0
 
@@ -55,8 +56,8 @@ class Lines:
 class Live(Lines):
     """The same lines, and under them what runs, for how long, and how long the rest may take."""
 
-    def __init__(self, total: int, width: int, quiet: bool, changed: bool) -> None:
-        super().__init__(total, width, quiet, changed)
+    def __init__(self, total: int, width: int, quiet: bool, changed: bool, tongue: Callable[[str], str]) -> None:
+        super().__init__(total, width, quiet, changed, tongue)
         self._running: dict[str, float] = {}
         self._began: float | None = None
         self._derived = 0
@@ -115,9 +116,12 @@ class Live(Lines):
 
         table = Table.grid(padding=(0, 2))
         for file, since in list(self._running.items())[:_MOST_LINES]:
-            table.add_row(Text("running", style="cyan"), Text(printable(file)), Text(f"{now - since:.0f} s"))
+            table.add_row(
+                Text(self.tongue("running"), style="cyan"), Text(printable(file)), Text(f"{now - since:.0f} s")
+            )
         if len(self._running) > _MOST_LINES:
-            table.add_row(Text(""), Text(f"and {len(self._running) - _MOST_LINES} more"), Text(""))
+            more = Message("and [[count]] more", count=len(self._running) - _MOST_LINES)
+            table.add_row(Text(""), Text(self.tongue(more)), Text(""))
         left = self.total - self.finished
         table.add_row(Text(f"{self.finished}/{self.total}", style="bold"), Text(self._remaining(now, left)), Text(""))
         return table
@@ -125,9 +129,9 @@ class Live(Lines):
     def _remaining(self, now: float, left: int) -> str:
         """How long the rest may take, going by those that were derived."""
         if not self._derived or self._began is None:
-            return f"{left} to go"
+            return self.tongue(Message("[[count]] to go", count=left))
         seconds = (now - self._began) / self._derived * left
-        return f"{left} to go, about {_duration(seconds)}"
+        return self.tongue(Message("[[count]] to go, about [[time]]", count=left, time=duration(seconds)))
 
 
 #: What derived results are called that were there before.
@@ -139,10 +143,10 @@ NUMBER_OF = "[[count]] [[outcome]]"
 _STYLES = {outcome: "red" for outcome in Outcome if outcome.failed} | {Outcome.SKIPPED: "dim"}
 
 
-def watcher(total: int, width: int, quiet: bool, changed: bool) -> Lines:
+def watcher(total: int, width: int, quiet: bool, changed: bool, tongue: Callable[[str], str]) -> Lines:
     """The one that suits standard output."""
     kind = Live if sys.stdout.isatty() and not quiet else Lines
-    return kind(total, width, quiet, changed)
+    return kind(total, width, quiet, changed, tongue)
 
 
 def line(row: Row, width: int) -> str:
@@ -185,7 +189,9 @@ def _said(row: Row, say: Callable[[str], str]) -> str:
 def complaints(row: Row) -> list[str]:
     """What is complained about, for standard error, each with its place."""
     name, say = printable(row.file), speaking(row.file)
-    return [_complaint(name, one, say) for one in row.complaints] + [f"{name}: {printable(note)}" for note in row.notes]
+    return [_complaint(name, one, say) for one in row.complaints] + [
+        f"{name}: {printable(say(note))}" for note in row.notes
+    ]
 
 
 def _complaint(name: str, row: ComplaintRow, say: Callable[[str], str]) -> str:
@@ -207,10 +213,3 @@ def totals(summary: Summary) -> Message:
             parts.append(Message(NUMBER_OF, count=count, outcome=worded(word)))
     what = joined(parts, ", ") if parts else Message("nothing to do")
     return joined((Counted(len(summary.rows), "system"), what), ": ")
-
-
-def _duration(seconds: float) -> str:
-    whole = round(seconds)
-    if whole < 90:
-        return f"{whole} s"
-    return f"{whole // 60} min" if whole < 5400 else f"{whole / 3600:.1f} h"

@@ -85,11 +85,27 @@ class PolynomialField:
             f = divmod(f, relation)[1]
         return f.project_to_context(self.context)
 
+    @property
+    def are_solved(self) -> bool:
+        """Whether leading monomials of the relations are as ``reduced`` wants them."""
+        count, taken = len(self.variables), set[int]()
+        for relation in self._leading[1]:
+            monomial = relation.monomial(0)
+            held = {k for k, power in enumerate(monomial) if power}
+            if not held or max(held) >= count or held & taken:
+                return False
+            taken |= held
+        return True
+
     @cached_property
     def _leading(self) -> tuple[Any, list[Polynomial]]:
-        """The context with the variables first, and the relations there."""
+        """The context with the variables first, and the relations there.
+
+        What stands for a leading monomial holds lower ones only, so that a later division undoes none before it.
+        """
         context = fmpq_mpoly_ctx.get([*self.variables, *self.parameters], self.context.ordering())
-        return context, [relation.project_to_context(context) for relation in self.relations]
+        there = [relation.project_to_context(context) for relation in self.relations]
+        return context, sorted(there, key=lambda relation: relation.monomial(0), reverse=True)
 
     def at(self, values: Mapping[str, fmpq | int]) -> PolynomialField:
         """The field with numbers in place of some parameters, which are no generators any more.

@@ -21,6 +21,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 
 from mbsym.algebra.program import Node, Program
 
@@ -279,6 +280,7 @@ class _Rewriting:
         found = [
             (other, factor, b)
             for other, b in whole.coefficients.items()
+            if len(other) == len(key) + 1
             for factor in dict.fromkeys(other)
             if self._operation(factor)[0] == "cos" and (self.thorough or self.uses[factor] <= 1)
             if _without(other, factor) == key
@@ -314,13 +316,12 @@ class _Rewriting:
     def _squares(self, whole: _Sum, key: Key) -> None:
         """a x^2 - a y^2 = a (x - y) (x + y)."""
         a = whole.coefficients[key]
+        minus = -a
         for x in _repeated(key):
             rest = _without(key, x, x)
-            for other, b in list(whole.coefficients.items()):
-                if b != -a or other == key:
-                    continue
+            for other in [other for other in whole.coefficients if len(other) == len(key) and other != key]:
                 for y in _repeated(other):
-                    if _without(other, y, y) == rest and x >= 0 and y >= 0:
+                    if _without(other, y, y) == rest and x >= 0 and y >= 0 and whole.coefficients[other] == minus:
                         first, second = Node(self.program, x), Node(self.program, y)
                         whole.add(key, -a)
                         whole.add(other, a)
@@ -342,15 +343,16 @@ class _Rewriting:
     def _two_angles(self, whole: _Sum, key: Key) -> None:
         """a cos x - a cos y = -2 a sin((x + y)/2) sin((x - y)/2),  a sin x - a sin y = 2 a cos(..) sin(..)."""
         a, program = whole.coefficients[key], self.program
+        minus = -a
         for factor in dict.fromkeys(key):
             name, x = self._operation(factor)
             if name not in ("sin", "cos") or (self.uses[factor] > 1 and not self.thorough):
                 continue
             rest = _without(key, factor)
-            for other, b in list(whole.coefficients.items()):
+            for other in [other for other in whole.coefficients if len(other) == len(key)]:
                 for match in dict.fromkeys(other):
                     same, y = self._operation(match)
-                    if b != -a or same != name or x == y or _without(other, match) != rest:
+                    if same != name or x == y or _without(other, match) != rest or whole.coefficients[other] != minus:
                         continue
                     if self.uses[match] > 1 and not self.thorough:
                         continue
@@ -411,7 +413,7 @@ def _cancel(a: Fraction, b: Fraction) -> bool:
 
 def _repeated(key: Key) -> list[int]:
     """Factors that occur twice."""
-    return [factor for factor, count in Counter(key).items() if count >= 2]
+    return list(dict.fromkeys(factor for factor, other in pairwise(key) if factor == other))
 
 
 def _without(key: Key, *factors: int) -> Key:

@@ -9,6 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.model.constraints import Relation
+from mbsym.model.substitution import without_explicit_relations
 from mbsym.problems import equations
 from mbsym.problems.checks import Check
 from mbsym.problems.equations import Equations
@@ -16,6 +18,7 @@ from mbsym.problems.equations import Equations
 if TYPE_CHECKING:
     from mbsym.analysis.pipeline import Analysis
     from mbsym.mechanics.constraints.programs import ConstrainedPrograms
+    from mbsym.model.system import System
     from mbsym.problems.constraints import Constraints
     from mbsym.problems.integrals import Integral
     from mbsym.problems.reactions import Reaction
@@ -25,6 +28,23 @@ CHECKS = ("constraints", "constrained motion")
 
 #: The check of what joints transmit, with constraints or without.
 REACTIONS = "reactions"
+
+
+def in_free_coordinates(system: System) -> System:
+    """The same motions in the coordinates that explicit relations leave, with the constraints that are left.
+
+    None are where nothing else is tied.  Speeds of its own keep a system as it is.
+    """
+    if system.speeds or not any(isinstance(constraint, Relation) for constraint in system.constraints):
+        return system
+    from mbsym.mechanics.constraints.rows import said_rows
+    from mbsym.mechanics.kinematics import Scene
+    from mbsym.mechanics.variables import ring_environment, ring_of
+
+    free = without_explicit_relations(system)
+    ring = ring_of(free)
+    tied = free.constraints and said_rows(Scene(free, ring, ring_environment(free, ring), ring))
+    return free if tied else replace(free, constraints=())  # rows that say 0 = 0 followed from what is put in
 
 
 def constraints_of(analysis: Analysis) -> Constraints:

@@ -41,6 +41,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
     from mbsym.problems.normal_forms import InSymbols, Judged, Outcome, Theorem, Why, problem  # few ask for it
     from mbsym.problems.stabilisation.problem import on_motion
 
+    analysis = analysis.in_free_coordinates
     equilibrium, scene = analysis.equilibrium, analysis.parameters_scene
     analysis.judgeable  # noqa: B018  raises where the first approximation, or time, says that no theorem applies
     if len(equilibrium.conditions) > len(equilibrium.solved):
@@ -52,8 +53,7 @@ def normal_forms_of(analysis: Analysis) -> NormalForms:
         divides = pole(analysis, values) is not None
         nothing = Why.POLE if divides else Why.NONE if on_motion(scene, equilibrium, values) else Why.NO_MOTION
     values = values if nothing is Why.NONE else None
-    conservative, cyclic = ignorable(analysis)
-    result = problem.normal_forms(scene, analysis.system, equilibrium, values, conservative, cyclic)
+    result = problem.normal_forms(scene, analysis.system, equilibrium, values, *expanded_with(analysis))
     judged = analysis.optional("stability")
     before = None if judged is None else judged.before_higher_order or judged.numerical
     first = None if before is None else before.word
@@ -84,8 +84,7 @@ def judge(analysis: Analysis) -> Callable[[Mapping[str, Any]], Judged | None]:
     def at(values: Mapping[str, Any]) -> Judged | None:
         try:
             if not made:
-                manifold = on_manifold(analysis) if analysis.system.constraints else None
-                made.append(problem.judge(scene, analysis.system, equilibrium, *ignorable(analysis), manifold))
+                made.append(problem.judge(scene, analysis.system, equilibrium, *expanded_with(analysis)))
             return made[0](values)
         except (Failure, *NOT_THERE):
             return None
@@ -238,13 +237,20 @@ def on_manifold(analysis: Analysis) -> Callable[[int], OnManifold]:
     expansion, about = analysis.reduced.expansion, analysis.reduced.about
     at_rest = not expansion.base.turning and all(x.is_zero() for x in expansion.base.rates)
     if not at_rest or system.prescribed or any("t" in names(x) for x in expressions(system)):
-        raise NotExpanded("under constraints only rests of systems that do not know the time are expanded")
+        raise NotExpanded(
+            "under constraints only rests are expanded, of systems whose equations do not contain the time"
+        )
     if (
         not (about.holonomic or kept_by_velocities(analysis))
         or len(system.coordinates) - len(expansion.speeds) != tied.velocity_rank
     ):
         raise NotExpanded("the constraints leave no manifold that is known")
     return lambda order: on_manifold(scene, analysis.signs, expansion, order)
+
+
+def expanded_with(analysis: Analysis) -> tuple[bool, frozenset[str], Callable[[int], OnManifold] | None]:
+    """What ``ignorable`` says, and the manifold that constraints leave; None without constraints."""
+    return *ignorable(analysis), on_manifold(analysis) if analysis.system.constraints else None
 
 
 def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:

@@ -68,6 +68,11 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     if twice:  # grad K with respect to both would not be that of a function of the angle
         names = ", ".join(y for x in twice for y in (x, f"sin({x})"))
         raise NoClosedForm("[[names]] are functions of each other: they cannot all be variables", names=names)
+    if lagrangian and not all(_is_of_one_angle(field, relation) for relation in field.relations):
+        raise NoClosedForm(
+            "constraints tie positions: families of integrals are looked at in coordinates that keep them",
+            remedy="choose such coordinates, or write a constraint as  relation: x = r*phi",
+        )
     if lagrangian and len(field.variables) > MOST_IN_ANGLES:
         raise NoClosedForm(
             "[[count]] rates, sines, cosines and positions: families of at most [[most]] are looked at",
@@ -87,6 +92,12 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
     plain = identifiers(field.variables, field.parameters)
     written = write_in(place.ring, analysis, dict(zip(plain, field.variables, strict=True)) if lagrangian else {})
     return replace(invariant_sets(place), written=written, in_angles=lagrangian, left_out=left)
+
+
+def _is_of_one_angle(field: PolynomialField, relation: Any) -> bool:
+    """Whether it is sin^2 + cos^2 = 1."""
+    held = [name for k, name in zip(field.places, field.variables, strict=True) if relation.degrees()[k] > 0]
+    return len(held) == 2 and all(name.startswith(("sin(", "cos(")) for name in held)
 
 
 def _remedy(system: System) -> str:

@@ -27,12 +27,12 @@ from mbsym.algebra.failures import NOT_THERE, Failure
 from mbsym.algebra.parts import installed
 from mbsym.algebra.rationals import fraction
 from mbsym.analysis import higher
-from mbsym.analysis.higher import ignorable
+from mbsym.analysis.constrained import in_free_coordinates
+from mbsym.analysis.higher import expanded_with
 from mbsym.analysis.poles import pole
 from mbsym.analysis.stages import NoResult, Unavailable
 from mbsym.expressions.message import Message
-from mbsym.model.constraints import Relation
-from mbsym.model.substitution import displaced, without_explicit_relations
+from mbsym.model.substitution import displaced
 from mbsym.model.system import System
 from mbsym.problems.stability.problem import ExactVerdicts
 from mbsym.problems.stability.verdict import Flaw, Verdict, undecided
@@ -101,7 +101,7 @@ class Judge:
     @cached_property
     def _loses_energy(self) -> bool:
         try:
-            return installed("mbsym.problems.normal_forms") and not ignorable(self.analysis)[0]
+            return installed("mbsym.problems.normal_forms") and not higher.ignorable(self.analysis)[0]
         except Failure:
             return False
 
@@ -148,21 +148,11 @@ class Judge:
         Without constraints in those of which some are displacements that change no equation, where those given are not.
         """
         of = self.analysis
-        if not of.system.constraints:
-            system = self._displaced if self._displaces else None
-        elif not any(isinstance(constraint, Relation) for constraint in of.system.constraints):
+        plain = self._displaced if self._displaces and not of.system.constraints else None
+        system = in_free_coordinates(of.system) if of.system.constraints else plain
+        if system is None or system.constraints:
             return None
-        else:
-            system = without_explicit_relations(of.system)
-        if system is None:
-            return None
-        if system.constraints:
-            from mbsym.mechanics.constraints.rows import said_rows
-
-            if said_rows(type(of)(system, (), of.terms).scene):  # those that say 0 = 0 followed from what is put in
-                return None
-        plain = type(of)(replace(system, constraints=()), (), of.terms, suggests=False)
-        return Judge(plain, displaces=bool(of.system.constraints))
+        return Judge(type(of)(system, (), of.terms, suggests=False), displaces=bool(of.system.constraints))
 
     @property
     def _displaced(self) -> System | None:
@@ -236,15 +226,15 @@ def exceptional(
 ) -> Along:
     """All exceptional values of a parameter between two numbers, the others at ``values``.
 
-    Raises Unavailable where the system has constraints, is given by matrices or has no motion; NotAlong and what
-    expansions raise.
+    Raises Unavailable where the system is given by matrices or has no motion; NotAlong and what expansions raise.
     """
     from mbsym.problems.normal_forms.along import along
 
     if analysis.system.speeds:
         return exceptional(analysis.in_coordinates, name, interval, values)
-    if analysis.system.constraints or analysis.system.linear is not None:
-        reason = "it has constraints, or is given by its matrices: normal forms are of neither"
+    analysis = analysis.in_free_coordinates
+    if analysis.system.linear is not None:
+        reason = "it is given by its matrices, which have no terms of higher order"
         raise Unavailable("system", NoResult(reason, "", "not supported", "not-supported"))
     with analysis.strictly():
         equilibrium = analysis.equilibrium
@@ -256,11 +246,9 @@ def exceptional(
     if name in solved:
         reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))
-    conservative, cyclic = ignorable(analysis)
     numbers = {key: value for key, value in values.items() if key != name and key not in solved}
-    listed = along(
-        analysis.parameters_scene, analysis.system, equilibrium, name, interval, numbers, conservative, cyclic
-    )
+    scene, told_with = analysis.parameters_scene, expanded_with(analysis)
+    listed = along(scene, analysis.system, equilibrium, name, interval, numbers, *told_with)
     return replace(listed, specials=tuple(_judged(analysis, numbers, name, special) for special in listed.specials))
 
 

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure, message_of
 from mbsym.analysis.judge import Judge
-from mbsym.expressions.message import Message
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.mechanics.variables import angle_denominators, angles_of
 from mbsym.model.claims import CLAIMS, Claim
 from mbsym.problems import claims
@@ -85,7 +83,6 @@ def claimed_oscillation(analysis: Analysis) -> Oscillating:
     """The periodic solution of problem 12, to the highest order that is claimed."""
     from mbsym.analysis.oscillating import oscillating
 
-    refuse_constraints(analysis.system, Message("not expanded"))
     return oscillating(analysis, _order(analysis, "oscillation"))
 
 
@@ -93,7 +90,6 @@ def claimed_manifold(analysis: Analysis) -> Expansion:
     """The slow manifold of problem 12, to the highest order that is claimed."""
     from mbsym.analysis.expanding import expansion
 
-    refuse_constraints(analysis.system, Message("not expanded"))
     return expansion(analysis, _order(analysis, "slow manifold"))
 
 

@@ -478,11 +478,12 @@ def _field(analysis: Analysis, small: SmallParameter, order: int) -> tuple[Polyn
     weights = dict(small.powers)
     in_coordinates = not analysis.system.speeds
     if in_coordinates and analysis.system.motion and all(weights.get(name, 0) > 0 for name in names):
-        from mbsym.analysis.higher import ignorable
+        from mbsym.analysis.higher import expanded_with
         from mbsym.problems.normal_forms.expansion import expansion
 
-        cyclic = ignorable(analysis)[1]
-        jets = expansion(analysis.parameters_scene, analysis.system, analysis.equilibrium, order + 2, cyclic)
+        about = analysis.parameters_scene, analysis.system, analysis.equilibrium
+        _, cyclic, manifold = expanded_with(analysis)
+        jets = expansion(*about, order + 2, cyclic, manifold)
         return taylor_field(jets, order + 1), True
     field = vector_field(analysis.form, equations, (), images)[0]
     for name in names:

@@ -229,6 +229,14 @@ class Analysis(Stages):
 
         return deriving.analysis(self)
 
+    @cached_property
+    def in_free_coordinates(self) -> Analysis:
+        """The same motions in the coordinates that explicit relations leave; this one where other constraints stay."""
+        system = constrained.in_free_coordinates(self.system) if self.system.constraints else self.system
+        if system is self.system or system.constraints:
+            return self
+        return type(self)(system, self.problems, self.terms, self.suggests, self.angles)
+
     def over_ring(self, bodies: bool = True, inputs: bool = True) -> Scene:
         """The system over the ring; without ``bodies`` only formulas in its parameters can be lowered.
 
@@ -345,7 +353,7 @@ class Analysis(Stages):
         later("mbsym.analysis.higher", "normal_forms_of"),
         (*JUDGED, "normal forms"),
         says=True,
-        knows=Knows.IN_COORDINATES,
+        knows=Knows.CONSTRAINTS | Knows.IN_COORDINATES,
     )
 
     small_parameters: Problem[SmallParameters] = Problem(
@@ -390,10 +398,10 @@ class Analysis(Stages):
         later("mbsym.analysis.judging", "trials"), JUDGED, says=True, knows=OF_MOTIONS
     )
     claimed_oscillation: Derived[Analysis, Oscillating] = Derived(
-        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=Knows.SPEEDS
+        later("mbsym.analysis.judging", "claimed_oscillation"), ("equations of motion",), says=True, knows=OF_EQUATIONS
     )
     claimed_manifold: Derived[Analysis, Expansion] = Derived(
-        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=Knows.SPEEDS
+        later("mbsym.analysis.judging", "claimed_manifold"), ("equations of motion",), says=True, knows=OF_EQUATIONS
     )
     checks = Derived["Analysis", tuple[Check, ...]](second_routes.checks, knows=OF_ALL)
 

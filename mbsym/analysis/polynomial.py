@@ -113,7 +113,8 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     if not declared:
         speeds: tuple[str, ...] = tuple(name for name in whole.variables if name not in exponentials)
         held = analysis.ring.dependencies(transfer.back(_product(whole)), analysis.system.coordinates)
-        aside = tuple(name for name in analysis.system.coordinates if name not in held)
+        told = {analysis.ring.generators[k].name for k in transfer.images}
+        aside = tuple(name for name in analysis.system.coordinates if name not in {*held, *told})
     else:
         vectors, speeds, aside = [*equations.vectors, *vectors], equations.speeds, _aside(form, equations.aside)
     numbers = {name: rationals.exact(x) for name, x in (values or {}).items() if name in whole.parameters}

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import Failure, NoClosedForm, message_of
 from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
-from mbsym.expressions.message import Message, joined
+from mbsym.expressions.message import joined
 from mbsym.formulas.formula import Shown
-from mbsym.mechanics.constraints.refusal import refuse_constraints
 from mbsym.model.system import System
 from mbsym.problems.small_parameter.averaging import Averaged
 from mbsym.problems.small_parameter.result import Outcome
@@ -64,13 +63,12 @@ class SmallParameters(Shown):
 
 
 def small_parameters_of(analysis: Analysis) -> SmallParameters:
-    """Raises Constrained for a system with constraints that names a small parameter."""
+    """Of constraints relations that give coordinates are put in; others stay where a rest is expanded."""
+    analysis = analysis.in_free_coordinates
     system = analysis.system
     phases = fast_phases(system)
     if system.small is None and not phases:
         return SmallParameters()
-    if system.small is not None:
-        refuse_constraints(system, Message("not expanded"))
     averaged = tuple(_averaging(analysis, one) for one in dict.fromkeys((*((x,) for x in phases), phases)) if one)
     if system.small is None:
         return SmallParameters(averaged=averaged)

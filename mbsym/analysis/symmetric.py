@@ -21,6 +21,7 @@ def symmetries_of(analysis: Analysis, values: Mapping[str, Fraction] | None = No
     Raises Failure where equations or their coefficients outgrow a bound, SingularPoint where formulas divide by zero at
     the ``values``.
     """
+    analysis = analysis.in_free_coordinates
     refuse_constraints(analysis.system, Message("symmetries are not looked for"))
     return symmetries(analysis.system, blocks_of(analysis, values), analysis.optional("integrals"))
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from html import escape
 from urllib.parse import quote
 
 from mbsym.batch.outcome import Outcome, Row, Summary
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.expressions.safe import safe
+from mbsym.report.language import Language
 
 FILENAME = "index.html"
 
@@ -27,14 +28,13 @@ ul { margin: 0; padding-left: 1.1rem; }
 _LINKED = ("report.html", "report.tex", "appendix.tex", "report.wl", "model.py", "model.c", "results.json")
 
 
-def index_page(summary: Summary, name: str) -> str:
+def index_page(summary: Summary, name: str, language: Language) -> str:
     """The page; ``name`` is that of the summary beside it."""
-    totals = ", ".join(f"{count} {outcome}" for outcome, count in summary.totals.items())
-    head = f"{counted(len(summary.rows), 'system', 'systems')}: {totals}" if summary.rows else "no systems"
-    rows = "\n".join(_row(row) for row in summary.rows)
-    part = f", part {_text(summary.shard)}" if summary.shard else ""
+    page = _Page(language.say)
+    rows = "\n".join(map(page.row, summary.rows))
+    columns = ("description", "system", "outcome", "stability", "claims and self-checks", "files")
     return f"""<!DOCTYPE html>
-<html lang="en">
+<html lang="{language.name}">
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -44,10 +44,9 @@ def index_page(summary: Summary, name: str) -> str:
 </head>
 <body>
 <h1>mbsym batch</h1>
-<p>{_text(head)}{part}. mbsym {_text(summary.version)}. <a href="{quote(name)}">{_text(name)}</a></p>
+<p>{page.text(_head(summary))}. mbsym {page.text(summary.version)}. <a href="{quote(name)}">{page.text(name)}</a></p>
 <table>
-<thead><tr><th scope="col">description</th><th scope="col">system</th><th scope="col">outcome</th>
-<th scope="col">stability</th><th scope="col">claims, self-checks</th><th scope="col">files</th></tr></thead>
+<thead><tr>{"".join(f'<th scope="col">{page.text(column)}</th>' for column in columns)}</tr></thead>
 <tbody>
 {rows}
 </tbody>
@@ -57,27 +56,40 @@ def index_page(summary: Summary, name: str) -> str:
 """
 
 
-def _text(value: str) -> str:
-    """Text of a description, or about one, as text of the page."""
-    return escape(safe(value))
+def _head(summary: Summary) -> Message:
+    """How many of what, and of which part."""
+    counts = [Message("[[count]] [[outcome]]", count=n, outcome=one) for one, n in summary.totals.items()]
+    head = (
+        joined((Counted(len(summary.rows), "system"), joined(counts, ", ")), ": ") if counts else Message("no systems")
+    )
+    return Message("[[head]], part [[part]]", head=head, part=summary.shard) if summary.shard else head
 
 
-def _row(row: Row) -> str:
-    style = ' class="bad"' if row.outcome.failed else ""
-    cells = [
-        f'<th scope="row">{_text(row.file)}</th>',
-        f"<td>{_text(row.name)}</td>",
-        f"<td><span{style}>{_text(str(row.outcome))}</span>{_list(_reasons(row))}</td>",
-        f"<td>{_list(_verdicts(row))}</td>",
-        f"<td>{_list(_checks(row))}</td>",
-        f"<td>{', '.join(_links(row))}</td>",
-    ]
-    return f"<tr>{''.join(cells)}</tr>"
+class _Page:
+    """Rows of the table in a language."""
 
+    def __init__(self, say: Callable[[str], str]) -> None:
+        self.say = say
 
-def _list(items: Iterator[str]) -> str:
-    found = list(items)
-    return f"<ul>{''.join(f'<li>{_text(item)}</li>' for item in found)}</ul>" if found else ""
+    def text(self, value: str) -> str:
+        """Text of a description, or about one, as text of the page."""
+        return escape(safe(self.say(value)))
+
+    def row(self, row: Row) -> str:
+        style = ' class="bad"' if row.outcome.failed else ""
+        cells = [
+            f'<th scope="row">{escape(safe(row.file))}</th>',
+            f"<td>{escape(safe(row.name))}</td>",
+            f"<td><span{style}>{self.text(row.outcome.value)}</span>{self._list(_reasons(row))}</td>",
+            f"<td>{self._list(_verdicts(row))}</td>",
+            f"<td>{self._list(_checks(row))}</td>",
+            f"<td>{', '.join(_links(row))}</td>",
+        ]
+        return f"<tr>{''.join(cells)}</tr>"
+
+    def _list(self, items: Iterable[str]) -> str:
+        lines = "".join(f"<li>{self.text(item)}</li>" for item in items)
+        return f"<ul>{lines}</ul>" if lines else ""
 
 
 def _reasons(row: Row) -> Iterator[str]:
@@ -85,33 +97,37 @@ def _reasons(row: Row) -> Iterator[str]:
         yield row.message
     yield from row.notes
     for complaint in row.complaints:
-        place = f"{complaint.line}:{complaint.column}: " if complaint.line else ""
-        yield f"{place}{complaint.severity}: {complaint.message}" + (f" ({complaint.hint})" if complaint.hint else "")
+        place = [f"{complaint.line}:{complaint.column}"] if complaint.line else []
+        text = "warning: [[message]]" if complaint.severity == "warning" else "error: [[message]]"
+        told = joined((*place, Message(text, message=worded(complaint.message))), ": ")
+        yield Message("[[told]] ([[hint]])", told=told, hint=worded(complaint.hint)) if complaint.hint else told
 
 
 def _verdicts(row: Row) -> Iterator[str]:
     for problem in row.problems:
         if problem.verdict is not None:
-            yield f"in symbols: {problem.verdict}"
+            yield Message("in symbols: [[verdict]]", verdict=worded(problem.verdict))
         if problem.verdict_at_values is not None:
-            yield f"at the values: {problem.verdict_at_values}"
+            yield Message("at the values: [[verdict]]", verdict=worded(problem.verdict_at_values))
         if problem.status != "derived" and row.outcome is not Outcome.ERRORS:
-            yield f"no problem {problem.number}: {problem.reason or problem.code}"
+            reason = worded(problem.reason or problem.code or "")
+            yield Message("no problem [[number]]: [[why]]", number=problem.number, why=reason)
 
 
 def _checks(row: Row) -> Iterator[str]:
     held = sum(claim.word == "held" for claim in row.claims)
     if row.claims:
-        yield f"{held} of {counted(len(row.claims), 'claim holds', 'claims hold')}"
+        yield Message("claims that hold: [[held]] of [[count]]", held=held, count=len(row.claims))
     for claim in row.claims:
         if claim.word != "held":
-            yield f"{claim.word}: {claim.place + ': ' if claim.place else ''}{claim.title}: {claim.outcome}"
+            place = [claim.place] if claim.place else []
+            yield joined((worded(claim.word), *place, worded(claim.title), worded(claim.outcome)), ": ")
     failed = [check for check in row.checks if check.failed]
     for check in failed:
-        yield f"self-check FAILED: {check.name}: {check.detail}"
+        yield joined((Message("SELF-CHECK FAILED"), worded(check.name), worded(check.detail)), ": ")
     if row.checks and not failed:
-        words = sorted({check.outcome for check in row.checks})
-        yield f"{counted(len(row.checks), 'self-check', 'self-checks')}: {', '.join(words)}"
+        outcomes = [worded(outcome) for outcome in sorted({check.outcome for check in row.checks})]
+        yield Message("self-checks: [[count]] ([[outcomes]])", count=len(row.checks), outcomes=joined(outcomes, ", "))
 
 
 def _links(row: Row) -> Iterator[str]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from msgspec import convert, structs
+from msgspec import Struct, convert
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.expressions.message import Counted, Message
@@ -36,10 +36,8 @@ def read_task(text: str) -> Task:
 
 
 def finished_text(finished: Finished) -> str:
-    said = [one for row in finished.row.complaints for one in (row.message, row.hint) if isinstance(one, Message)]
     return json.dumps(
         {
-            "sentences": {message: _sentence_data(message) for message in said},
             "row": row_data(finished.row),
             "files": {name: _content_data(content) for name, content in finished.files.items()},
             "meaning": finished.meaning,
@@ -52,12 +50,28 @@ def read_finished(text: str | bytes) -> Finished:
     """Raises one of MALFORMED where it is something else."""
     found = json.loads(text)
     files = {str(name): _read_content(content) for name, content in found["files"].items()}
-    row, said = read_row(found["row"]), {str(one): _read_sentence(data) for one, data in found["sentences"].items()}
-    complaints = tuple(
-        structs.replace(one, message=said.get(one.message, one.message), hint=one.hint and said.get(one.hint, one.hint))
-        for one in row.complaints
-    )
-    return Finished(replace(row, complaints=complaints), files, str(found["meaning"]), bool(found["same"]))
+    return Finished(read_row(found["row"]), files, str(found["meaning"]), bool(found["same"]))
+
+
+def _messages(value: object) -> Iterator[Message]:
+    """Those that stand anywhere in a row."""
+    if isinstance(value, Message):
+        yield value
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from _messages(part)
+    elif isinstance(value, Row | Struct):
+        for name in value.__annotations__:
+            yield from _messages(getattr(value, name))
+
+
+def _with_messages(data: Any, messages: Mapping[str, str]) -> Any:
+    """The data of a row with messages in place of their English."""
+    if isinstance(data, dict):
+        return {name: _with_messages(part, messages) for name, part in data.items()}
+    if isinstance(data, list):
+        return [_with_messages(part, messages) for part in data]
+    return messages.get(data, data) if isinstance(data, str) else data
 
 
 def _sentence_data(said: object) -> Any:
@@ -87,13 +101,16 @@ def _read_content(found: Any) -> str | bytes:
 
 def row_data(row: Row) -> dict[str, Any]:
     """A row without what differs from batch to batch: its seconds, and whether it was up to date."""
-    found: dict[str, Any] = plain(row)
-    del found["seconds"], found["cached"]
-    return found
+    data: dict[str, Any] = plain(row)
+    del data["seconds"], data["cached"]
+    data["sentences"] = {message: _sentence_data(message) for message in _messages(row)}
+    return data
 
 
-def read_row(found: Mapping[str, Any]) -> Row:
+def read_row(data: Mapping[str, Any]) -> Row:
     """The row of ``row_data``.  Raises one of MALFORMED where it is something else."""
+    messages = {str(english): _read_sentence(part) for english, part in data["sentences"].items()}
+    found = _with_messages({name: part for name, part in data.items() if name != "sentences"}, messages)
     return Row(
         file=str(found["file"]),
         folder=str(found["folder"]),
@@ -104,8 +121,8 @@ def read_row(found: Mapping[str, Any]) -> Row:
         checks=convert(found["checks"], tuple[CheckRow, ...]),
         complaints=convert(found["complaints"], tuple[ComplaintRow, ...]),
         files=convert(found["files"], tuple[FileRow, ...]),
-        message=str(found["message"]),
-        notes=tuple(map(str, found["notes"])),
+        message=convert(found["message"], str),
+        notes=convert(found["notes"], tuple[str, ...]),
     )
 
 

@@ -14,7 +14,7 @@ from msgspec import structs
 
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row
 from mbsym.batch.transport import Finished, Task
-from mbsym.expressions.message import Message
+from mbsym.expressions.message import Message, joined
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -155,9 +155,10 @@ def _notes(
     """What the program is at fault for, and what is to be told of files that were made, each once."""
     from mbsym.report.targets import FORMATS
 
-    told = [f"{where}: {why.reason}" for where, why in defects]
-    told += [f"internal error: {type(error).__name__}: {error}".removesuffix(": ") for error in analysis.defects]
+    notes: list[str] = [joined((where, why.reason), ": ") for where, why in defects]
+    for error in analysis.defects:
+        notes.append(Message("internal error: [[error]]", error=f"{type(error).__name__}: {error}".removesuffix(": ")))
     for target in (FORMATS[name] for name in formats):
         words = target.remark() if target.remark is not None and target.filename in files else ""
-        told += [f"{target.filename}: {words}"] if words else []
-    return dict.fromkeys(told)
+        notes += [joined((target.filename, words), ": ")] if words else []
+    return dict.fromkeys(notes)

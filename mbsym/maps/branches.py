@@ -455,7 +455,7 @@ def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | No
         q = q - step
         if not np.all(np.isfinite(q)):
             return None
-        if np.max(np.abs(step)) < SMALL * (1 + np.max(np.abs(q))):
+        if np.max(np.abs(step)) <= SMALL * max(np.max(np.abs(q)), np.max(np.abs(guess))):
             return q
     return None
 

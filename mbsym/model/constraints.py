@@ -89,11 +89,15 @@ class Rolling:
 
 @dataclass(frozen=True, slots=True)
 class Velocity:
-    """A relation that is linear in the velocities; ``left`` = ``right`` as it was written."""
+    """A relation that is linear in the velocities; ``left`` = ``right`` as it was written, or ``in_vectors``.
+
+    It stands there where it holds speeds or unit vectors, and has coordinates and velocities in place of these.
+    """
 
     left: Expression
     right: Expression
     span: Span | None = _span()
+    in_vectors: tuple[Expression, ...] | None = None
 
 
 Constraint = Coincide | Parallel | Distance | Relation | Rolling | Velocity
@@ -112,7 +116,7 @@ KIND_NAMES: dict[type[Constraint], str] = {
 def as_written(constraint: Constraint) -> Constraint:
     """The constraint with unit vectors where the description has them."""
     match constraint:
-        case Relation(in_vectors=(left, right)):
+        case Relation(in_vectors=(left, right)) | Velocity(in_vectors=(left, right)):
             return replace(constraint, left=left, right=right, in_vectors=None)
         case Rolling(in_vectors=(x, y, z)):
             return replace(constraint, contact=(x, y, z), in_vectors=None)

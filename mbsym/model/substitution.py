@@ -109,16 +109,18 @@ def without_explicit_relations(system: System) -> System:
     """The same motions in fewer coordinates: a relation c s = f(q), c a number or a parameter of known sign, gives s.
 
     Generalised forces go with the displacements that are left, Q_q + Q_s ds/dq.  Relations that hold prescribed
-    quantities or t stay, and all that are not so.  What only tells of coordinates (claims, initial values) is left out.
+    quantities or t stay, and all that are not so.  Inputs are at their values; claims and other things that tell of the
+    coordinates are left out, but for what abbreviates formulas and the initial values of coordinates that are left.
     """
     if any(isinstance(constraint, Relation) for constraint in system.constraints):
-        system = _motions_alone(system)
+        alone = replace(_motions_alone(system), initial=system.begun, dependent=system.dependent)
+        system = replace(alone, abbreviations=system.abbreviations, notation=system.notation)
     while (explicit := _explicit(system)) is not None:
         relation, name, value = explicit
         kept = tuple(constraint for constraint in system.constraints if constraint is not relation)
         free = [coordinate for coordinate in system.coordinates if coordinate != name]
         system = _told_by(replace(system, constraints=kept), name, value, free)
-    return system
+    return replace(system, dependent=()) if system.dependent else system
 
 
 def displaced(system: System, name: str, direction: Mapping[str, Fraction]) -> System:
@@ -151,7 +153,10 @@ def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
         if not isinstance(relation, Relation) or not names(relation.left) | names(relation.right) <= still:
             continue
         zero = subtract(relation.left, relation.right)
-        for name in reversed(system.coordinates):
+        begun = {entry.coordinate for entry in system.initial}
+        place = {name: k for k, name in enumerate(system.coordinates)}
+        rank = {name: (name not in system.dependent, name in begun, -k) for name, k in place.items()}
+        for name in sorted(place, key=rank.__getitem__):
             slope = differentiate(zero, name)
             if not names(slope) & {*system.coordinates} and sign_by_structure(slope, signs) is not None:
                 return relation, name, divide(negative(folded(zero, {name: ZERO})), slope)
@@ -188,5 +193,6 @@ def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) 
         bodies=bodies,
         loads=tuple(kept for load in system.loads if (kept := acting(load).simplified()) is not None),
         motion=tuple(entry for entry in system.motion if entry.coordinate in free),
+        initial=tuple(entry for entry in system.initial if entry.coordinate in free),
     )
     return put(there, images, folded)

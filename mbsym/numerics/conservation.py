@@ -36,6 +36,7 @@ from mbsym.numerics.kernels import arrays
 from mbsym.numerics.kernels.interface import Code
 from mbsym.numerics.kernels.llvm import kernels
 from mbsym.numerics.kernels.precise import enclosures
+from mbsym.numerics.methods.magnitudes import about
 from mbsym.numerics.scenario import PRECISION
 
 if TYPE_CHECKING:
@@ -280,12 +281,13 @@ def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
     """States near the initial one: dyadic numbers, so that lengths stay lengths and roots stay real; ``held`` rest."""
     random = Random(1)
     start = [float(x) for x in dynamics.scenario.state]
+    sizes = 2.0 ** np.floor(np.log2(about(dynamics, 0.0, start).sizes[:, 0]))
     names = dynamics.system.coordinates
     free = [True] * len(start) if dynamics.in_states else [name not in held for name in names] * 2
     found = []
     for _ in range(BESIDE):
         time, *parts = random.randint(0, 1024) / 256, *(random.randint(-64, 64) / 256 for _ in start)
-        moved = [x + part * (1 + abs(x)) * one for x, part, one in zip(start, parts, free, strict=True)]
+        moved = [x + part * (size + abs(x)) * k for x, part, size, k in zip(start, parts, sizes, free, strict=True)]
         found.append([time, *moved])
     return found
 

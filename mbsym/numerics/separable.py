@@ -29,7 +29,8 @@ from mbsym.numerics.methods.interface import (
     Work,
     together,
 )
-from mbsym.numerics.planning.reduced import without
+from mbsym.numerics.methods.tableaux import initial_state
+from mbsym.numerics.planning.reduced import Reduced, without
 from mbsym.numerics.scenario import Scenario
 
 
@@ -94,8 +95,18 @@ def _alone(scenario: Scenario, names: set[str]) -> Scenario:
     return without(scenario, held)
 
 
+def completing(resting: Reduced, method: Method) -> Separate:
+    """A method that integrates the coordinates that move by another, and shows whole states."""
+    places, _ = resting.reduction.expanded(resting.whole.scenario)
+    dynamics = resting.dynamics
+    return Separate(resting.whole, [Part(dynamics.system.coordinates, places, dynamics)], [method])
+
+
 class Separate:
-    """A method that integrates the parts of ``whole`` one beside the other, each by a method of its own."""
+    """A method that integrates the parts of ``whole`` one beside the other, each by a method of its own.
+
+    What is in none of them rests where it starts.
+    """
 
     def __init__(self, whole: Dynamics, parts: Sequence[Part], methods: Sequence[Method]) -> None:
         self._whole, self._parts, self._methods = whole, tuple(parts), tuple(methods)
@@ -104,19 +115,26 @@ class Separate:
     def start(
         self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
     ) -> Run:
-        """Raises ValueError for the dynamics of another scenario, Unusable where a method does not apply to a part."""
+        """Raises ValueError for the dynamics of another scenario or an ``initial`` state that moves what rests,
+        Unusable where a method does not apply to a part."""
         if dynamics is not self._whole:
             raise ValueError("this method was made for the dynamics of another scenario")
         runs = [
             method.start(part.dynamics, setting, scalar, None if initial is None else initial[list(part.places)], at)
             for part, method in zip(self._parts, self._methods, strict=True)
         ]
-        return _Beside(self._parts, runs)
+        dtype = np.asarray(runs[0].state).dtype.type
+        beside = _Beside(self._parts, runs, initial_state(dynamics, dtype))
+        if initial is not None:
+            beside.require_rest(initial)
+        return beside
 
 
 def _traits(parts: Sequence[Part], methods: Sequence[Method]) -> Traits:
     """Those of the one method, or of several."""
     first = methods[0].traits
+    if len(methods) == 1:
+        return first
     scalars = tuple(kind for kind in first.scalars if all(kind in method.traits.scalars for method in methods))
     pairs = zip(parts, methods, strict=True)
     title = joined([joined([", ".join(part.names), method.traits.title], ": ") for part, method in pairs], "; ")
@@ -136,10 +154,14 @@ def _traits(parts: Sequence[Part], methods: Sequence[Method]) -> Traits:
 
 @dataclass
 class _Beside:
-    """Runs of the parts, brought to the same times; ``ahead`` keeps what some have beyond the time that is shown."""
+    """Runs of the parts, brought to the same times; ``ahead`` keeps what some have beyond the time that is shown.
+
+    ``whole`` is the state (2n,) at the start, which holds what is in no part.
+    """
 
     parts: Sequence[Part]
     runs: Sequence[Run]
+    whole: Any
     time: float = 0.0
     state: Any = None
     ahead: list[Piece | None] = field(default_factory=list)
@@ -157,21 +179,25 @@ class _Beside:
 
     def _of_part(self, part: Part, state: Any) -> Any:
         """A whole state that tells of one part only."""
-        found = np.full(sum(len(one.places) for one in self.parts), np.nan)
-        found[list(part.places)] = state
-        return found
+        return self._joined([state if one is part else np.full(len(one.places), np.nan) for one in self.parts])
+
+    def require_rest(self, state: Any) -> None:
+        """Raises ValueError where a state moves what is in no part."""
+        given = np.asarray(state).astype(self.whole.dtype)
+        if not np.array_equal(self._joined([given[list(part.places)] for part in self.parts]), given):
+            raise ValueError("a state that moves what was taken out of the integration because it rests")
 
     def _count(self) -> None:
         """The work of all parts together."""
-        for name in COUNTS:
+        for name in (*COUNTS, "compiling"):
             setattr(self.work, name, sum(getattr(run.work, name) for run in self.runs))
         self.work.changes[:] = sorted((one for run in self.runs for one in run.work.changes), key=lambda one: one.time)
 
     def _joined(self, states: Sequence[Any]) -> Any:
         """Whole states of those of the parts, one or in columns."""
-        size = sum(len(part.places) for part in self.parts)
-        first = np.asarray(states[0])
-        found = np.empty((size, *first.shape[1:]), first.dtype)
+        shape = np.shape(states[0])[1:]
+        found = np.empty((len(self.whole), *shape), self.whole.dtype)
+        found[...] = self.whole.reshape(-1, *[1] * len(shape))
         for part, state in zip(self.parts, states, strict=True):
             found[list(part.places)] = state
         return found
@@ -183,7 +209,7 @@ class _Beside:
         """Where one part breaks down the others are brought to that time, too."""
         times = np.asarray(times)
         states: list[Any] = []
-        ended: Breakdown | None = None
+        ended: tuple[int, Breakdown] | None = None
         for place in range(len(self.runs)):
             try:
                 states.append(self._filled(place, times))
@@ -191,15 +217,20 @@ class _Beside:
                 count = 0 if found.filled is None else found.filled.shape[1]
                 times, states = times[:count], [state[:, :count] for state in states]
                 states.append(np.empty((len(self.parts[place].places), 0)) if found.filled is None else found.filled)
-                ended = found if ended is None or found.time < ended.time else ended
+                ended = (place, found) if ended is None or found.time < ended[1].time else ended
         self._count()
         filled = self._joined(states)
         if ended is not None:
-            state = filled[:, -1] if filled.shape[1] else self.state
-            raise Breakdown(ended.kind, ended.message, ended.time, np.asarray(state, dtype=float), filled)
+            raise self._ended(*ended, filled[:, -1] if filled.shape[1] else self.state, filled)
         if len(times):
             self.time, self.state = float(times[-1]), filled[:, -1].copy()
         return filled
+
+    def _ended(self, place: int, found: Breakdown, others: Any, filled: Any = None) -> Breakdown:
+        """With a whole state: that of the part which broke down, and the ``others``."""
+        state = np.array(others, dtype=float)
+        state[list(self.parts[place].places)] = found.state
+        return Breakdown(found.kind, found.message, found.time, state, filled)
 
     def _filled(self, place: int, times: Any) -> Any:
         """The states of one part, from what it has already and from its run."""
@@ -225,7 +256,10 @@ class _Beside:
         for place, run in enumerate(self.runs):
             kept = self.ahead[place]
             if kept is None or kept.end <= start:
-                kept = self.ahead[place] = run.step(until)
+                try:
+                    kept = self.ahead[place] = run.step(until)
+                except Breakdown as ended:
+                    raise self._ended(place, ended, self.state) from None
             pieces.append(kept)
         end = min(piece.end for piece in pieces) if until is None else min(until, *(piece.end for piece in pieces))
         curves: list[Callable[[Any], Any]] = [piece.curve for piece in pieces]
@@ -236,6 +270,7 @@ class _Beside:
         return found
 
     def restart(self, time: float, state: Any) -> None:
+        self.require_rest(state)
         given = np.asarray(state)
         for part, run in zip(self.parts, self.runs, strict=True):
             run.restart(time, given[list(part.places)])

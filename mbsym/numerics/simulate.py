@@ -316,13 +316,13 @@ def _checked(rows: Any, times: Any, bound: float) -> None:
     message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
     if np.any(np.isnan(state)):
         message = Message("a coordinate or velocity is not a number")
-    raise Breakdown(Cause.BLOW_UP, message, float(times[first]), np.array(state, dtype=float), rows[:, :first])
+    raise Breakdown(Cause.BLOW_UP, message, times[first], state, rows[:, :first])
 
 
 def _cut(run: Integrated, first: int) -> Integrated:
     """What is left of a run whose energy has no value from a sample on: it went where the model says nothing."""
     message = "the energy is no real number from here on: a root or a logarithm has left its domain"
-    ended = Breakdown(Cause.UNDEFINED, message, float(run.times[first]), run.states[:, first].astype(float))
+    ended = Breakdown(Cause.UNDEFINED, message, run.times[first], run.states[:, first])
     kept = max(1, first)
     return replace(run, times=run.times[:kept], states=run.states[:, :kept], breakdown=ended)
 
@@ -456,7 +456,7 @@ def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
     message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
     if message:
         return Breakdown(Cause.SINGULAR, message, found.time, found.state)
-    if _undefined(dynamics, found.time, state):
+    if _undefined(dynamics, found.time, state, past):
         message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
         return Breakdown(Cause.UNDEFINED, message, found.time, found.state)
     bound = bound_of(past[1:, 0])
@@ -474,8 +474,11 @@ def _goes_on(dynamics: Dynamics, t: float, state: Any, begin: float) -> bool:
     return any(constraints.led(t + part * (t - begin), state) is not None for part in LATER)
 
 
-def _undefined(dynamics: Dynamics, t: float, state: Any) -> bool:
-    """Whether the rates are no numbers (infinite ones are) in a state, or a little ahead of it."""
+def _undefined(dynamics: Dynamics, t: float, state: Any, past: Any) -> bool:
+    """Whether the rates are no numbers (infinite ones are) in a state, or a little ahead of it.
+
+    Little is a part of what the motion has passed (``past``: t, q, q' in columns), or of the scene's sizes.
+    """
     if not np.all(np.isfinite(state)):
         return False
     rhs = compiled_kernel(dynamics, "right_hand_side")
@@ -483,10 +486,11 @@ def _undefined(dynamics: Dynamics, t: float, state: Any) -> bool:
         rates = rhs(np.concatenate(([t], state)))
         if np.any(np.isnan(rates)):
             return True
-        speed = float(np.max(np.abs(rates), initial=0.0))
-        if not 0 < speed < LARGEST:
+        moving = np.abs(rates) > 0
+        if not np.any(moving) or not np.max(np.abs(rates)) < LARGEST:
             return False
-        steps = np.array(AHEAD) * (1 + float(np.max(np.abs(state)))) / speed
+        sizes = np.maximum(about(dynamics, t, state).sizes[:, 0], np.max(np.abs(past[1:]), axis=1))
+        steps = np.array(AHEAD) * float(np.min(sizes[moving] / np.abs(rates[moving])))
         return bool(np.any(np.isnan(rhs(np.vstack([t + steps, state[:, None] + np.outer(rates, steps)])))))
 
 

@@ -115,7 +115,7 @@ class _Recorder:
         if not np.all(defined):
             first = int(np.argmin(defined))
             message = "the energy is no real number from here on: a root or a logarithm has left its domain"
-            raise Breakdown(Cause.UNDEFINED, message, float(points[0, first]), rows[:, first].astype(float))
+            raise Breakdown(Cause.UNDEFINED, message, points[0, first], rows[:, first])
 
     def past(self) -> Any:
         places = _evenly(self.count, SHOWN)

@@ -12,7 +12,8 @@ nothing depends are left out.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
 from math import gcd, lcm
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -55,8 +56,8 @@ def vector_field(
     where the time, inputs, roots or functions other than exponentials occur.
     """
     state = _State(form, equations, images, driven)
-    images, ring = state.images, form.ring
     variables = state.variables()
+    images, ring = state.images, form.ring
     relations = state.relations(variables)
     polynomials = [state.determinant, *variables.values()]
     fractions = [ring.fraction(p, state.kept) for p in polynomials]
@@ -73,6 +74,7 @@ def vector_field(
         common = common * (bottom / bottom.gcd(common))
     cleared = [top * (common / bottom) for top, bottom in zip(tops, bottoms, strict=True)]
     moved, denominator = in_lowest_terms(cleared[1:], cleared[0])
+    units = frozenset(name for k, name in places.items() if state.is_unit(k))
     field = PolynomialField(
         transfer.context,
         transfer.parameters,
@@ -80,9 +82,26 @@ def vector_field(
         tuple(moved),
         denominator,
         tuple(map(transfer, relations)),
-        units=frozenset(name for k, name in places.items() if state.is_unit(k)),
+        units=units,
     )
-    return field, transfer
+    return on_rows(field) if state.rows else field, transfer
+
+
+def on_rows(field: PolynomialField) -> PolynomialField:
+    """The same by what positions keep that constraints tie.
+
+    Raises NoClosedForm where the relations are not solved for a variable each, or the field is singular on them.
+    """
+    if not field.are_solved:
+        raise NoClosedForm(
+            "constraints tie positions by relations that do not give one power of a variable each",
+            remedy="choose coordinates that keep them",
+        )
+    denominator = field.reduced(field.denominator)
+    if denominator == 0:
+        raise NoClosedForm(SINGULAR)
+    moved, denominator = in_lowest_terms([field.reduced(p) for p in field.numerators], denominator)
+    return replace(field, numerators=tuple(moved), denominator=denominator)
 
 
 class _State:
@@ -91,7 +110,7 @@ class _State:
     def __init__(self, form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial], driven: bool) -> None:
         system, ring = form.system, form.ring
         self.ring, self.equations = ring, equations
-        free, tied = _free(form, equations)
+        free, tied, self.rows = _free(form, equations, images)
         self.images, self.driven = {**images, **tied}, driven
         mass, forcing = free.mass_matrix.polynomials, [x.polynomial for x in free.forcing]
         whole = determinant(ring, mass)
@@ -173,11 +192,33 @@ class _State:
         while waiting:
             fractions = [ring.fraction(p, self.kept) for p in waiting]
             held = occurring([*(p for p, _ in fractions), *(f for _, factors in fractions for f, _ in factors)])
-            new = {
-                i for k in held for i in (k, self._partner(k)) if ring.generators[i].kind != "parameter"
-            } - found.keys()
-            waiting = [found.setdefault(k, self._rate(k)) for k in sorted(new)]
+            waiting = [found.setdefault(k, self._rate(k)) for k in sorted(self._moving(held) - found.keys())]
+            if not waiting:
+                self.rows = self._felt(found)
+                waiting = [
+                    found.setdefault(k, self._rate(k)) for k in self._moving(occurring(self.rows)) - found.keys()
+                ]
         return {k: found[k] for k in sorted(found, key=self._order)}
+
+    def _moving(self, held: Iterable[int]) -> set[int]:
+        """Generators that are no parameters, sines with their cosines."""
+        generators = self.ring.generators
+        return {i for k in held for i in (k, self._partner(k)) if generators[i].kind != "parameter"}
+
+    def _felt(self, variables: Collection[int]) -> list[Polynomial]:
+        """The rows without those that only give a position that is no variable; it is put in where they are linear."""
+        rows = list(self.rows)
+        while True:
+            held = [self._moving(occurring([row])) for row in rows]
+            apart = [own - {*variables}.union(*held[:i], *held[i + 1 :]) for i, own in enumerate(held)]
+            place = next((i for i, own in enumerate(apart) if own), None)
+            if place is None:
+                return rows
+            row = rows.pop(place)
+            for k in apart[place]:
+                slope = row.derivative(k)
+                if slope.is_constant() and self.ring.generators[k].kind == "coordinate":
+                    self.images = {k: self.ring.context.gen(k) - row / slope, **self.images}
 
     def _partner(self, k: int) -> int:
         """The cosine of a sine, and the other way round."""
@@ -197,7 +238,9 @@ class _State:
             return 1, k
         if g.kind in ("sine", "cosine") and g.name in names:
             return 2, 2 * names.index(g.name) + (g.kind == "cosine")
-        return (3, names.index(g.name)) if g.name in names else (4, -k)
+        if g.name in names:  # what hangs on others comes first, where it is tied to them
+            return 3, names.index(g.name) * (-1 if self.rows else 1)
+        return 4, -k
 
     def _rate(self, k: int) -> Polynomial:
         """det(M) dg/dt of a generator g."""
@@ -243,6 +286,7 @@ class _State:
                     total = total + ring.generator("coordinate", a) * ring.generator("coordinate", b)
                 found.append(total)
         exponentials = [k for k in variables if self._exponent(k) is not None]
+        found += [row / row.leading_coefficient() for row in self.rows]
         tied = self._between_exponentials(exponentials)
         angles = [k for k in variables if ring.generators[k].kind == "sine" and ring.generators[k].argument is not None]
         apart = {*exponentials, *angles, *map(self._partner, angles)}
@@ -298,23 +342,23 @@ class _State:
         return [difference / difference.leading_coefficient()]
 
 
-def _free(form: SpeedForm, equations: Equations) -> tuple[Equations | Embedded, Mapping[int, Polynomial]]:
-    """The equations of the independent velocities, and the dependent ones by these (q' = Y u, the constraints).
+def _free(
+    form: SpeedForm, equations: Equations, images: Mapping[int, Polynomial]
+) -> tuple[Equations | Embedded, Mapping[int, Polynomial], list[Polynomial]]:
+    """The equations of the independent velocities, the dependent ones by these (q' = Y u), and what ties positions.
 
-    Raises NoClosedForm where constraints tie positions, which are no variables of their own then.
+    The last are polynomials that vanish.  A coordinate that one of them gives is put in, as dependent velocities are.
     """
-    tied = equations.constraints
+    tied, ring = equations.constraints, form.ring
     if tied is None:
-        return equations, NOTHING
-    if tied.position_rank or equations.embedded is None or tied.solved is None:
-        raise NoClosedForm(
-            "constraints tie positions: no polynomial field in free variables"
-            if tied.position_rank
-            else "the equations without multipliers outgrow the budget of terms"
-        )
+        return equations, NOTHING, []
+    if equations.embedded is None or tied.solved is None:
+        raise NoClosedForm("the equations without multipliers outgrow the budget of terms")
     from mbsym.problems.constraints.motion import dependent_velocities  # few systems have constraints
 
-    return equations.embedded, dependent_velocities(form, tied.solved)
+    told = [tied.position[k] for k in tied.independent]
+    rows = [put_in(ring, ring.fraction(row.polynomial)[0], images) for row in told if row is not None]
+    return equations.embedded, dependent_velocities(form, tied.solved), rows
 
 
 def put_in(ring: Ring, p: Polynomial, images: Mapping[int, Polynomial]) -> Polynomial:

@@ -12,6 +12,7 @@ from mbsym.algebra.factors import content, irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.matrices import added, cramer, determinant
 from mbsym.algebra.ring import Polynomial, Ring
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.expressions.rates import ENDINGS, acceleration_name
 from mbsym.formulas.formula import Column, Formula, Matrix, column
 from mbsym.formulas.latex import latex_symbol
@@ -131,8 +132,12 @@ def _constraints(analysis: Analysis) -> Iterator[Line]:
     if tied is None:
         raise NoClosedForm("the system has no constraints")
     for name, value in zip(tied.names, tied.velocity, strict=True):
-        of = f", component {name.component}" if name.component else ""
-        yield Line("", value, remark=f"constraint {name.constraint + 1} ({name.kind}{of})")
+        text = "constraint [[number]] ([[kind]])"
+        gaps = {"number": name.constraint + 1, "kind": name.kind}
+        if name.component:
+            text = "constraint [[number]] ([[kind]], component [[component]])"
+            gaps["component"] = name.component
+        yield Line("", value, remark=Message(text, **gaps))
 
 
 def accelerations(analysis: Analysis) -> Column:
@@ -142,7 +147,8 @@ def accelerations(analysis: Analysis) -> Column:
         raise NoClosedForm("accelerations under constraints come with the multipliers; the equations have them")
     n = len(equations.forcing)
     if n > MOST_SOLVED:
-        raise NoClosedForm(f"accelerations of {n} coordinates fill pages; model.py computes them")
+        text = "accelerations of so many coordinates ([[count]]) fill pages; model.py computes them"
+        raise NoClosedForm(Message(text, count=n))
     ring = equations.forcing[0].ring
     rows = [[x.polynomial for x in row] for row in equations.mass_matrix]
     tops = cramer(ring, rows, [x.polynomial for x in equations.forcing])
@@ -170,7 +176,7 @@ def _moving(ring: Ring, rate: str) -> Formula:
 def _motion(analysis: Analysis) -> Iterator[Line]:
     equilibrium = analysis.equilibrium
     if equilibrium.satisfied:
-        yield Line("", "the unperturbed motion satisfies the equations of motion identically")
+        yield Line("", Message("the unperturbed motion satisfies the equations of motion identically"))
     yield from (
         Line("", x, "!=" if equilibrium.impossible else "=") for x in equilibrium.impossible or equilibrium.conditions
     )
@@ -188,8 +194,8 @@ def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:
 
 def _characteristic(analysis: Analysis) -> Iterator[Line]:
     for part in analysis.stability.subsystems:
-        remark = f"of {', '.join(part.coordinates)}: coefficients of the powers of lambda, from the constant one on"
-        yield Line("", tuple(part.characteristic), "", remark)
+        text = "of [[names]]: coefficients of the powers of lambda, from the constant one on"
+        yield Line("", tuple(part.characteristic), "", Message(text, names=", ".join(part.coordinates)))
 
 
 def _determinants(analysis: Analysis) -> Iterator[Line]:
@@ -203,7 +209,8 @@ def _determinants(analysis: Analysis) -> Iterator[Line]:
             _freed(part.ring, part.known, zip(*(m[i] for m in by_power), strict=True)) for i in range(matrices.size)
         )
         told = tuple(tuple(_in_factors(part, entry) for entry in row) for row in rows)
-        yield Line(f"Lambda{k}", Determinant(told), remark=f"of {', '.join(matrices.names)}, up to a positive factor")
+        remark = Message("of [[names]], up to a positive factor", names=", ".join(matrices.names))
+        yield Line(f"Lambda{k}", Determinant(told), remark=remark)
 
 
 def _in_factors(part: SubsystemStability, entry: Sequence[Polynomial]) -> InPowers:
@@ -238,8 +245,12 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
         of = ", ".join(part.coordinates)
         labels = label_meanings(part.ring, part.theory.requirements)
         items = list(statements(part.ring, part.theory.requirements, told=labels))
-        none = "" if items else "; none is left that might fail" if part.theory.requirements else "; none was found"
-        yield Line("", f"conditions: {part.theory.wanted}{none}", "", of)
+        text = "conditions: [[wanted]]"
+        if not items:
+            text = "conditions: [[wanted]]; none was found"
+        if not items and part.theory.requirements:
+            text = "conditions: [[wanted]]; none is left that might fail"
+        yield Line("", Message(text, wanted=worded(part.theory.wanted)), "", of)
         shown = Shown()
         for item in items:
             formula: Any = item.formula or item.never or item.note
@@ -251,18 +262,20 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
 
 
 def _remark(item: Statement, of: str) -> str:
-    return ", ".join(filter(None, (f"{item.label} of {of}", item.note or item.remark)))
+    label = Message("[[label]] of [[names]]", label=worded(item.label), names=of)
+    return joined(filter(None, (label, item.note or item.remark)), ", ")
 
 
 def _eigenvalues(analysis: Analysis) -> Iterator[Line]:
     if not analysis.stability.spectra:
         raise NoClosedForm("the description does not give all values")
     for part in analysis.stability.spectra:
-        yield Line("", tuple(numbers(part)), "", f"of {', '.join(part.coordinates)}")
+        yield Line("", tuple(numbers(part)), "", Message("of [[names]]", names=", ".join(part.coordinates)))
 
 
 def _integrals(analysis: Analysis) -> Iterator[Line]:
-    yield from (Line("", x.formula, "= const", f"{x.name} ({x.status})") for x in analysis.integrals)
+    for x in analysis.integrals:
+        yield Line("", x.formula, "= const", joined((worded(x.name), " (", worded(x.status), ")"), ""))
 
 
 #: What may be asked for, and what it is.
@@ -293,7 +306,7 @@ NAMES: Mapping[str, tuple[str, Callable[[Analysis], Iterator[Line]]]] = {
 
 
 def _carrier(name: str) -> str:
-    return "inertial axes" if name == INERTIAL else f"the axes of {name}"
+    return Message("inertial axes") if name == INERTIAL else Message("the axes of [[body]]", body=name)
 
 
 def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
@@ -301,17 +314,18 @@ def _of_body(analysis: Analysis, name: str) -> Iterator[Line]:
     scene = analysis.scene
     motion = next(x for x in scene.motions.values() if x.body.name == name)
     place = [scene.ring.reduce(x) for x in scene.position(scene.zero(name), INERTIAL)]
-    yield Line("R", body.rotation, remark=f"direction cosines of {name} in {_carrier(body.attached_to)}")
-    yield Line("r_O", column(scene.ring, place), remark="place of its connection point, in inertial axes")
-    yield Line("omega", body.angular_velocity, remark="its angular velocity, in its axes")
-    yield Line("V_O", body.velocity_origin, remark="velocity of its connection point, in its axes")
+    cosines = Message("direction cosines of [[body]] in [[axes]]", body=name, axes=_carrier(body.attached_to))
+    yield Line("R", body.rotation, remark=cosines)
+    yield Line("r_O", column(scene.ring, place), remark=Message("place of its connection point, in inertial axes"))
+    yield Line("omega", body.angular_velocity, remark=Message("its angular velocity, in its axes"))
+    yield Line("V_O", body.velocity_origin, remark=Message("velocity of its connection point, in its axes"))
     if body.velocity_mass_centre != body.velocity_origin:
-        yield Line("V_C", body.velocity_mass_centre, remark="velocity of its mass centre, in its axes")
+        yield Line("V_C", body.velocity_mass_centre, remark=Message("velocity of its mass centre, in its axes"))
     energy = body_energy(scene, motion)
     if motion.gyrostatic_moment is not None:
         energy += motion.gyrostatic_moment.dot(motion.angular_velocity)
     if not (own := scene.ring.reduce(energy)).is_zero():  # of a massless frame there is none
-        yield Line("T", Formula(scene.ring, own), remark="its part of the kinetic energy")
+        yield Line("T", Formula(scene.ring, own), remark=Message("its part of the kinetic energy"))
 
 
 def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
@@ -321,9 +335,11 @@ def _of_equation(analysis: Analysis, name: str) -> Iterator[Line]:
     moving = [_moving(ring, rate) for rate in _rates(analysis)]
     first = sum((x * rate for x, rate in zip(equations.mass_matrix.rows[at], moving, strict=True)), moving[0] * 0)
     rest = equations.equalities(names)[at] - first
-    tied = "" if equations.constraints is None else " but for the forces of constraints"
-    yield Line("", first, "", f"the terms with accelerations in the equation of {name}")
-    yield Line("", rest, "", f"its other terms; the sum is zero{tied}")
+    others = Message("its other terms; the sum is zero")
+    if equations.constraints is not None:
+        others = Message("its other terms; the sum is zero but for the forces of constraints")
+    yield Line("", first, "", Message("the terms with accelerations in the equation of [[name]]", name=name))
+    yield Line("", rest, "", others)
 
 
 def _of_rows(analysis: Analysis) -> tuple[str, ...]:
@@ -352,7 +368,8 @@ def lines(analysis: Analysis, name: str) -> Iterator[Line]:
 def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
     """The same in the new variables of ``formulas``.  Raises Failure for what is no formula of one row."""
     if name not in CARRIED:
-        raise NoClosedForm(f"no description has these variables, in which there are only {', '.join(CARRIED)}")
+        text = "no description has these variables, in which there are only [[names]]"
+        raise NoClosedForm(Message(text, names=", ".join(CARRIED)))
     for line in lines(formulas.analysis, name):
         if not isinstance(line.value, Formula):
             continue
@@ -371,28 +388,30 @@ def reduced_lines(found: Reduced) -> Iterator[Line]:
     flow, first = found.reduction.flow, found.reduction.steps[0]
     remainder = "" if found.asked.known is None else f"O({found.asked.small}^{found.asked.known})"
     for k, step in enumerate(found.reduction.steps[1:], start=1):
-        yield Line("", f"{k}. {step.how.value}")
+        yield Line("", joined((f"{k}.", worded(step.how.value))))
         yield from (Line(found.variable(place), InSmall(found.terms(x))) for place, x in step.images.items())
-    yield Line("", "equations of motion" + (f", without {remainder}" if remainder else ""))
+    head = Message("equations of motion, without [[rest]]", rest=remainder) if remainder else "equations of motion"
+    yield Line("", worded(head))
     for place, x in flow.rates.items():
         rate = found.rate(place)
         if rate is not None and flow.velocities.get(place) not in flow.rates:
             yield Line(rate, InSmall(found.terms(x)))
     for x in flow.integrals:
-        yield Line("", InSmall(found.terms(x)), "=" if flow.fixed else "= const", "integral")
-    said = "they satisfy" if found.reduction.steps == (first,) else "each step satisfies"
-    but = f" but for {remainder}" if remainder else ""
-    yield Line("", f"{said} the original equations{but}: checked at random exact states")
+        yield Line("", InSmall(found.terms(x)), "=" if flow.fixed else "= const", Message("integral"))
+    text = "each step satisfies the original equations[[but]]: checked at random exact states"
+    if found.reduction.steps == (first,):
+        text = "they satisfy the original equations[[but]]: checked at random exact states"
+    yield Line("", Message(text, but=Message(" but for [[rest]]", rest=remainder) if remainder else ""))
 
 
 #: What can be told in variables that no description has.
 CARRIED = ("equations", "T", "U", "L", "integrals")
 
 
-def written(line: Line, language: str) -> str:
-    """A line in one of ``LANGUAGES``."""
+def written(line: Line, language: str, say: Callable[[str], str] = str) -> str:
+    """A line in one of ``LANGUAGES``, its words as ``say`` says them."""
     if isinstance(line.value, str):
-        return line.value if language == "text" else remarked(line.value, language)
+        return say(line.value) if language == "text" else remarked(say(line.value), language)
     value = _in_small(line.value, language) if isinstance(line.value, InSmall) else _WRITERS[language](line.value)
     if line.name:
         wide = len(f"{line.name} = ") + max(map(len, value.splitlines())) > WIDEST
@@ -492,13 +511,12 @@ def _text(value: Value) -> str:
 
 
 def root_text(root: RootNumbers) -> str:
-    """``-0.1 +- 2.3i (twice)``."""
+    """``-0.1 +- 2.3i``, as often as it occurs."""
     real = f"{root.real:.6g}"
     text = real if not root.imaginary else f"+-{root.imaginary:.6g}i"
     if root.imaginary and root.real:
         text = f"{real} +- {root.imaginary:.6g}i"
-    times = {1: "", 2: " (twice)"}.get(root.multiplicity, f" ({root.multiplicity} times)")
-    return text + times
+    return ", ".join([text] * root.multiplicity)
 
 
 def _latex(value: Value) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.program import Node, Program
-from mbsym.expressions.message import counted
+from mbsym.expressions.message import Message
 from mbsym.expressions.tree import decimal_text
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
@@ -135,15 +135,14 @@ def sentences(found: Regressor) -> Iterator[tuple[str, str]]:
     """(title, text)."""
     rank, standard = len(found.base), len(found.standard)
     kinds = f"{', '.join(KINDS[:2])}, ..., {', '.join(KINDS[6:])}"
-    yield "base", f"{counted(rank, 'parameter')} of {standard} ({kinds} of each body) determine all generalised forces"
+    text = "[[rank]] of [[count]] parameters ([[kinds]] of each body) determine all generalised forces"
+    yield "base", Message(text, rank=rank, count=standard, kinds=kinds)
     for k, base in enumerate(found.base, start=1):
         yield f"{k}", sum_of(base)
     if found.without_effect:
-        told = ", ".join(map(named, found.without_effect))
-        yield "none", f"{counted(len(found.without_effect), 'parameter')} that no motion tells: {told}"
-    yield (
-        "how",
-        "exact: relations are identities of T and U; that there are no others is the rank, for almost all values",
-    )
+        names = ", ".join(map(named, found.without_effect))
+        yield "none", Message("without effect on any motion: [[names]]", names=names)
+    text = "exact: relations are identities of T and U; that there are no others is the rank, for almost all values"
+    yield "how", Message(text)
     if found.besides:
-        yield "besides", "tau = Y base leaves out the loads that are no uniform gravity"
+        yield "besides", Message("tau = Y base leaves out the loads that are no uniform gravity")

@@ -49,6 +49,7 @@ TITLES = {
     "simulation": "simulation.json of mbsym simulate",
     "sweep": "sweep.json of mbsym sweep",
     "symmetries": "What mbsym symmetries --json prints",
+    "tradeoff": "tradeoff.json of mbsym tradeoff",
     "trim": "What mbsym trim --json prints",
 }
 

@@ -20,7 +20,8 @@ from mbsym.algebra import rationals
 from mbsym.algebra.quotients import Series
 from mbsym.analysis.expanding import Expansion
 from mbsym.expressions.tree import Expression, number
-from mbsym.model.system import System
+from mbsym.model.system import System, velocity_name
+from mbsym.numerics.closing import closed
 from mbsym.numerics.scenario import Scenario, scenario
 from mbsym.numerics.states import scenario_in_states
 from mbsym.simulation.request import Request
@@ -85,7 +86,7 @@ def measured(
     assert system.small is not None
     overrides: dict[str, Expression] = {name: number(value) for name, value in (values or {}).items()}
     begins = scenario(system, overrides, declared=True)
-    base = scenario_in_states(begins) if system.speeds else begins
+    base = scenario_in_states(begins) if system.speeds else closed(begins).scenario
     names = (*base.system.coordinates, *base.system.velocities)
     start = {name: Fraction(float(value)) for name, value in zip(names, base.state, strict=True)}
     manifold = found.manifold
@@ -105,7 +106,9 @@ def measured(
             own = replace(own, declared=tuple(begun[name] for name in names))
         else:
             own = scenario(system, overrides | scaled | {name: number(x) for name, x in begun.items()})
-        whole = _whole(own, time, manifold.slow)
+        told = {*manifold.slow, *manifold.fast} if system.constraints and not system.speeds else set()
+        fixed = [x for x in names if x in told and (x in system.velocities or velocity_name(x) in told)]
+        whole = _whole(own, time, manifold.slow, fixed)
         reduced = _reduced(flow, np.array(first, dtype=float), time)
         size = np.abs(reduced).max(axis=1)
         size[size == 0] = 1.0
@@ -207,9 +210,9 @@ def _span(flow: Flow, s: Floats) -> float:
     return float(f"{SPAN / rate:.2g}")
 
 
-def _whole(own: Scenario, time: float, slow: Sequence[str]) -> Floats:
-    """The slow variables along the motion of all equations, shape (slow, ROWS)."""
-    run = simulate(own, Request(time=time, samples=ROWS, tolerance=TOLERANCE, estimate=False))
+def _whole(own: Scenario, time: float, slow: Sequence[str], fixed: Sequence[str]) -> Floats:
+    """The slow variables along the motion of all equations, shape (slow, ROWS); what is tied follows ``fixed`` ones."""
+    run = simulate(own, Request(time=time, samples=ROWS, tolerance=TOLERANCE, estimate=False, fixed=tuple(fixed)))
     if not run.whole:
         raise NotMeasured("the motion ends early")
     return np.array([run[name] for name in slow])

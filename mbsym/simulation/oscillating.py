@@ -237,12 +237,14 @@ def _simulated(
     chosen = {**put, **{name: number(x) for name, x in numbers.items() if name in changed}}
     shift = on_the_motion(system, told, given)
     start = {}
+    if system.constraints:  # what they tie begins near the motion, on the branch that is expanded
+        chosen |= {name: number(value) for name, value in shift.items()}
     for name in told.found.names:
         start[name] = Fraction(float(series.at(0.0, name))) * eps ** powers.get(name, 0)
         chosen[name] = number(start[name] + shift.get(name, 0))
-    run = simulate(
-        scenario(system, chosen), Request(time=times[-1], samples=len(times) + 1, estimate=False, tolerance=TOLERANCE)
-    )
+    fixed = told.found.names if system.constraints else ()
+    request = Request(time=times[-1], samples=len(times) + 1, estimate=False, tolerance=TOLERANCE, fixed=tuple(fixed))
+    run = simulate(scenario(system, chosen), request)
     columns = {
         name: np.asarray(run.coordinates)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.coordinates)
     }

@@ -19,6 +19,7 @@ from mbsym.numerics.methods.interface import Breakdown, Method, Piece, Run, Sett
 from mbsym.numerics.planning.plan import Plan
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.separable import completing
 from mbsym.simulation.request import Request
 from mbsym.simulation.watching import Happened, SectionPoints
 
@@ -56,7 +57,7 @@ class Chosen:
 
     def completed(self, method: Method) -> Method:
         """Another method that integrates the same coordinates."""
-        return method if self.resting is None or not self.resting.proved else self.resting.method(method)
+        return method if self.resting is None or not self.resting.proved else completing(self.resting, method)
 
 
 @dataclass(frozen=True)

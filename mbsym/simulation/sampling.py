@@ -18,7 +18,7 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import Choice, choose, resumed
 from mbsym.numerics.planning.reduced import Reduced
-from mbsym.numerics.separable import Separate, separated
+from mbsym.numerics.separable import Separate, completing, separated
 from mbsym.simulation.request import TOLERANCE, Request
 from mbsym.simulation.result import Chosen, PartMethod
 
@@ -91,7 +91,7 @@ def chosen_for(dynamics: Dynamics, request: Request, resting: Reduced | None) ->
         method = Separate(moving, parts, [choice.method for choice in choices])
     setting = Setting(None if fixed else tolerance, request.step, request.step_limit, request.longest)
     if taken is not None:
-        method = taken.method(method)
+        method = completing(taken, method)
     frequency = max(choice.frequency for choice in choices)
     times = sample_times(request, frequency, dynamics.system)
     why = joined(dict.fromkeys(choice.why for choice in choices), "; ")

@@ -46,7 +46,7 @@ from mbsym.source.settings import (
     read_relations,
     read_small,
 )
-from mbsym.source.speeds import check_speeds, constraint_in_angles, declare_speeds, in_coordinates, read_speeds
+from mbsym.source.speeds import check_speeds, constraint_in_coordinates, declare_speeds, in_coordinates, read_speeds
 from mbsym.source.symbols import read_symbols
 from mbsym.source.tables import read_tables
 
@@ -129,7 +129,8 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
     )
     if any(body.speeds or body.orientation for body in bodies):
-        system = replace(system, loads=tuple(in_coordinates(load, system) for load in loads))
+        tied = tuple(constraint_in_coordinates(constraint, system) for constraint in constraints)
+        system = replace(system, loads=tuple(in_coordinates(load, system) for load in loads), constraints=tied)
     small = read_small(fields.get("small parameter"), reading, in_formulas(system))
     system = replace(system, small=small)
     names = [body.name for body in bodies]
@@ -157,9 +158,7 @@ def _constraints(
     node, dependent = fields.get("constraints"), fields.get("dependent")
     if node is None and dependent is None:
         return (), ()
-    found = tuple(
-        constraint_in_angles(one, bodies) for one in read_constraints(node, [x.name for x in bodies], reading)
-    )
+    found = read_constraints(node, [x.name for x in bodies], reading)
     if "speed" in reading.scope.kinds.values():
         named = _coordinates(fields, "dependent", "a dependent coordinate or speed", reading, ("coordinate", "speed"))
     else:

@@ -171,7 +171,7 @@ def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str
     doubt = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, about_joint, signs)
     if doubt is not None:
         own = symbolic_violation(body.inertia.tensor, body.mass, body.mass_centre, False, signs)
-        advice = "with inertia about: mass centre it would be possible" if about_joint and own is None else None
+        advice = "with 'inertia about: mass centre' it would be possible" if about_joint and own is None else None
         reading.complaints.warning(
             "impossible-inertia", Message("no body has this inertia: [[doubt]]", doubt=doubt), span, advice
         )
@@ -199,7 +199,7 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
             message = joined([message, Message("its kinetic energy would be negative")], "; ")
         reading.error("bad-inertia", message, span, _values_hint(*entries))
     elif _is_possible_elsewhere(body, values) and (not body.inertia.accepted or has_negative_energy(about, values)):
-        hint = "with inertia about: mass centre it would be possible"
+        hint = "with 'inertia about: mass centre' it would be possible"
         reading.error("bad-inertia", message, span, hint)
     elif not body.inertia.accepted:
         written = _written(inertia_shape(body.inertia))
@@ -326,11 +326,11 @@ def _check_use(system: System, reading: Reading) -> None:
     """Every parameter and prescribed motion occurs somewhere outside of its own declaration."""
     used = {relation.name for relation in system.relations}
     used |= set(_occurring([getattr(system, field.name) for field in fields(system)]))
-    declared = [("parameter", parameter.name, parameter.span) for parameter in system.parameters]
-    declared += [("prescribed motion", prescribed.name, prescribed.span) for prescribed in system.prescribed]
+    declared = [(Message("parameter"), parameter.name, parameter.span) for parameter in system.parameters]
+    declared += [(Message("prescribed motion"), prescribed.name, prescribed.span) for prescribed in system.prescribed]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
-        declared += [("input", one.name, one.span) for one in system.inputs if one.name not in felt]
+        declared += [(Message("input"), one.name, one.span) for one in system.inputs if one.name not in felt]
     for what, name, span in declared:
         if name not in used or what == "input":
             message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)

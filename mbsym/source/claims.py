@@ -301,7 +301,7 @@ class _Reader:
             message = Message(
                 "a claim about the [[word]] is about powers of a small parameter, and none is named", word=self.word
             )
-            hint = "add for example small parameter: eps"
+            hint = "add for example 'small parameter: eps'"
             self.reading.error("missing-key", message, self.fields.key_span("claim"), hint)
         if small is not None and small.name in names(equals):
             given = self.fields.get("equals")

@@ -525,10 +525,10 @@ CONSTRAINTS: dict[str, Kind] = {
     "velocity": Kind(
         "an equation that is linear in velocities: x_dot*sin(theta) - y_dot*cos(theta) = 0",
         Equation(
-            Allowed("a relation between velocities", ("coordinate", "velocity", "prescribed", "parameter", "time")),
+            Allowed("a relation between velocities", ("velocity", "speed", *_PLACED)),
             "x_dot*sin(theta) - y_dot*cos(theta) = 0",
         ),
-        ways=(Way(Velocity),),
+        ways=(Way(Velocity, parts=lambda made: (made.left, made.right)),),
     ),
 }
 

@@ -195,7 +195,7 @@ def _relation(item: Item, made: Relation) -> bool:
 
 def _velocity(item: Item, made: Velocity) -> bool:
     g = subtract(made.left, made.right)
-    speeds = [name for name in sorted(names(g)) if item.reading.scope.kind_of(name) == "velocity"]
+    speeds = [name for name in sorted(names(g)) if item.reading.scope.kind_of(name) in ("velocity", "speed")]
     if not speeds:
         hint = "a relation between coordinates alone is a 'relation'"
         item.reading.error("idle-constraint", "this relation holds no velocity", item.value.span, hint)

@@ -289,7 +289,7 @@ class Reading:
                     "missing-value", "[[what]] is empty", node.span, hint or "leave the key out", what=worded(what)
                 )
             else:
-                self.shape_error(node, what, "a mapping (key: value)", _as_mapping(node) or hint)
+                self.shape_error(node, what, Message("a mapping (key: value)"), _as_mapping(node) or hint)
             return
         self._bounded(node, what, "[[what]] has at most [[most]] entries, not [[entries]]", entries=len(node.entries))
         seen: set[str] = set()

@@ -24,7 +24,7 @@ from mbsym.expressions.tree import (
     negative,
     substitute,
 )
-from mbsym.model.constraints import Constraint, Relation, Rolling, as_written
+from mbsym.model.constraints import Constraint, Relation, Rolling, Velocity, as_written
 from mbsym.model.loads import Load
 from mbsym.model.speeds import OMEGA, QUATERNION, Quaternion, Speed, UnitVector
 from mbsym.model.substitution import folded, put
@@ -239,30 +239,35 @@ def in_coordinates(load: Load, system: System) -> Load:
 
     e = C_a3 C_a2 C_a1 e_axis;  u = S q' + s0.
     """
-    held = _held(load)
-    images = _in_angles(held, system.bodies)
-    for speed in system.speeds:
-        if speed.name in held:
-            spin = angular_velocity(system, speed.body) if speed.turns else ()
-            images[speed.name] = substitute(speed.form, dict(zip(OMEGA, spin, strict=False)))
+    images = _in_coordinates(_held(load), system)
     return replace(put(load, images, folded), as_written=load) if images else load
 
 
-def constraint_in_angles(constraint: Constraint, bodies: Sequence[Body]) -> Constraint:
-    """The same of a relation and of a point of contact."""
-    if isinstance(constraint, Relation):
+def constraint_in_coordinates(constraint: Constraint, system: System) -> Constraint:
+    """The same of a relation, between velocities, too, and of a point of contact."""
+    if isinstance(constraint, Relation | Velocity):
         written: tuple[Expression, ...] = (constraint.left, constraint.right)
     elif isinstance(constraint, Rolling):
         written = constraint.contact
     else:
         return constraint
-    images = _in_angles({name for x in written for name in names(x)}, bodies)
+    images = _in_coordinates({name for x in written for name in names(x)}, system)
     if not images:
         return constraint
     made = [folded(x, images) for x in written]
-    if isinstance(constraint, Relation):
-        return replace(constraint, left=made[0], right=made[1], in_vectors=written)
-    return replace(constraint, contact=(made[0], made[1], made[2]), in_vectors=written)
+    if isinstance(constraint, Rolling):
+        return replace(constraint, contact=(made[0], made[1], made[2]), in_vectors=written)
+    return replace(constraint, left=made[0], right=made[1], in_vectors=written)
+
+
+def _in_coordinates(held: Collection[str], system: System) -> dict[str, Expression]:
+    """The speeds and the components of unit vectors that are ``held``, in coordinates and velocities."""
+    images = _in_angles(held, system.bodies)
+    for speed in system.speeds:
+        if speed.name in held:
+            spin = angular_velocity(system, speed.body) if speed.turns else ()
+            images[speed.name] = substitute(speed.form, dict(zip(OMEGA, spin, strict=False)))
+    return images
 
 
 def _in_angles(held: Collection[str], bodies: Sequence[Body]) -> dict[str, Expression]:

@@ -18,6 +18,7 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
+    refused,
 )
 
 if TYPE_CHECKING:
@@ -83,9 +84,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.report.words.expansion_measured import measured_or_why
 
     watch("slow manifold")
-    found = expansion(Analysis(asked.system), request.order, request.values)
+    analysis = Analysis(asked.system).in_free_coordinates
+    found = expansion(analysis, request.order, request.values)
     watch("measuring")
-    return Found(found, measured_or_why(asked.system, found, request.time, request.values))
+    return Found(found, measured_or_why(analysis.system, found, request.time, request.values))
 
 
 def answer(asked: Asked, request: Request, found: Found) -> Answer:
@@ -102,8 +104,10 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
-        return Refusal(f"no expansion: {error}", Exit.BAD_INPUT)
+        return refused("no expansion", error, Exit.BAD_INPUT)
     return failed(error, "no expansion", True)
 
 
-STUDY = Study("expand", Request, derive, answer, refusal, unfit, as_json, held=False, out=None, letters=True)
+STUDY = Study(
+    "expand", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None, letters=True
+)

@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Annotated
 
-from mbsym.expressions.message import Message, worded
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import ExactSettings, Range
 from mbsym.studies.study import (
@@ -154,7 +154,8 @@ def _of_values(asked: Asked, found: AtValues) -> Iterator[Line | Block]:
     yield from map(ragged, sentences(found.forms))
     if found.lacking:
         words = " ".join(f"--set {name}=NUMBER" for name in found.lacking)
-        yield line(f"  At numbers nothing is said: {', '.join(found.lacking)} have none.  Give them:")
+        text = "At numbers nothing is said: there are none for [[names]].  Give them:"
+        yield line("  ", Message(text, names=", ".join(found.lacking)))
         yield line(f"    mbsym nonlinear {asked.file} {words}", whole=True)
 
 
@@ -162,7 +163,7 @@ def _along(found: Along) -> Iterator[Line]:
     from mbsym.report.words.exceptional_values import lines
 
     for text in lines(found):
-        yield line(f"  {text}")
+        yield line("  ", text)
 
 
 def as_json(asked: Asked, request: Request, found: AtValues | Along) -> str:
@@ -180,12 +181,13 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.analysis.stages import Unavailable
 
     if isinstance(error, Unavailable) and request.vary is None:
-        return Refusal(f"nothing decided: {error.reason}" + (f"; {error.remedy}" if error.remedy else ""))
+        why = joined(filter(None, (error.reason, error.remedy)), "; ")
+        return Refusal(Message("nothing decided: [[why]]", why=why))
     return failed(error, "nothing decided", True) if request.vary is None else failed(error, "no values listed")
 
 
 STUDY = Study(
     "nonlinear", Request, derive, answer, refusal, unfit, as_json,
     json_help="Print JSON; without --vary that of problem 11.",
-    matrices=True, held=False, out=None, timed=True, letters=True,
+    constraints=True, matrices=True, held=False, out=None, timed=True, letters=True,
 )  # fmt: skip

@@ -20,6 +20,7 @@ from mbsym.studies.study import (
     Unfit,
     Watch,
     failed,
+    refused,
 )
 
 if TYPE_CHECKING:
@@ -198,10 +199,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.source.scaling import read_scaling
 
     watch("oscillations")
-    analysis = Analysis(asked.system)
+    analysis = Analysis(asked.system).in_free_coordinates
     found = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
     watch("measuring")
-    measured = orders_or_why(asked.system, found, request.values)
+    measured = orders_or_why(analysis.system, found, request.values)
     if request.integral is not None:
         rates = {name: item.value for name, item in _rates(request.integral, Complaints()).items()}
         found = with_integrals(found, analysis, rates)
@@ -272,11 +273,12 @@ def as_json(asked: Asked, request: Request, found: Found) -> str:
 
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
-        return Refusal(f"no periodic solution: {error}", Exit.BAD_INPUT)
+        return refused("no periodic solution", error, Exit.BAD_INPUT)
     return failed(error, "no expansion", True)
 
 
 STUDY = Study(
     "oscillations", Request, derive, answer, refusal, unfit, as_json, "Print JSON instead of text.",
-    held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed, letters=True,
+    constraints=True, held=False, out=Folder(quiet=None, unwritten=UNWRITTEN), writes=lambda typed: "format" in typed,
+    letters=True,
 )  # fmt: skip

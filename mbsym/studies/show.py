@@ -164,7 +164,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
             watch(f"deriving {name}")
             try:
                 lines = source.lines(name)
-                formulas = [written(line, language) for line in lines]
+                formulas = [written(line, language, say) for line in lines]
             except Failure as error:
                 failures.append((name, error))
                 continue
@@ -176,7 +176,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
                 texts = [say(Message(many, count=len(lines), length=length)), f"{command} {known[-1]}"]
                 return Shown(_joined([*texts, f"{command} {name}"]))
             for line, formula in zip(lines, formulas, strict=True):
-                texts += [remarked(safe(line.remark), language)] if line.remark else []
+                texts += [remarked(safe(say(line.remark)), language)] if line.remark else []
                 texts.append(formula)
     if used:
         texts.append(remarked(say("where"), language))

@@ -275,21 +275,20 @@ class Study(Generic[R, F]):
     together: Callable[[Sequence[tuple[Asked, R, F]]], Iterable[Block]] | None = None
 
 
-def refused(before: str, error: Exception, code: Exit = Exit.FAILED) -> Refusal:
-    """What could not be had, and why."""
+def refused(before: str, error: Exception, code: Exit = Exit.FAILED, remedied: bool = False) -> Refusal:
+    """What could not be had, and why; ``remedied``: with what to try next."""
     from mbsym.algebra.failures import message_of
 
-    return Refusal(joined((Message(before), message_of(error)), ": "), code)
+    remedy = getattr(error, "remedy", "") if remedied else ""
+    why = joined(filter(None, (message_of(error), remedy)), "; ")
+    return Refusal(joined((Message(before), why), ": "), code)
 
 
 def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | None:
-    """Of exact studies: what could not be derived, and why; ``remedied``: with what to try next."""
+    """Of exact studies: what could not be derived, and why."""
     from mbsym.algebra.failures import Failure
 
-    if not isinstance(error, Failure):
-        return None
-    refusal = refused(before, error)
-    return Refusal(joined((refusal.text, error.remedy), "; ")) if remedied and error.remedy else refusal
+    return refused(before, error, remedied=remedied) if isinstance(error, Failure) else None
 
 
 def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:

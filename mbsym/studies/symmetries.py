@@ -6,7 +6,7 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import TYPE_CHECKING
 
 from mbsym.studies.request import Numbers
-from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed
+from mbsym.studies.study import Answer, Asked, Exit, Refusal, Study, Watch, failed, refused
 
 if TYPE_CHECKING:
     from mbsym.problems.symmetries import Symmetries
@@ -62,7 +62,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import SingularPoint
 
     if isinstance(error, SingularPoint):
-        return Refusal(f"no symmetries: {error}", Exit.BAD_INPUT)
+        return refused("no symmetries", error, Exit.BAD_INPUT)
     return failed(error, "no symmetries")
 
 

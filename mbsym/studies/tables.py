@@ -181,15 +181,15 @@ def _tradeoff(
         ),
         (
             (
-                row.candidate.method.traits.name,
-                row.candidate.scalar,
-                _or_nan(row.candidate.setting.tolerance),
-                _or_nan(row.candidate.setting.step),
+                row.method.traits.name,
+                row.scalar,
+                _or_nan(row.setting.tolerance),
+                _or_nan(row.setting.step),
                 row.error,
                 row.drift,
                 *((row.strayed or (inf, inf)) if strayed else ()),
-                row.evaluations,
-                row.steps,
+                row.work.evaluations,
+                row.work.steps,
                 row.seconds,
                 row.front,
             )
@@ -198,7 +198,7 @@ def _tradeoff(
     )
     compared = Table.of(
         ("model", "error", "operations", "seconds"),
-        ((row.label, row.error, row.operations, row.seconds) for row in study.models),
+        ((row.model, row.error, row.operations, row.seconds) for row in study.models),
     )
     return TradeoffStudy(runs, compared, advice(study.trade, target), study.trade.reference.error, study)
 

@@ -54,9 +54,10 @@ class Request:
     (gravity of lower order; without constraints linearised equations, and coordinates that rest taken out) are compared
     with the most faithful one.  Of a description with speeds these are integrated, and unit vectors or quaternions.
 
-    Written are tradeoff.csv, fidelity.csv and work-precision.svg/.png; Ctrl-C keeps what was measured in files named
-    ...-partial.  Asked again, with another --target say, it answers from what was measured before.  Of several FILEs
-    one table compares what the target costs, and each has its own files.
+    Written are tradeoff.csv, fidelity.csv, tradeoff.json and work-precision.svg/.png; Ctrl-C keeps what was measured in
+    files named ...-partial.  Asked again, with another --target say, it answers from what was measured before.  Of
+    several FILEs one table compares what the target costs, and each has its own files (--json prints one after the
+    other).
 
     Exit codes: 0 done, 1 files could not be written, or a trial ended in an internal error (the others are kept), 2
     something is missing or wrong, 3 there is no solution up to T, 130 interrupted.
@@ -118,7 +119,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     stopped = trade.interrupted
     if not trade.rows:
         return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, found, say), _files(asked, request, found.measured)
+    lines, files = _lines(request, found, say), _files(asked, request, found.measured, say)
     after = f", t = 0 .. {request.time:g}"
     if stopped:
         complaints = (*found.notes, say(Message("interrupted; what was measured is kept")))
@@ -126,26 +127,28 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     return Answer(lines, files, found.notes, after=after)
 
 
-def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str, str | bytes]:
+def _files(
+    asked: Asked, request: Request, found: trade_study.Study, say: Callable[[str], str]
+) -> dict[str, str | bytes]:
     from mbsym.model.quantities import time_unit
     from mbsym.report.figures.tradeoff_figure import work_precision
-    from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv
+    from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv, tradeoff_json
 
     trade, models, unit = found.trade, found.models, time_unit(asked.system)
     mark = "-partial" if trade.interrupted else ""
     files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
     if models:
         files["fidelity.csv"] = fidelity_csv(models)
+    files[f"tradeoff{mark}.json"] = tradeoff_json(
+        asked.system, found, say(_advised(request, found)), request.time, request.target, request.budget
+    )
     pictures = work_precision(asked.system, request.time, trade, request.target, models, ("svg", "png"))
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 
 def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iterator[Line | Block]:
-    from mbsym.numerics.trade.fidelity import model_advice
-    from mbsym.numerics.trade.tradeoff import advice
-
     study = answered.measured
-    trade, models, target = study.trade, study.models, request.target
+    trade = study.trade
     truth = trade.reference
     if answered.before:
         yield line("  ", say(Message(BEFORE)))
@@ -166,10 +169,17 @@ def _lines(request: Request, answered: Found, say: Callable[[str], str]) -> Iter
     )
     costs = {"reference": f"{truth.cost:.2g}", "runs": f"{trade.spent:.2g}"}
     yield line("  ", say(Message(text, budget=f"{request.budget:g}", **costs)))
-    if len(models) > 1:
+    if len(study.models) > 1:
         yield _models(study)
-    advised = joined(filter(None, (advice(trade, target), model_advice(models, target))))
-    yield line((say(advised), "bold"), always=True)
+    yield line((say(_advised(request, study)), "bold"), always=True)
+
+
+def _advised(request: Request, found: trade_study.Study) -> Message:
+    from mbsym.numerics.trade.fidelity import model_advice
+    from mbsym.numerics.trade.tradeoff import advice
+
+    said = (advice(found.trade, request.target), model_advice(found.models, request.target))
+    return joined(filter(None, said))
 
 
 def _runs(request: Request, found: trade_study.Study) -> Block:
@@ -250,6 +260,6 @@ STUDY = Study(
     answer,
     refusal,
     constraints=True,
-    out=Folder("Print only the recommendation."),
+    out=Folder("Print only the recommendation.", json=True),
     together=together,
 )

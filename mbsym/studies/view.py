@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Flag, Number, Settings, Value
-from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, line, no_program
+from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Watch, line, no_program, refused
 
 if TYPE_CHECKING:
     from mbsym.report.viewer.page import Page
@@ -69,7 +69,7 @@ def document(asked: Asked, request: Request, found: Page) -> Document:
 def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.scenario import Incomplete
 
-    return Refusal(f"cannot be drawn: {error}") if isinstance(error, Incomplete) else no_program(error, asked, request)
+    return refused("cannot be drawn", error) if isinstance(error, Incomplete) else no_program(error, asked, request)
 
 
 STUDY = Study(

@@ -14,6 +14,7 @@ from click.testing import CliRunner
 from mbsym.batch.index_page import index_page
 from mbsym.batch.junit import junit
 from mbsym.batch.outcome import CheckRow, ClaimRow, ComplaintRow, FileRow, Outcome, ProblemRow, Row, Summary, findings
+from mbsym.report.language import Language
 from mbsym_cli.main import main
 
 HOSTILE = "</script><script>alert(1)</script> ]]> \x1b[2J \x00 & \" '\n::error::x"
@@ -156,14 +157,14 @@ class _Page(HTMLParser):
 
 
 def test_the_page_shows_everything_and_runs_nothing() -> None:
-    text = index_page(EVERY, "summary.json")
+    text = index_page(EVERY, "summary.json", Language())
     page = _Page()
     page.feed(text)
     assert "script" not in page.tags
     assert "\x1b" not in text
     assert page.links == ["summary.json", "self-check%20failed/report.html", "self-check%20failed/results.json"]
     shown = " ".join(page.words)
-    for word in ("self-check FAILED: linearisation", "at the values: unstable", "unknown name 'x' (y?)", "alert(1)"):
+    for word in ("SELF-CHECK FAILED: linearisation", "at the values: unstable", "unknown name 'x' (y?)", "alert(1)"):
         assert word in shown
     assert all(f"what {one} says" in shown for one in Outcome if one not in (FULL.outcome, ERRORS.outcome))
 

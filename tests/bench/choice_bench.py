@@ -38,11 +38,12 @@ from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64  # noqa: E402
 from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable  # noqa: E402
 from mbsym.numerics.methods.table import METHODS  # noqa: E402
 from mbsym.numerics.planning.models import modelled  # noqa: E402
-from mbsym.numerics.planning.pilot import rows  # noqa: E402
 from mbsym.numerics.planning.plan import Accuracy, Plan  # noqa: E402
 from mbsym.numerics.planning.planning import planned  # noqa: E402
 from mbsym.numerics.planning.reduced import reduced  # noqa: E402
 from mbsym.numerics.scenario import Scenario, scenario  # noqa: E402
+from mbsym.numerics.separable import completing  # noqa: E402
+from mbsym.numerics.trade.trial import trial_of  # noqa: E402
 
 TRUTH = HERE.parent / "truth" / "independent"
 SOLUTIONS = json.loads((TRUTH / "solutions.json").read_text(encoding="utf-8"))
@@ -180,7 +181,7 @@ class _Judge:
         if way.method.traits.fixed:  # such a method is judged at the ends of its steps, which the places then are
             at = np.union1d(at, self.times)
         try:
-            states = rows(self._whole(dynamics, way), dynamics, way.setting, at, way.scalar).states
+            states = trial_of(self._whole(dynamics, way), dynamics, way.setting, at, way.scalar).states
         except (Breakdown, Unusable, Failure):
             return inf
         found = states[:, np.searchsorted(at, self.places)]
@@ -192,12 +193,12 @@ class _Judge:
     def seconds(self, dynamics: Any, way: Way, repeats: int) -> float:
         """The least processor time of some runs that show the rows; compiling is not counted."""
         method = self._whole(dynamics, way)
-        return min(rows(method, dynamics, way.setting, self.times, way.scalar).seconds for _ in range(repeats))
+        return min(trial_of(method, dynamics, way.setting, self.times, way.scalar).seconds for _ in range(repeats))
 
     @staticmethod
     def _whole(dynamics: Any, way: Way) -> Method:
         resting = reduced(dynamics)
-        return way.method if resting is None or not resting.proved else resting.method(way.method)
+        return way.method if resting is None or not resting.proved else completing(resting, way.method)
 
 
 def main() -> None:

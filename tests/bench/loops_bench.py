@@ -216,6 +216,185 @@ def directions(**truth: float) -> Callable[[Dynamics, Any], float]:
     return wrong
 
 
+#: Joints of a Stewart platform at the base and on it, in its axes; its legs are thin rods in two parts, with springs.
+BASE = ((1.9, -0.7), (1.9, 0.7), (-0.3, 2.0), (-1.5, 1.3), (-1.5, -1.3), (-0.3, -2.0))
+TOP = ((0.7, -0.7), (0.7, 0.7), (0.2, 1.0), (-0.9, 0.3), (-0.9, -0.3), (0.2, -1.0))
+LOWER, UPPER, STIFFNESS, LENGTH, GRAVITY = (1.0, 0.4, 0.05), (0.5, 0.3, 0.02), 400.0, 1.9, 9.81
+PLATFORM = {"x": 0.1, "y": -0.05, "z": 1.6, "f": 0.1, "h": -0.15, "p": 0.2}
+TENSOR = (0.3, 0.4, 0.5)
+
+
+def turned_platform() -> Any:
+    """R of the platform at the start: columns are its axes."""
+    (cf, sf), (ch, sh), (cp, sp) = ((np.cos(PLATFORM[name]), np.sin(PLATFORM[name])) for name in "fhp")
+    first = np.array([[1, 0, 0], [0, cf, sf], [0, -sf, cf]])
+    second = np.array([[ch, 0, -sh], [0, 1, 0], [sh, 0, ch]])
+    return (np.array([[cp, sp, 0], [-sp, cp, 0], [0, 0, 1]]) @ second @ first).T
+
+
+def stewart() -> str:
+    """Six coordinates of the platform, and two angles and the length of every leg; eighteen rows leave six freedoms."""
+    place = np.array([PLATFORM[name] for name in "xyz"])
+    bodies, ties, start, loads = [], [], dict(PLATFORM), ["uniform gravity: {vector: [0, 0, -981/100]}"]
+    for k, (base, top) in enumerate(zip(BASE, TOP, strict=True)):
+        leg = place + turned_platform() @ [*top, 0] - [*base, 0]
+        long = float(np.linalg.norm(leg))
+        start |= {f"a{k}": np.arctan2(-leg[1], leg[2]), f"b{k}": np.arcsin(leg[0] / long), f"s{k}": long}
+        (m, h, j), (m2, h2, j2) = LOWER, UPPER
+        bodies += [
+            f"{{name: lower{k}, attached to: 0, connection point: [{base[0]}, {base[1]}, 0], mass: {m}, "
+            f"rotation: {{axes: [1, 2], angles: [a{k}, b{k}]}}, mass centre: [0, 0, {h}], "
+            f"inertia about: mass centre, "
+            f"inertia: [{j}, {j}, 0]}}",
+            f"{{name: upper{k}, attached to: lower{k}, connection point: [0, 0, s{k}], coordinates: [s{k}], "
+            f"mass: {m2}, mass centre: [0, 0, {-h2}], inertia about: mass centre, inertia: [{j2}, {j2}, 0]}}",
+        ]
+        loads.append(f"spring: {{coordinate: s{k}, stiffness: {STIFFNESS}, rest: {LENGTH}}}")
+        ends = f"[{{body: upper{k}, point: [0, 0, 0]}}, {{body: platform, point: [{top[0]}, {top[1]}, 0]}}]"
+        ties.append(f"coincide: {ends}")
+    bodies.insert(
+        0,
+        "{name: platform, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z, f, h, p], mass: 2, "
+        "rotation: {axes: [1, 2, 3], angles: [f, h, p]}, inertia about: mass centre, "
+        f"inertia: {[*TENSOR]}}}",
+    )
+    lists = {"bodies": bodies, "loads": loads, "constraints": ties}
+    text = "".join(f"{key}:\n" + "".join(f"  - {one}\n" for one in listed) for key, listed in lists.items())
+    told = ", ".join(f"{name}: {value:.17f}" for name, value in start.items())
+    return f"mbsym: 1\nname: Stewart\n{text}initial: {{{told}}}\n"
+
+
+@cache
+def by_forces_of_legs(end: float) -> tuple[float, ...]:
+    """x, y, z, h of the platform by Newton and Euler in inertial axes, every leg being a force on its joint.
+
+    A leg to P, L = |P - B| and u along it, has T = A v.v/2 + (m' - A) (u.v)^2/2 with
+    A = (J + J' + m h^2 + m' (L - h')^2)/L^2; the force is d/dt dT/dv - dT/dP + dU/dP.
+    """
+    from scipy.integrate import solve_ivp
+
+    (m, h, j), (m2, h2, j2) = LOWER, UPPER
+    base, top = (np.array([[*x, 0.0] for x in joints]) for joints in (BASE, TOP))
+
+    def leg(p: Any, v: Any) -> tuple[Any, Any]:
+        """The matrix M and the rest w of its force M a + w."""
+        long = np.sqrt(p @ p)
+        u = p / long
+        along = u @ v
+        across = v - along * u
+        a = (j + j2 + m * h * h + m2 * (long - h2) ** 2) / long**2
+        slope = 2 * m2 * (long - h2) / long**2 - 2 * a / long
+        b = m2 - a
+        weight = GRAVITY * ((m * h - m2 * h2) / long + m2) * np.array([0, 0, 1.0])
+        weight = weight - GRAVITY * (m * h - m2 * h2) * p[2] / long**2 * u
+        turning = b / long * (across * along + u * (across @ across))
+        grown = slope * along * (v - along * u) - u * slope * (v @ v - along**2) / 2 - b * along * across / long
+        return a * np.eye(3) + b * np.outer(u, u), turning + grown + weight + STIFFNESS * (long - LENGTH) * u
+
+    def crossed(x: Any) -> Any:
+        return np.array([[0, -x[2], x[1]], [x[2], 0, -x[0]], [-x[1], x[0], 0]])
+
+    def rates(_: float, state: Any) -> Any:
+        place, turned, v, w = state[:3], state[3:12].reshape(3, 3), state[12:15], state[15:]
+        tensor = turned @ np.diag(TENSOR) @ turned.T
+        table = np.zeros((6, 6))
+        table[:3, :3], table[3:, 3:] = 2 * np.eye(3), tensor
+        right = np.concatenate([[0, 0, -2 * GRAVITY], -crossed(w) @ tensor @ w])
+        for below, above in zip(base, top, strict=True):
+            r = turned @ above
+            m_leg, rest = leg(place + r - below, v + crossed(w) @ r)
+            moves = np.hstack([np.eye(3), -crossed(r)])
+            table += moves.T @ m_leg @ moves
+            right -= moves.T @ (m_leg @ (crossed(w) @ crossed(w) @ r) + rest)
+        return np.concatenate([v, (crossed(w) @ turned).ravel(), np.linalg.solve(table, right)])
+
+    start = [*(PLATFORM[name] for name in "xyz"), *turned_platform().ravel(), *np.zeros(6)]
+    run = solve_ivp(rates, (0, end), start, "DOP853", rtol=3e-14, atol=1e-15)
+    return (*map(float, run.y[:3, -1]), float(np.arcsin(run.y[3:12, -1].reshape(3, 3)[0, 2])))
+
+
+#: A delta robot: radii of the base and of the platform, half the distance of two rods; arms of 1, pairs of rods of 2.
+RADIUS, INNER, HALF = 1.0, 0.3, 0.2
+AIMED = (0.15, -0.1, -1.7)
+
+
+def arms() -> list[tuple[Any, float]]:
+    """The direction in which every arm stands from the axis, and its angle at the start."""
+    found = []
+    for k in range(3):
+        out = np.array([np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3), 0])
+        d = AIMED + (INNER - RADIUS) * out
+        a, b, c = d @ out, -d[2], (d @ d - 3) / 2
+        found.append((out, float(np.arctan2(b, a) - np.arccos(c / np.hypot(a, b)))))
+    return found
+
+
+def delta() -> str:
+    """A platform with six coordinates, three arms and six rods of one length, which leave three freedoms."""
+    bodies = [
+        "{name: platform, attached to: 0, connection point: [x, y, z], coordinates: [x, y, z, f, h, p], mass: 1, "
+        "rotation: {axes: [1, 2, 3], angles: [f, h, p]}, inertia about: mass centre, inertia: [1/50, 1/50, 1/30]}"
+    ]
+    ties = []
+    for k, (out, _) in enumerate(arms()):
+        at = ", ".join(f"{RADIUS * x:.17f}" for x in out)
+        bodies.append(
+            f"{{name: arm{k}, attached to: 0, connection point: [{at}], mass: 1, mass centre: [1/2, 0, 0], "
+            f"rotation: {{axes: [3, 2], angles: [{k}*2*pi/3, t{k}]}}, inertia about: mass centre, "
+            "inertia: [0, 1/12, 1/12]}"
+        )
+        for side in (HALF, -HALF):
+            end = INNER * out + side * np.array([-out[1], out[0], 0])
+            point = ", ".join(f"{x:.17f}" for x in end)
+            ends = f"[{{body: arm{k}, point: [1, {side}, 0]}}, {{body: platform, point: [{point}]}}]"
+            ties.append(f"distance: {{between: {ends}, length: 2}}")
+    start = dict(zip("xyz", AIMED, strict=True)) | dict.fromkeys("fhp", 0.0)
+    start |= {f"t{k}": angle for k, (_, angle) in enumerate(arms())}
+    lists = {"bodies": bodies, "loads": ["uniform gravity: {vector: [0, 0, -981/100]}"], "constraints": ties}
+    text = "".join(f"{key}:\n" + "".join(f"  - {one}\n" for one in listed) for key, listed in lists.items())
+    told = ", ".join(f"{name}: {value:.17f}" for name, value in start.items())
+    return f"mbsym: 1\nname: delta\n{text}initial: {{{told}}}\n"
+
+
+@cache
+def by_parallel_rods(end: float) -> tuple[float, ...]:
+    """x, y, z of a platform that keeps its directions: one rod an arm, three multipliers, by hand."""
+    from scipy.integrate import solve_ivp
+
+    outs, angles = zip(*arms(), strict=True)
+    up = np.array([0, 0, 1.0])
+
+    def rates(_: float, state: Any) -> Any:
+        x, v = state[:6], state[6:]
+        table, right = np.zeros((9, 9)), np.zeros(9)
+        table[:6, :6] = np.diag([1, 1, 1, 1 / 3, 1 / 3, 1 / 3])
+        right[2] = -GRAVITY
+        for k, out in enumerate(outs):
+            c, s = np.cos(x[3 + k]), np.sin(x[3 + k])
+            tip, slope = c * out - s * up, -s * out - c * up
+            rod = x[:3] + (INNER - RADIUS) * out - tip
+            right[3 + k] = GRAVITY / 2 * c
+            row = np.zeros(6)
+            row[:3], row[3 + k] = rod, -rod @ slope
+            rate = v[:3] - slope * v[3 + k]
+            table[6 + k, :6], table[:6, 6 + k] = row, row
+            right[6 + k] = -(rate @ rate) - rod @ tip * v[3 + k] ** 2
+        return np.concatenate([v, np.linalg.solve(table, right)[:6]])
+
+    run = solve_ivp(rates, (0, end), [*AIMED, *angles, *np.zeros(6)], "DOP853", rtol=3e-14, atol=1e-15)
+    return tuple(map(float, run.y[:3, -1]))
+
+
+def coordinates(names: str, truth: Callable[[], tuple[float, ...]]) -> Callable[[Dynamics, Any], float]:
+    """How far coordinates are from true values, which are found when they are wanted."""
+
+    def wrong(dynamics: Dynamics, state: Any) -> float:
+        places = [dynamics.system.coordinates.index(name) for name in names]
+        return float(np.max(np.abs(np.asarray(state, dtype=float)[places] - truth())))
+
+    return wrong
+
+
 def on_the_axis(dynamics: Dynamics, state: Any) -> float:
     return float(np.max(np.abs(state - [float(x) for x in reference("ivp_caraxis")["reference"]["y"][:8]])))
 
@@ -240,6 +419,20 @@ def problems(large: bool) -> Iterator[Problem]:
     )
     yield Problem(
         "Bennett's linkage, a = 3, b = 4", lambda: described(BENNETT), 5.0, 1e-8, directions(q1=by_bennett(5.0))
+    )
+    yield Problem(
+        "Stewart platform, legs with mass",
+        lambda: described(stewart()),
+        2.0,
+        1e-8,
+        coordinates("xyzh", lambda: by_forces_of_legs(2.0)),
+    )
+    yield Problem(
+        "delta robot, six rods",
+        lambda: described(delta()),
+        2.0,
+        1e-8,
+        coordinates("xyz", lambda: by_parallel_rods(2.0)),
     )
     if large:
         wrong = first_bar(by_one_angle(40, 20.0))

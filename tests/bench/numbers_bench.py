@@ -309,13 +309,12 @@ def equal_error(title: str, text: str, end: float, peer: Callable[[], Any] | Non
 
     from mbsym.numerics.methods.interface import Setting, Unusable
     from mbsym.numerics.methods.table import METHODS
-    from mbsym.numerics.trade.reference_search import reference
+    from mbsym.numerics.trade.reference_search import solved_at
 
     print(f"  simulation, {title}", file=sys.stderr)
     dynamics = dynamics_of(text)
-    truth = reference(dynamics, [0.0, end], budget=600.0)
-    final = truth.states[:, -1]
-    size = np.max(np.abs(truth.states), axis=1)
+    truth = solved_at(dynamics, [0.0, end], 1e-24, 600.0).astype(float)
+    final, size = truth[:, -1], np.max(np.abs(truth), axis=1)
 
     def run(name: str, setting: Any) -> tuple[float, float]:
         seconds, state = [], None

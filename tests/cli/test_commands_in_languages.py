@@ -1,4 +1,4 @@
-"""What ``check``, ``batch``, ``convert``, ``diff``, ``new`` and ``--continue`` say in Russian: no English word."""
+"""What ``check``, ``batch`` and ``new`` say to people in the language of a description, and to programs in English."""
 
 from __future__ import annotations
 
@@ -13,14 +13,6 @@ from conftest import SHIPPED
 from mbsym.report.language import LANGUAGES
 from mbsym_cli.console import speaking
 from mbsym_cli.main import main
-
-#: Names in the description, what is typed, words of files, codes and labels of results.json.
-TYPED = {"simple", "pendulum", "theta", "yaml", "build", "summary", "json", "error", "mbsym", "run", "watch", "edit",
-         "unknown", "key", "mas", "mass", "unfit", "continue", "simulation", "results", "reports", "csv", "format",
-         "version", "urdf", "mjcf", "floating", "symbols", "damping", "inputs", "joint", "names", "angles", "all",
-         "text", "moved", "nowhere", "crane", "missing", "filter", "torque", "trajectory", "bad", "good", "language",
-         "out", "dot", "cos", "sin", "forced", "complete", "see", "cases",
-         "squared", "factor"}  # fmt: skip
 
 
 def description(language: str) -> str:
@@ -48,40 +40,6 @@ def said(*words: str) -> str:
     done = CliRunner().invoke(main, list(words))
     assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
     return done.output
-
-
-def strange(text: str) -> set[str]:
-    """Latin words of three letters and more that are neither names nor typed; what is quoted is not said."""
-    lines = [line for line in text.splitlines() if not re.match(r" *\d* \|", line)]
-    return {
-        word.lower() for line in lines for word in re.findall(r"[A-Za-z]{3,}", re.sub(r"error\[[a-z-]+\]", "", line))
-    } - TYPED
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ("check", "in"),
-        ("batch", "in", "--format", "json"),
-        ("convert", "in/good.yaml", "--floating"),
-        ("convert", "in/good.yaml", "--out", "in/good.yaml"),
-        ("new", "crane", "--like", "pendulum", "--language", "ru"),
-        ("diff", "in/good.yaml", "moved.yaml"),
-        ("diff", "in/good.yaml", "forced.yaml"),
-        ("diff", "more", "in/good.yaml"),
-        ("diff", "in/good.yaml", "in/good.yaml"),
-        ("simulate", "in/good.yaml", "--time", "1", "--continue", "moved.yaml"),
-    ],
-)
-def test_no_english_word(words: tuple[str, ...], folder: Path) -> None:
-    text = said(*words)
-    assert re.search("[а-я]{3}", text), text
-    assert not strange(text), text
-
-
-def test_english_is_found(folder: Path) -> None:
-    """Negative control."""
-    assert "bodies" in strange(said("check", str(SHIPPED / "simple-pendulum.yaml")))
 
 
 @pytest.mark.parametrize("form", ["sarif", "github", "json"])

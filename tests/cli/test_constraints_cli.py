@@ -49,10 +49,13 @@ def test_a_check_counts_coordinates_and_constraints(tmp_path: Path) -> None:
     assert "degree" not in done.stdout
 
 
-def test_what_does_not_know_constraints_refuses_by_name(tmp_path: Path) -> None:
-    done = mbsym("nonlinear", written(tmp_path, TEXT))
+def test_relations_are_put_in_where_a_command_knows_no_others(tmp_path: Path) -> None:
+    done = mbsym("symmetries", written(tmp_path, TEXT))
+    assert (done.exit_code, "for 'symmetries' the relations are put in, and phi left out" in done.stderr) == (0, True)
+    rolling = "constraints:\n  - velocity: x_dot = r*phi_dot\n"
+    done = mbsym("symmetries", written(tmp_path, TEXT.partition("constraints:")[0] + rolling))
     assert done.exit_code == 2
-    assert "error[constraints]: 'mbsym nonlinear' does not take constraints into account yet" in done.stderr
+    assert "no coordinates keep what ties velocities" in " ".join(done.stderr.split())
     assert "wheel.yaml:8:5" in done.stderr
 
 

@@ -133,7 +133,7 @@ def test_invariant_relations_and_levels_are_told_with_what_is_proved():
     assert "There is none of weight up to 4 with K not zero" in text
     angles = " ".join(run("systems/spherical-pendulum.yaml", "--degree", "2", "--relations").stdout.split())
     assert "Whether there are others is undecided: a K of that weight may hold products" in angles
-    assert "where that of weight 4" not in angles  # the energy is beyond the degree
+    assert "where the integral of weight 4" not in angles  # the energy is beyond the degree
     several = " ".join(run("systems/double-pendulum.yaml", "--degree", "2", "--relations").stdout.split())
     assert "not looked for: several unit vectors or angles are related" in several
     assert "Whether there are others is undecided: relations between variables, of several unit vectors" in several
@@ -218,7 +218,8 @@ def test_a_root_of_what_is_known_is_one_more():
 def test_the_norm_of_a_quaternion_is_not_denied():
     """Problem 7 lists it: up to degree four there is none but that, Jacobi's being of degree four in e."""
     text = " ".join(run("systems/gravity-gradient-quaternion.yaml", "--degree", "3").stdout.split())
-    assert "But for lengths of unit vectors, which are 1, there is none up to weighted degree 3" in text
+    none = "as lengths of unit vectors are, there is none up to weighted degree 3"
+    assert f"But for relations that every state keeps, {none}" in text
 
 
 def test_a_quaternion_may_be_varied():
@@ -266,8 +267,8 @@ def test_values_of_integrals_are_told_with_what_holds_there(tmp_path):
     assert [(one["value"], [f["formula"] for f in one["integrals"]]) for one in told["values"]] == [("2", ["x_dot"])]
     assert (told["complete"], told["at_any_value"], told["known"]) == (True, False, "proved")
     text = " ".join(run(str(path), "-d2", "-sc=2", "--relations").stdout.split())
-    assert "where that of weight 1 (momentum of y) is 2, one of weight 1: x_dot where" in text
+    assert "where the integral of weight 1 (momentum of y) is 2, one of weight 1: x_dot where" in text
     symbols = " ".join(run(str(path), "-d2", "--relations").stdout.split())
     assert "has single values, other than zero, there may be others: put in numbers with --set" in symbols
     top = " ".join(run("systems/goryachev-chaplygin.yaml", "--relations").stdout.split())
-    assert "where that of weight 3 (angular momentum about axis 3) has any value but zero there is none beyond" in top
+    assert "where the integral of weight 3 (angular momentum about axis 3) is not zero there is none beyond" in top

@@ -63,7 +63,7 @@ def test_where_others_are_not_excluded_it_is_said(tmp_path):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("systems/rolling-disc.yaml",), "does not take constraints into account yet"),
+        (("systems/rolling-disc.yaml",), "takes no constraint but relations"),
         (("systems/spherical-pendulum.yaml", "--set", "Q=1"), "there is no parameter called Q"),
         (("systems/none.yaml",), "none.yaml"),
     ],

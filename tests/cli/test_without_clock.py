@@ -160,10 +160,8 @@ STALE = "how old a file is that a killed process left behind"
 
 #: Every module that reads a clock or waits for a time, and why its results do not depend on that.
 READS = {
-    **dict.fromkeys(["trade.reference_search", "ensembles.ensemble", "extremes.extremes", "trade.fidelity"], TOLD),
-    **dict.fromkeys(
-        ["simulate", "planning.pilot", "planning.planning", "trade.tradeoff", "ledger.table", "methods.landing"], TOLD
-    ),
+    **dict.fromkeys(["trade.reference_search", "trade.trial", "ensembles.ensemble", "extremes.extremes"], TOLD),
+    **dict.fromkeys(["simulate", "planning.planning", "ledger.table", "methods.landing"], TOLD),
     "ledger.work": f"{TOLD}; how often a timing is repeated for its least value",
     "enclosure.enclose": ASKED,
 }

@@ -100,14 +100,14 @@ def test_what_strays_from_constraints_is_seen(trade: Tradeoff) -> None:
 
     x and y both reach 1 within the motion, from the right over the lowest point to the left.
     """
-    stretched = [row for row in trade.rows if row.candidate.method.traits.name == "dop853"]
-    exact = [row for row in stretched if row.candidate.scalar != "float32"]  # whose own rounding is 1e-7
+    stretched = [row for row in trade.rows if row.method.traits.name == "dop853"]
+    exact = [row for row in stretched if row.scalar != "float32"]  # whose own rounding is 1e-7
     assert len(exact) > 3
     for row in exact:
         assert row.strayed is not None
         assert row.strayed[0] == pytest.approx(2e-6 / 4, rel=1e-3)
         assert row.strayed[1] < 1e-11
-    fine = [row for row in trade.rows if row.candidate.shown == "h=0.00781" and row.candidate.scalar == "float64"]
+    fine = [row for row in trade.rows if row.shown == "h=0.00781" and row.scalar == "float64"]
     assert fine
     assert max(fine[0].strayed or (1.0,)) < 1e-14
 

@@ -339,11 +339,14 @@ def test_a_run_that_ends_where_it_begins_verifies_nothing() -> None:
 
 @pytest.mark.parametrize(("coefficient", "told"), [("1e-15", False), ("1e-7", True)])
 @pytest.mark.parametrize("away", [0, 1000])
-def test_a_change_that_is_less_than_the_error_is_not_told_as_one(away: int, coefficient: str, told: bool) -> None:
+@pytest.mark.parametrize("estimate", [True, False])
+def test_a_change_that_is_less_than_the_error_is_not_told_as_one(
+    away: int, coefficient: str, told: bool, estimate: bool
+) -> None:
     """x'' + c x' + x - a = 0 loses about c t of the largest kinetic energy: 1e-14 and 1e-6 up to t = 10.
 
     The error is near 1e-11 of x.  About a = 1000 that is a larger part of x - a, and of the energy: the change in the
-    run is six times the error then, and nothing of it is real.
+    run is six times the error then, and nothing of it is real.  Without an estimate a step's tolerance stands for it.
     """
     run = mbsym.simulate(
         mbsym.loads(
@@ -354,6 +357,7 @@ def test_a_change_that_is_less_than_the_error_is_not_told_as_one(away: int, coef
             ).replace("x: 1}", f"x: {away + 1}}}")
         ),
         10,
+        estimate=estimate,
     )
     ((_, line),) = energy_lines(run)
     assert ("largest change" in str(line)) is told

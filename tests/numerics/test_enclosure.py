@@ -24,8 +24,8 @@ from mbsym.numerics.enclosure.enclose import INTERRUPTED, NO_STEP, OUT_OF_TIME, 
 from mbsym.numerics.enclosure.field import Field, Model, Ring, cap
 from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.scenario import scenario
+from mbsym.numerics.trade.trial import trial_of
 from mbsym.report.runs.certificate import certificate_lines
 
 LINE = (
@@ -341,7 +341,7 @@ def test_an_enclosure_is_no_matter_of_units(length: str, mass: str, time: str) -
 def spring_in(length: str, mass: str, time: str) -> Certificate:
     dynamics = dynamics_of(SPRING.format(length=length, mass=mass, time=time))
     times = np.linspace(0, 0.25 / float(Fraction(time)), 11)
-    return certified(dynamics, times, rows(METHODS["dop853"], dynamics, Setting(1e-12), times).states, 1e-12)
+    return certified(dynamics, times, trial_of(METHODS["dop853"], dynamics, Setting(1e-12), times).states, 1e-12)
 
 
 #: x'' = x from (1, -1): x = exp(-t), and what a ball is wide by at first has grown by exp(40), 2.4e17, at t = 40.

@@ -18,8 +18,8 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.model_choice import ModelEstimate, Propagated, confirmed, model_error
 from mbsym.numerics.planning.models import Model, described, droppable, faithful, modelled, orders
-from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.numerics.trade.trial import trial_of
 
 SYSTEMS = Path(__file__).parents[2] / "systems"
 
@@ -60,7 +60,7 @@ def exact_pendulum(times: Any) -> Any:
 
 def estimate(given: Scenario, simple: Model, rich: Model, times: Any, unit: float = 1e-4) -> tuple[ModelEstimate, Any]:
     """The estimate, and the motion of the richer model."""
-    truth = rows(METHODS["dop853"], modelled(given, rich), FINE, times).states
+    truth = trial_of(METHODS["dop853"], modelled(given, rich), FINE, times).states
     scale = np.max(np.abs(truth), axis=1)
     both = modelled(given, simple), modelled(given, rich)
     return model_error(*both, METHODS["dop853"], Setting(tolerance=1e-11), times, scale, unit), truth
@@ -79,7 +79,7 @@ def test_the_error_of_the_linear_pendulum_is_that_of_the_elliptic_function() -> 
 def test_a_lower_order_of_gravity_is_as_wrong_as_a_rerun_says(order: int) -> None:
     times = np.linspace(0, 5, 101)
     found, truth = estimate(satellite(), Model(order), Model("exact"), times, 1e-3)
-    own = rows(METHODS["dop853"], modelled(satellite(), Model(order)), FINE, times).states
+    own = trial_of(METHODS["dop853"], modelled(satellite(), Model(order)), FINE, times).states
     scale = np.max(np.abs(truth), axis=1)
     measured = np.max(np.abs(truth - own), axis=1) / scale
     assert found.trusted
@@ -113,7 +113,7 @@ def turned(program: Any, full: Any, states: Any, e: Any) -> list[Any]:
 def test_a_planted_mistake_is_noticed_by_the_rerun(monkeypatch: pytest.MonkeyPatch, name: str, lie: Any) -> None:
     times, given = np.linspace(0, 30, 301), pendulum()
     scale = np.array([0.05, 0.05])
-    truth = rows(METHODS["dop853"], modelled(given, Model()), FINE, times).states
+    truth = trial_of(METHODS["dop853"], modelled(given, Model()), FINE, times).states
     honest, _ = estimate(given, Model(linear=True), Model(), times)
     assert confirmed(honest, truth, scale, 1e-9).confirmed
     monkeypatch.setattr(Propagated, name, staticmethod(lie))

@@ -203,6 +203,15 @@ def test_integrable_motion_is_not_called_chaotic(text: str) -> None:
     assert found.falling
 
 
+def test_an_exponent_that_is_known_is_within_its_uncertainty() -> None:
+    """x'' = 2 x - x'/5: the larger exponent is a root; only the directions' first turns keep the mean from it."""
+    text = PENDULUM.replace(
+        "  - uniform gravity: {vector: [0, -1, 0]}", "  - generalized force: {theta: 2*theta - theta_dot/5}"
+    ).replace("theta: 1", "theta: 0")
+    found = exponents(dynamics(text), 200, 0.5)
+    assert abs(found.values[0] - (-0.2 + np.sqrt(0.04 + 8)) / 2) <= found.uncertainty[0] < 0.01
+
+
 def test_what_telling_an_exponent_from_zero_takes_stands_beside_it() -> None:
     """-0.037 +- 0.018 is below zero by its 95 %, and was called "not told from zero" without a word of what that takes.
 

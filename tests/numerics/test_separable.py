@@ -128,6 +128,10 @@ def test_one_that_ends_early_ends_all() -> None:
     assert np.max(np.abs(filled[2, :20] - np.cos(100 * times[:20]))) < 1e-7
     with pytest.raises(ValueError, match="another scenario"):
         method.start(dynamics_of(THREE), Setting(1e-10))
+    run = method.start(dynamics, Setting(1e-10))
+    with pytest.raises(Breakdown) as caught:
+        [run.step() for _ in range(10_000)]
+    assert np.shape(caught.value.state) == (6,)  # it was that of the part alone
 
 
 def test_a_link_that_is_overlooked_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:

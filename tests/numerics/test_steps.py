@@ -19,6 +19,7 @@ from mbsym.numerics.methods.interface import Breakdown, Cause, Piece, Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.reduced import reduced
 from mbsym.numerics.scenario import scenario
+from mbsym.numerics.separable import completing
 
 NAMES = list(METHODS)
 COMPILED = ["rk4", "rk45", "dop853"]
@@ -243,7 +244,7 @@ def test_planar_motion_of_a_spatial_system_by_steps(name: str) -> None:
     if METHODS[name].traits.extra is not None:
         pytest.importorskip(str(METHODS[name].traits.extra))
     options = Setting(**setting(name, step=0.05, tolerance=1e-9))
-    run = taken.method(METHODS[name]).start(dynamics, options)
+    run = completing(taken, METHODS[name]).start(dynamics, options)
     whole = METHODS[name].start(dynamics, options)
     times = np.linspace(0, 2, 21)
     rows = run.fill(times)
@@ -260,7 +261,7 @@ def test_planar_motion_of_a_spatial_system_by_steps(name: str) -> None:
     moved[held[0]] = 1e-3
     with pytest.raises(ValueError, match="moves what was taken out"):
         run.restart(0.0, moved)
-    few = taken.method(METHODS[name]).start(dynamics, replace(options, step_limit=5))
+    few = completing(taken, METHODS[name]).start(dynamics, replace(options, step_limit=5))
     with pytest.raises(Breakdown) as failed:
         few.fill(np.linspace(0, 1000, 20_001))
     assert len(failed.value.filled) == len(failed.value.state) == len(rows)

@@ -17,7 +17,7 @@ from mbsym.numerics.planning.prices import FOLLOWED, cost
 from mbsym.numerics.scenario import scenario
 from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import compared
-from mbsym.numerics.trade.reference_search import BROKEN, reference, whole_reference
+from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
 from mbsym_cli.main import main
 
@@ -50,7 +50,7 @@ def test_the_energy_that_a_damper_takes_is_no_error_of_a_method() -> None:
     is wrong by a thousandth is seen in the energy, too.
     """
     dynamics = dynamics_of(OSCILLATOR)
-    truth = reference(dynamics, np.linspace(0, 20, 41))
+    truth = whole_reference(dynamics, 20.0, 60.0)
     found = tradeoff(dynamics, [METHODS["dop853"], METHODS["rk4"]], truth, budget=4.0)
     exact = [row for row in found.rows if row.error < 1e-10]
     assert exact
@@ -62,16 +62,14 @@ def test_the_energy_that_a_damper_takes_is_no_error_of_a_method() -> None:
 
 def test_the_method_that_a_run_takes_climbs_first_and_every_row_says_what_it_cost() -> None:
     dynamics = dynamics_of(OSCILLATOR)
-    truth = reference(dynamics, np.linspace(0, 20, 5))
+    truth = whole_reference(dynamics, 20.0, 60.0)
     labels: list[str] = []
     found = tradeoff(dynamics, [METHODS["rk4"], METHODS["rk45"], METHODS["dop853"]], truth, 4.0, labels.append)
     assert labels[0].startswith("dop853")
-    assert [row.candidate.method.traits.name for row in found.rows][:1] == ["rk4"]  # the table keeps its order
+    assert [row.method.traits.name for row in found.rows][:1] == ["rk4"]  # the table keeps its order
     assert all(row.cost > 0 for row in found.rows)
     assert sum(row.cost for row in found.rows) == pytest.approx(found.spent)
-    first = sum(
-        row.cost for row in found.rows if row.candidate.label.startswith("dop853") and "," not in row.candidate.label
-    )
+    first = sum(row.cost for row in found.rows if row.label.startswith("dop853") and "," not in row.label)
     assert first <= FIRST * 4.0 + 1.0
 
 

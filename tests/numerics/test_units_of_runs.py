@@ -29,6 +29,7 @@ from mbsym.numerics.methods.magnitudes import Magnitudes, about
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.orbits.lyapunov import exponents
 from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.numerics.simulate import _undefined
 from mbsym.simulation import Request, Simulation, simulate
 from mbsym.simulation.motions import find_orbit
 from mbsym.source import read
@@ -227,6 +228,28 @@ def test_a_motion_off_its_constraints_is_refused_in_all_units(unit: F, part: str
     times = np.linspace(0, 2, 5)
     with nullcontext() if part == "1" else pytest.raises(ValueError, match="does not satisfy"):
         inverse_constrained(described("cartesian-pendulum"), motion, {"L": number(unit)}, times)
+
+
+ROOT = """
+mbsym: 1
+name: a force that ends
+parameters: {L: positive}
+bodies: [{name: mass, attached to: 0, mass: 1, connection point: [x, 0, 0], coordinates: [x]}]
+loads: [{generalized force: {x: -L*sqrt(x/L + 1)}}]
+values: {L: 1}
+"""
+
+
+@pytest.mark.parametrize("unit", [F(1), F(1, 10**9), F(10**9)], ids=str)
+@pytest.mark.parametrize(("away", "near"), [(F(2), False), (F(1, 100), True)])
+def test_how_near_the_end_of_a_domain_is_depends_on_no_unit(unit: F, away: F, near: bool) -> None:
+    """x'' = -L sqrt(x/L + 1), from x = (away - 1) L with x' = -L."""
+    system, _ = read(ROOT)
+    assert system is not None
+    values = {"L": unit, "x": (away - 1) * unit, "x_dot": -unit}
+    given = scenario(system, {name: number(value) for name, value in values.items()})
+    state = np.array([float(x) for x in given.state])
+    assert _undefined(Dynamics(given), 0.0, state, np.append(0.0, state)[:, None]) is near
 
 
 # --- sizes ---

@@ -20,6 +20,7 @@ from mbsym.expressions.message import Message, Said
 from mbsym.problems.stability.words import Word
 from mbsym.report.html.writer import Writer
 from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages
 from mbsym.report.targets import TARGETS
 from mbsym.report.whole_run import rendered
@@ -177,7 +178,7 @@ def test_two_theorems_are_translated_each(name: str) -> None:
     theorems = analysis.stability.numerical.theorems
     assert theorems == ("Lagrange-Dirichlet", "Routh")
     analysis.language = name
-    both = ", ".join(map(Language(name).say, theorems))
+    both = escaped(", ".join(map(Language(name).say, theorems)))
     assert both != "Lagrange-Dirichlet, Routh"
     assert f"({both})" in " ".join(TARGETS["latex"].render(analysis, (6,)).split())
 

@@ -73,6 +73,23 @@ def test_a_catalogue_is_whole(name: str) -> None:
         assert escaped(entry.msgstr).count("?") == entry.msgstr.count("?"), entry.msgstr
 
 
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_term_is_one_word(name: str) -> None:
+    """The glossary at the head of a catalogue against all of its messages, but for what is typed and gaps."""
+    catalogue = polib.pofile(str(FOLDER / "report" / "messages" / f"{name}.po"))
+    glossary = dict(line.split(" = ") for line in catalogue.header.splitlines() if " = " in line)
+    assert len(glossary) > 25
+    typed = re.compile(r"'[^']*'|\{.*\}|\[\[\w+\]\]")
+    said_otherwise = []
+    for term, other in glossary.items():
+        english = re.compile(rf"(?<![\w'-]){term.removesuffix('a')}(?:s|a)?(?![\w'-])", re.IGNORECASE)
+        word = re.compile(rf"\b{re.escape(other)}".replace(r"\*", r"\w*"), re.IGNORECASE)
+        asked = [x for x in catalogue if not x.msgid_plural and english.search(typed.sub("", x.msgid))]
+        assert asked, term
+        said_otherwise += [(term, x.msgid, x.msgstr) for x in asked if not word.search(x.msgstr)]
+    assert not said_otherwise
+
+
 def test_all_languages_have_the_same_messages() -> None:
     known = {name: set(messages(name)) for name in OTHERS}
     for name in OTHERS:

@@ -24,8 +24,8 @@ import mbsym
 from mbsym.algebra.failures import Failure
 from mbsym.numerics.methods.interface import Breakdown, Setting, Unusable
 from mbsym.numerics.methods.table import METHODS
-from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.prices import cost
+from mbsym.numerics.trade.trial import trial_of
 from mbsym.simulation import Simulation
 
 SOLUTIONS = json.loads((Path(__file__).parent / "independent" / "solutions.json").read_text(encoding="utf-8"))
@@ -219,7 +219,7 @@ def test_no_measured_setting_is_much_cheaper_by_counted_work(name: str) -> None:
 def _cost(dynamics: Any, method: str, setting: Setting, times: Any) -> tuple[float, Any]:
     """What a run costs, and its states; nothing and nan where it does not come to the end."""
     try:
-        found = rows(METHODS[method], dynamics, setting, times)
+        found = trial_of(METHODS[method], dynamics, setting, times)
     except (Breakdown, Unusable, Failure):
         return float("inf"), np.full((len(dynamics.inputs) - 1, len(times)), np.nan)
     return cost(dynamics, method, "float64", found.work), found.states

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
+from truth import test_accuracy_judged as judge
+from truth.independent.scenes import SCENES, Scene
 
 import mbsym
 from mbsym.numerics.dynamics import Dynamics
@@ -15,12 +20,13 @@ from mbsym.numerics.methods.interface import Setting
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning import planning
 from mbsym.numerics.planning.choice import Choice
-from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import planned
 from mbsym.numerics.planning.prices import cost, cost_of_rows
 from mbsym.numerics.scenario import Scenario, scenario
+from mbsym.numerics.trade.trial import trial_of
 from mbsym.report.runs.plan_words import bound_lines, choice_lines
+from mbsym_cli.main import main
 
 DOUBLE = Path(__file__).parents[2] / "systems" / "double-pendulum.yaml"
 
@@ -39,7 +45,7 @@ def test_the_price_of_a_run_with_rows_is_about_what_it_takes(end: float, count: 
     seconds, priced = {}, {}
     for name in ("dop853", "taylor"):
         times = np.linspace(0, end, count)
-        runs = [rows(METHODS[name], dynamics, Setting(1e-10), times) for _ in range(5)]
+        runs = [trial_of(METHODS[name], dynamics, Setting(1e-10), times) for _ in range(5)]
         seconds[name] = min(run.seconds for run in runs)
         work, (numbers, _) = runs[0].work, runs[0].states.shape
         priced[name] = cost(dynamics, name, "float64", work) + cost_of_rows(name, work, count, numbers)
@@ -88,7 +94,7 @@ def test_what_implicit_methods_err_by_is_not_held_against_others() -> None:
     times = np.linspace(0, 2, 41)
     plan = planned(given, Accuracy(1e-14), times)
     assert plan.reached
-    run = rows(METHODS[plan.method], Dynamics(given), plan.setting, times, plan.scalar)
+    run = trial_of(METHODS[plan.method], Dynamics(given), plan.setting, times, plan.scalar)
     root = np.sqrt(np.longdouble(1000) ** 2 - 4)
     b = (1000 + root) / 2
     a = 1 / b
@@ -161,3 +167,98 @@ def test_stiff_motions_get_the_stiff_method(text: str, time: float, truth: Any, 
     assert found.plan.method == "rodas5p"
     assert found.trajectory.work.steps < 10_000
     assert np.max(np.abs(found["x"] - truth(found.times))) <= found.plan.bound.total
+
+
+# --- every sentence of a plan, parsed back ---
+
+#: Seconds of the units that durations are written in.
+UNIT = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
+NUMBER = r"[-+.\de]+"
+SETTING = rf"(\w+) (h=)?({NUMBER})(?:, (float32|extended))?"
+
+
+def sections(output: str) -> dict[str, list[str]]:
+    """The lines beneath the name of the system by their titles."""
+    found: dict[str, list[str]] = {}
+    title = ""
+    for line in output.splitlines()[1:]:
+        if re.match(r"  \S", line):
+            title = line[2:].split("  ")[0].strip()
+        found.setdefault(title, []).append(line[2 + len(title) :].strip() if re.match(r"  \S", line) else line.strip())
+    return found
+
+
+def true_error(scene: Scene, name: str, step: str | None, fineness: str, scalar: str | None) -> float:
+    """Of a setting, by the solution of the equations by hand."""
+    setting: dict[str, Any] = {"step" if step else "tolerance": float(fineness), "arithmetic": scalar or "float64"}
+    system = mbsym.loads(scene.text)
+    return judge.judged(scene, mbsym.simulate(system, scene.time, method=name, samples=101, estimate=False, **setting))
+
+
+@pytest.mark.parametrize("target", [1e-6])
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_what_a_plan_says_is_what_stands_in_its_file_and_is_so(scene: Scene, target: float, tmp_path: Path) -> None:
+    """Numbers of every sentence against simulation.json; errors of what was refused against solutions by hand.
+
+    Nothing that was measured is cheaper by 1.5 and meets the doubled target.
+    """
+    path = tmp_path / "scene.yaml"
+    path.write_text(scene.text)
+    words = ["--time", repr(scene.time), "--accuracy", repr(target), "--samples", "101", "-v", "--format", "csv"]
+    done = CliRunner().invoke(main, ["simulate", str(path), *words, "--out", str(tmp_path)])
+    said, file = sections(done.output), json.loads((tmp_path / "simulation.json").read_text())
+    plan = file["plan"]
+    (bound,) = plan["bounds"]
+
+    assert said["accuracy"] == [f"{target:g} of the size of every coordinate and velocity, from 0 to {scene.time:g}"]
+    assert plan["accuracy"]["everything"] == target
+    assert said["bound"][0] == f"{bound['quantity']} within {bound['total']:.1e} of its size ({bound['how']})"
+    parts = dict(re.match(rf"(\w+) ({NUMBER})?", text).groups() for text in said["bound"][1].split(" + "))  # type: ignore[union-attr]
+    assert [*parts] == [share["name"] for share in bound["shares"]] == ["model", "integration", "arithmetic"]
+    for share in bound["shares"]:
+        assert share["how"] == "together" or float(parts[share["name"]] or 0) == pytest.approx(share["error"], rel=0.06)
+    assert sum(share["error"] for share in bound["shares"]) == pytest.approx(bound["total"])
+    assert plan["reached"] is (bound["total"] <= target) is ("warning" not in said or "reached" not in done.output)
+
+    own = re.match(rf"(\w+), (tolerance|step) ({NUMBER}), ({NUMBER}) (\w+) a run: (.*)", said["method"][0])
+    assert own is not None
+    name, kind, fineness, number, unit, rest = own.groups()
+    assert (name, float(fineness)) == (file["method"]["name"], file[kind])
+    assert plan["options"][plan["options"].index(f"--{kind}") + 1] == repr(float(fineness)).removesuffix(".0")
+    seconds, why = float(number) * UNIT[unit], next(item["why"] for item in plan["items"] if item["kind"] == "method")
+    assert rest.startswith(why)
+
+    for refused in rest.removeprefix(why).split("; ")[1:]:
+        match = re.fullmatch(rf"{SETTING}: error ({NUMBER}), about ({NUMBER}) (\w+)", refused)
+        if match is None:
+            assert "error inf" not in refused
+            continue
+        other, step, size, scalar, error, number, unit = match.groups()
+        cost, error = float(number) * UNIT[unit], float(error)
+        if 2 * error <= target:
+            assert cost >= seconds / 1.5, refused
+        if error < 0.1 and model_is_whole(plan):
+            true = true_error(scene, other, step, size, scalar)
+            assert error / 100 < true < 1.5 * error + 1e-13, refused
+    for text in said.get("cost", []):
+        match = re.match(rf"one digit (more|less), ({NUMBER}): about .* work \({SETTING}", text)
+        if match is None:
+            assert "no finer tolerance" in text
+            continue
+        digit, wanted, other, step, size, scalar = match.groups()
+        assert float(wanted) == pytest.approx(target * (0.1 if digit == "more" else 10))
+        if model_is_whole(plan):
+            assert true_error(scene, other, step, size, scalar) <= float(wanted)
+
+    estimate, text = file["estimated_error"], said["error"][0]
+    numbers = re.match(rf"about ({NUMBER}) at the end(?:, ({NUMBER}) at worst)?", text)
+    assert numbers is not None
+    assert float(numbers[1]) == pytest.approx(estimate["final"], rel=0.06)
+    assert float(numbers[2] or numbers[1]) == pytest.approx(estimate["largest"], rel=0.06 if numbers[2] else 0.5)
+    assert f"against {estimate['against']['method']}, tolerance {estimate['against']['tolerance']:.2g}" in text
+    assert said["energy"][0].startswith("conserved (proved)") is (file["energy"]["how"] == "proved")
+
+
+def model_is_whole(plan: dict[str, Any]) -> bool:
+    """Whether the equations are those of the description."""
+    return all(share["error"] == 0 for bound in plan["bounds"] for share in bound["shares"] if share["name"] == "model")

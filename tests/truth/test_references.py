@@ -131,7 +131,7 @@ def test_what_is_recommended_reaches_its_target_over_the_whole_interval(name: st
         best = found.cheapest(target)
         if best is None:
             continue
-        run = best.candidate.method.start(dynamics, best.candidate.setting, best.candidate.scalar)
+        run = best.method.start(dynamics, best.setting, best.scalar)
         states = np.column_stack([run.state, run.fill(times[1:])]).astype(float)
         error = float(np.max(np.abs(states - exact) / size))
         assert error <= target * 1.001

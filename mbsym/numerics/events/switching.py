@@ -30,9 +30,7 @@ from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.kernels.llvm import kernel
 from mbsym.numerics.methods.interface import (
-    COUNTS,
     Breakdown,
-    Cause,
     Change,
     Method,
     Run,
@@ -212,8 +210,7 @@ class SwitchingRun(Stepping):
     def _considered(self) -> None:
         """Looks, every so many steps, whether the other method is the better one, and turns to it if it is."""
         if self.work.steps + self.work.rejected >= self._setting.step_limit:
-            steps = Message("[[count]] steps", count=self.work.steps)
-            raise Breakdown(Cause.STEP_LIMIT, steps, self.reached, np.array(self.end, dtype=float))
+            raise self.work.too_many(self.reached, self.end)
         made = self.work.steps - self._since[0]
         if made < WINDOW * self._patience:
             return
@@ -272,7 +269,7 @@ class SwitchingRun(Stepping):
             method: Method = self._method.implicit if stiff else self._method.explicit
             run = method.start(self._dynamics, self._setting, "float64", state, float(time))
             self._runs[stiff] = run
-            self._added(run.work, Work())
+            self.work.add(run.work, Work())
         run.sizes[:] = np.maximum(run.sizes, sizes)
         return run
 
@@ -283,8 +280,4 @@ class SwitchingRun(Stepping):
         try:
             return action()
         finally:
-            self._added(own, before)
-
-    def _added(self, now: Work, before: Work) -> None:
-        for name in COUNTS:
-            setattr(self.work, name, getattr(self.work, name) + getattr(now, name) - getattr(before, name))
+            self.work.add(own, before)

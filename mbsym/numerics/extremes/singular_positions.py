@@ -284,7 +284,7 @@ class Search:
         basic: dict[str, tuple[fmpq, fmpq]] = {}
         values: dict[str, Any] = {}
         labels, exact = {}, {}
-        for name, x in zip(self.names, q.tolist(), strict=True):
+        for name, x, size in zip(self.names, q.tolist(), self.scales.tolist(), strict=True):
             if name in self.denominators:
                 quarters = round(x / (pi / 2))
                 if self.denominators[name] != 1 or abs(x - quarters * pi / 2) > NEAR:
@@ -295,7 +295,7 @@ class Search:
                 exact[name] = Fraction(quarters, 2)
                 continue
             value = Fraction(x).limit_denominator(SHORT)
-            if abs(x - value) > NEAR * (1 + abs(x)):
+            if abs(x - value) > NEAR * max(size, abs(x)):
                 return None
             values[name] = rationals.exact(value)
             labels[name], exact[name] = str(value), value

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from mbsym.algebra.program import Node, Program
@@ -30,7 +31,7 @@ class Code:
     inputs: tuple[str, ...]
     outputs: tuple[Node, ...]
 
-    @property
+    @cached_property
     def operations(self) -> int:
         return self.program.operations(self.outputs)
 

@@ -34,10 +34,10 @@ from mbsym.numerics.planning.choice import choose
 from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.model_choice import PART, Scene, Tried, model_chosen, model_settled
 from mbsym.numerics.planning.models import Model, parted
-from mbsym.numerics.planning.pilot import rows
 from mbsym.numerics.planning.plan import Accuracy
 from mbsym.numerics.planning.planning import outlined
 from mbsym.numerics.scenario import Scenario, bound, changed, substituted
+from mbsym.numerics.trade.trial import trial_of
 from mbsym.problems.linearisation import Linearisation, components
 
 # Savings in the straight-line program: what it does not compute, or computes once.
@@ -227,7 +227,8 @@ def skew_plane(work: Work) -> Iterator[Saving]:
     dynamics = Dynamics(work.scenario)
     times = np.linspace(0.0, work.wanted.time, _TIMES)
     try:
-        states = rows(choose(dynamics, TIGHT, work.wanted.time).method, dynamics, Setting(TIGHT), times).states
+        method = choose(dynamics, TIGHT, work.wanted.time).method
+        states = trial_of(method, dynamics, Setting(TIGHT), times).whole().states
         rates = arrays.kernel(dynamics.right_hand_side)(np.vstack([times, states]))[dynamics.size :]
         motions = body_motions(work.scenario, times, states, rates)
     except (Breakdown, Failure):

@@ -51,10 +51,11 @@ class Breakdown(Exception):
     was asked for.
     """
 
-    def __init__(self, kind: str, message: str, time: float, state: Any, filled: Any = None) -> None:
-        self.kind, self.message, self.time, self.state, self.filled = kind, worded(message), time, state, filled
+    def __init__(self, kind: str, message: str, time: Any, state: Any = (), filled: Any = None) -> None:
+        self.kind, self.message, self.filled = kind, worded(message), filled
+        self.time, self.state = float(time), np.array(state, dtype=float)
         text = "[[kind]] at t = [[time]]: [[message]]"
-        self.told = Message(text, kind=Message(kind), time=f"{time:.9g}", message=self.message)
+        self.told = Message(text, kind=Message(kind), time=f"{self.time:.9g}", message=self.message)
         super().__init__(str(self.told))
 
 
@@ -99,6 +100,15 @@ class Work:
     changes: list[Change] = field(default_factory=list)
     singular: list[float] = field(default_factory=list)
     compiling: float = 0.0
+
+    def add(self, now: Work, before: Work) -> None:
+        """What another run has done between two looks at its work."""
+        for name in COUNTS:
+            setattr(self, name, getattr(self, name) + getattr(now, name) - getattr(before, name))
+
+    def too_many(self, time: Any, state: Any) -> Breakdown:
+        """The limit of steps is reached."""
+        return Breakdown(Cause.STEP_LIMIT, Message("[[count]] steps", count=self.steps), time, state)
 
 
 @dataclass(frozen=True)

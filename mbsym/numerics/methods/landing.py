@@ -14,7 +14,7 @@ steps of fixed length pass it, and that is told.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
 from time import perf_counter
@@ -22,16 +22,13 @@ from typing import Any
 
 import numpy as np
 
-from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics, Frozen
 from mbsym.numerics.events.crossings import NODES, free_of_zeros, nodes, series
 from mbsym.numerics.events.features import SLIDING
 from mbsym.numerics.methods.interface import (
-    COUNTS,
     MOST_INSIDE,
     MOST_KEPT,
     Breakdown,
-    Cause,
     Method,
     Narrow,
     Passed,
@@ -105,7 +102,7 @@ class Blocks:
             self._rest -= 1
             return None
         start = float(run.time)
-        if not length > SHORT * (1.0 + abs(start)):
+        if not length > SHORT * abs(start):
             return None
         count = int(min(self._size, (bound - start) / length - AWAY))
         if count < LEAST:
@@ -309,10 +306,9 @@ class LandingRun:
         bound = min(float(rows[-1]), self._switches.next_knot(self._sides))
         if self.work.steps + 2 * MOST > self._setting.step_limit:
             return None
-        before = {name: getattr(run.work, name) for name in COUNTS}
+        before = replace(run.work)
         block = self._blocks.ahead(run, length, bound, rows)
-        for name in COUNTS:
-            setattr(self.work, name, getattr(self.work, name) + getattr(run.work, name) - before[name])
+        self.work.add(run.work, before)
         if block is None:
             return None
         self.time, self.state, self._together, self._length = block.end, run.state, 0, block.length
@@ -399,14 +395,12 @@ class LandingRun:
                 sizes[:] = np.maximum(sizes, about(self._dynamics, float(self.time), self.state).sizes[:, 0])
             self._ahead = run
         if self.work.steps >= self._setting.step_limit:
-            made = Message("[[count]] steps", count=self.work.steps)
-            raise Breakdown(Cause.STEP_LIMIT, made, self.time, np.array(self.state, dtype=float))
-        before, changes = {name: getattr(run.work, name) for name in COUNTS}, len(run.work.changes)
+            raise self.work.too_many(self.time, self.state)
+        before, changes = replace(run.work), len(run.work.changes)
         try:
             return run.step(bound)
         finally:
-            for name in COUNTS:
-                setattr(self.work, name, getattr(self.work, name) + getattr(run.work, name) - before[name])
+            self.work.add(run.work, before)
             self.work.changes += run.work.changes[changes:]
 
     def _run(self, sides: tuple[int, ...]) -> Run:

@@ -13,13 +13,25 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from mbsym.expressions.message import Message
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Cause, Passed, Piece, Run, Unusable, compiled_kernel, met_by
+from mbsym.numerics.methods.interface import (
+    Breakdown,
+    Cause,
+    Passed,
+    Piece,
+    Run,
+    Unusable,
+    Work,
+    compiled_kernel,
+    met_by,
+)
+from mbsym.numerics.methods.magnitudes import counted, magnitudes, variables
 
 # Over a singular position of the constraints, where accelerations do not follow from them.
 #
@@ -90,7 +102,7 @@ def bridge(
     end = time + away + BEYOND * reach
     guess = fitted(np.array([end]))[:, 0]
     arrived = led(end, guess)
-    size = 1 + np.max(np.abs(states), axis=1)
+    size = led.sizes + np.max(np.abs(states), axis=1)
     near = bool(np.all(np.abs(arrived - guess) <= CORRECTED * size))
     halfway = fitted(np.array([(times[-1] + end) / 2]))[:, 0]
     by_velocities = (end - times[-1]) * (states[n:, -1] + 4 * halfway[n:] + arrived[n:]) / 6  # Simpson's rule
@@ -183,15 +195,23 @@ class Lead:
     """
 
     def __init__(self, dynamics: Dynamics, scalar: str) -> None:
+        self._dynamics, self._scalar = dynamics, scalar
         self._correct = compiled_kernel(dynamics, "correction", scalar)
+
+    @cached_property
+    def sizes(self) -> Any:
+        """What the scene gives the components of its first state, (2n,)."""
+        rates = counted(compiled_kernel(self._dynamics, "right_hand_side", self._scalar), Work())
+        first = np.array([[float(x)] for x in self._dynamics.scenario.state])
+        return magnitudes(rates, variables(self._dynamics), np.zeros(1), first).sizes[:, 0]
 
     def __call__(self, times: Any, states: Any) -> Any:
         found = np.array(states)
+        sizes = self.sizes if found.ndim == 1 else self.sizes[:, None]
         with np.errstate(all="ignore"):
             for _ in range(TIMES):
                 change = self._correct(_points(times, found))[:-1]
-                size = np.max(np.abs(change), axis=0)
-                near = size <= LARGEST_PART * (1 + np.max(np.abs(found), axis=0))
+                near = np.all(np.abs(change) <= LARGEST_PART * (sizes + np.abs(found)), axis=0)
                 found = found + np.where(near, change, 0.0)
         return found
 
@@ -217,7 +237,7 @@ def lead(dynamics: Dynamics, scalar: str = "float64") -> Lead | None:
 def nearly_singular(time: Any, state: Any) -> Breakdown:
     """The end of a run before a singular position of the constraints."""
     message = "the constraints are about to lose their rank, and the accelerations with them"
-    return Breakdown(Cause.SINGULAR_CONSTRAINTS, message, float(time), np.array(state, dtype=float))
+    return Breakdown(Cause.SINGULAR_CONSTRAINTS, message, time, state)
 
 
 def refuse(dynamics: Dynamics, method: str) -> None:

@@ -108,7 +108,7 @@ class LibraryRun(Stepping):
     def one(self, until: float | None = None) -> None:
         """One step of the solver."""
         if self.work.steps >= self._limit:
-            raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=self.work.steps))
+            raise self.work.too_many(self.reached, self.end)
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if self._solver is None:
@@ -164,12 +164,7 @@ class LibraryRun(Stepping):
         try:
             return action()
         except (ValueError, np.linalg.LinAlgError, FloatingPointError) as trouble:
-            raise self._fail(Cause.BLOW_UP, str(trouble)) from None
-
-    def _fail(self, kind: str, message: str) -> Breakdown:
-        if self._solver is None:
-            return Breakdown(kind, message, *self._first)
-        return Breakdown(kind, message, float(self._solver.t), np.array(self._solver.y, dtype=float))
+            raise Breakdown(Cause.BLOW_UP, str(trouble), self.reached, self.end) from None
 
 
 class Library:

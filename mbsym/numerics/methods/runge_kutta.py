@@ -431,9 +431,7 @@ class CompiledRun(Stepping):
         """So many steps may be tried before machine code is left, as far as the limit allows any."""
         left = self.limit - self.work.steps - self.work.rejected
         if left <= 0:
-            raise self._fail(
-                Cause.STEP_LIMIT, Message("[[count]] steps", count=self.work.steps), self.clock[Clock.TIME], self.x
-            )
+            raise self.work.too_many(self.clock[Clock.TIME], self.x)
         self.count[Count.LEFT] = min(attempts, left)
 
     def _judge(self, reply: int) -> None:
@@ -451,9 +449,6 @@ class CompiledRun(Stepping):
         work.evaluations += int(count[Count.EVALUATIONS])
         work.jacobians += int(count[Count.JACOBIANS])
         count[Count.EVALUATIONS] = count[Count.JACOBIANS] = 0
-
-    def _fail(self, kind: str, message: str, time: Any, state: Any) -> Breakdown:
-        return Breakdown(kind, message, float(time), np.array(state, dtype=float))
 
 
 class FixedRun(CompiledRun):
@@ -489,7 +484,7 @@ class FixedRun(CompiledRun):
 
     def _stopped(self) -> Breakdown:
         known = np.where(np.isfinite(self.old), self.old, 0.0)
-        return self._fail(Cause.BLOW_UP, "a value is no longer finite", self.clock[Clock.TIME], known)
+        return Breakdown(Cause.BLOW_UP, "a value is no longer finite", self.clock[Clock.TIME], known)
 
 
 class AdaptiveRun(CompiledRun):
@@ -565,17 +560,17 @@ class AdaptiveRun(CompiledRun):
             fastest = float(np.max(slopes, initial=0.0))
             text = "values or rates grow too large to go on (largest rate [[rate]])"
             message = Message(text, rate=f"{fastest:.2g}")
-            return self._fail(Cause.BLOW_UP, message, self.clock[Clock.TIME], self.x)
+            return Breakdown(Cause.BLOW_UP, message, self.clock[Clock.TIME], self.x)
         message = Message("step [[step]]", step=f"{float(self.clock[Clock.STEP]):.2g}")
         if self.count[Count.INFINITE] and isinstance(self.tableau, Rosenbrock):
             slopes = compiled_kernel(self._dynamics, "slopes")(np.concatenate([[self.clock[Clock.TIME]], self.x]))
             if not np.all(np.isfinite(slopes)):
                 text = "[[method]] needs the derivatives of the rates, and not all of them are finite here"
                 message = Message(text, method=self.tableau.name)
-                return self._fail(Cause.NOT_SMOOTH, message, self.clock[Clock.TIME], self.x)
+                return Breakdown(Cause.NOT_SMOOTH, message, self.clock[Clock.TIME], self.x)
         if self.count[Count.INFINITE]:
             message = Message("the rates just ahead are not finite")
-        return self._fail(Cause.STUCK, message, self.clock[Clock.TIME], self.x)
+        return Breakdown(Cause.STUCK, message, self.clock[Clock.TIME], self.x)
 
 
 @dataclass(frozen=True)

@@ -349,7 +349,7 @@ class Sides:
                 if abs(value - end) > 1e-9 * (self.size(k) + abs(end)):
                     argument = Message("its argument is [[value]]", value=f"{value:.9g}")
                     message = joined([message, argument], ", ")
-                raise Breakdown(OUTSIDE, message, float(time), np.array(state, dtype=float))
+                raise Breakdown(OUTSIDE, message, time, state)
 
 
 def feature_kernel(dynamics: Dynamics, name: str) -> Callable[[Any], Any]:
@@ -360,7 +360,7 @@ def feature_kernel(dynamics: Dynamics, name: str) -> Callable[[Any], Any]:
 
 def endless(why: str, time: float, state: Any) -> Breakdown:
     """A run that cannot go on at a switch."""
-    return Breakdown(SWITCHING, why, float(time), np.array(state, dtype=float))
+    return Breakdown(SWITCHING, why, time, state)
 
 
 # Where a step leaves the sides that it was made for: the first place, on its dense output.

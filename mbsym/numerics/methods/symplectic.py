@@ -348,14 +348,9 @@ class MidpointRun(Stepping):
     def _march(self, goal: int) -> None:
         """Steps up to a number."""
         while self.count[NUMBER] < goal:
-            first, now = int(self.count[NUMBER]), float(self.reached)
+            first = int(self.count[NUMBER])
             if self.work.steps >= self.limit:
-                raise Breakdown(
-                    Cause.STEP_LIMIT,
-                    Message("[[count]] steps", count=self.work.steps),
-                    now,
-                    np.array(self.end, dtype=float),
-                )
+                raise self.work.too_many(self.reached, self.end)
             before = self.x.copy()
             last = min(goal, first + min(self._at_once, self.limit - self.work.steps))
             self._counted(first, self._midpoint(*self._pointers, first, last))
@@ -439,13 +434,13 @@ class MidpointRun(Stepping):
         known = self._shown(np.array([self.reached]), self.x[:, None])[:, 0] if finite else None
         state = known if known is not None else np.where(np.isfinite(before), before, 0.0)
         if self.count[TROUBLE] == NOT_FINITE or not finite:
-            raise Breakdown(Cause.BLOW_UP, "a value is no longer finite", now, np.array(state, dtype=float))
+            raise Breakdown(Cause.BLOW_UP, "a value is no longer finite", now, state)
         message = Message(
             "the implicit equation has no solution within [[count]] iterations; h = [[step]] is too long",
             count=MOST_ITERATIONS,
             step=f"{float(self.clock[STEP]):.3g}",
         )
-        raise Breakdown(Cause.STUCK, message, now, np.array(state, dtype=float))
+        raise Breakdown(Cause.STUCK, message, now, state)
 
     def _shown(self, times: Any, x: Any) -> Any:
         """(q, q') in columns of (q, p) in columns: M q' = p - p at q' = 0."""

@@ -232,7 +232,7 @@ class TaylorRun(Stepping):
         goal = until - 2 * last
         while last > 0 and goal - taylor.time > 8 * last:
             if work.steps >= self._limit:
-                raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
+                raise work.too_many(taylor.time, self.end)
             now, before = taylor.time, np.array(taylor.state)
             at_once = min(STEPS_AT_A_TIME, self._limit - work.steps)
             outcome, shortest, _, made, *_ = taylor.propagate_until(self._dtype(goal), max_steps=at_once)
@@ -247,7 +247,7 @@ class TaylorRun(Stepping):
         """One step that keeps its series."""
         taylor, work = self._taylor, self.work
         if work.steps >= self._limit:
-            raise self._fail(Cause.STEP_LIMIT, Message("[[count]] steps", count=work.steps), taylor.time, self.end)
+            raise work.too_many(taylor.time, self.end)
         now, before = taylor.time, self.end
         if self._led is not None and self._led.near(now, before):
             raise nearly_singular(now, before)
@@ -267,17 +267,13 @@ class TaylorRun(Stepping):
 
     def _judge(self, failed: bool, step: Any, now: Any, before: Any) -> None:
         if failed:
-            raise self._fail(Cause.BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
+            raise Breakdown(Cause.BLOW_UP, "a Taylor coefficient is no longer finite", now, before)
         if step > self._least * max(self._unit, abs(now)):
             return
         if not np.all(np.abs(self._taylor.state) < LARGEST):  # in units of the scene's sizes
             bound = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{LARGEST:.0e}")
-            raise self._fail(Cause.BLOW_UP, bound, now, before)
-        raise self._fail(Cause.STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
-
-    @staticmethod
-    def _fail(kind: str, message: str, time: Any, state: Any) -> Breakdown:
-        return Breakdown(kind, message, float(time), np.array(state, dtype=float))
+            raise Breakdown(Cause.BLOW_UP, bound, now, before)
+        raise Breakdown(Cause.STUCK, Message("step [[step]]", step=f"{float(step):.2g}"), now, before)
 
 
 class Taylor:

@@ -144,7 +144,7 @@ def exponents(
     panels = max(1, flow.run.work.steps // len(rates))
     divergence = _mean_divergence(dynamics, divergences, panels, tolerance)
     error = abs(float(np.sum(values)) - divergence) if flow.columns == most else float("nan")
-    doubt, linear = _uncertainty(rates, times), dynamics.linear
+    doubt, linear = _uncertainty(rates, times, tolerance), dynamics.linear
     # What a constraint drives is a variable more, though the rates may hold no time.
     planar = most == 2 and autonomous(dynamics) and (constraints is None or constraints.steady)
     return Exponents(values, doubt, times, history, divergence, error, float(times[-1]), ended, linear, planar, resting)
@@ -155,10 +155,11 @@ def _directions(size: int, columns: int) -> Any:
     return np.linalg.qr(np.random.default_rng(1).normal(size=(size, columns)))[0]
 
 
-def _uncertainty(rates: Any, times: Any) -> Any:
+def _uncertainty(rates: Any, times: Any, tolerance: float) -> Any:
     """Half the width of the 95 % interval of the mean, from blocks of the second half; nan where these are too few.
 
-    With it goes how far the second half's mean is from that of the whole.
+    With it goes how far the second half's mean is from that of the whole, which is all of it where the rates are
+    constant but for a beginning, and what the tolerance of the steps lets log |R_ii| of an interval err by.
     """
     late = rates[len(rates) // 2 :]
     if len(late) < 2 * BLOCKS:
@@ -166,7 +167,7 @@ def _uncertainty(rates: Any, times: Any) -> Any:
     length = times[0]
     blocks = np.array([np.mean(part, axis=0) / length for part in np.array_split(late, BLOCKS)])
     turning = np.mean(late, axis=0) / length - np.mean(rates, axis=0) / length
-    return np.hypot(STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS), turning)
+    return np.hypot(STUDENT * np.std(blocks, axis=0, ddof=1) / np.sqrt(BLOCKS), turning) + tolerance / length
 
 
 def _mean_divergence(dynamics: Dynamics, starts: Any, panels: int, tolerance: float) -> float:

@@ -25,13 +25,12 @@ from mbsym.model.loads import EXACT
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.ensembles.parametrised import parametrised
 from mbsym.numerics.kernels import arrays
-from mbsym.numerics.kernels.interface import FLOAT64, Code
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, compiled_kernel
+from mbsym.numerics.kernels.interface import Code
+from mbsym.numerics.methods.interface import Method, Setting, compiled_kernel
 from mbsym.numerics.orbits.variational import extended
 from mbsym.numerics.planning.models import Model, droppable, faithful, modelled, orders, scenario_of
-from mbsym.numerics.planning.pilot import Rows, rows
-from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.scenario import Scenario, Specialised, substituted
+from mbsym.numerics.trade.trial import trial_of
 
 # What a simpler model costs in accuracy, estimated after the fact: along the motion that it gives.
 #
@@ -154,12 +153,11 @@ def model_error(
     """
     both = Propagated(simple, rich, [float(s) for s in scale], unit)
     size = simple.dimension
-    try:
-        found = rows(method, both, setting, times)
-    except Breakdown as reason:
+    trial = trial_of(method, both, setting, times)
+    if trial.ended:
         none = np.full((size, 0), np.nan)
-        return ModelEstimate(np.full(size, np.inf), none, none, False, trouble=str(reason))
-    states, difference = both.split(found.states)
+        return ModelEstimate(np.full(size, np.inf), none, none, False, trouble=str(trial.ended))
+    states, difference = both.split(trial.states)
     by_quantity = np.max(np.abs(difference), axis=1) / np.asarray(scale, dtype=float)
     good = bool(np.all(np.isfinite(by_quantity)) and np.max(by_quantity) <= TRUSTED)
     trouble = "" if good else "the difference is no longer small against the motion"
@@ -251,9 +249,15 @@ class Scene:
     @property
     def setting(self) -> Setting:
         """Fine enough to tell a model's error from that of the integration."""
-        finest = float(np.min(self.targets))
-        small = min(1.0, float(np.min(self.scale[:-1])))
-        return Setting(tolerance=min(1e-6, max(1e-3 * finest * small, 1e-13)))
+        return Setting(tolerance=min(1e-6, max(1e-3 * float(np.min(self.targets)), 1e-13)))
+
+    @cached_property
+    def truth(self) -> Any | None:
+        """The states of the faithful model at the times; None where they are dear, or do not come to the end."""
+        coarse = trial_of(self.method, self.rich, replace(self.setting, tolerance=1e-4), self.times)
+        if coarse.ended or coarse.cost >= CHEAP / 10:
+            return None
+        return trial_of(self.method, self.rich, self.setting, self.times).states
 
 
 def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
@@ -280,7 +284,7 @@ def model_settled(scene: Scene, model: Model) -> ModelChoice:
     if model == scene.model:
         return ModelChoice(whole, scene.rich, (whole,), scene.model)
     dynamics = modelled(scene.scenario, model)
-    own = _estimated(scene, model, dynamics, _Truth(scene))
+    own = _estimated(scene, model, dynamics)
     return ModelChoice(own, dynamics, (whole, own), scene.model)
 
 
@@ -290,10 +294,9 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
     none = np.zeros(len(scene.targets))
     whole = Tried(scene.model, operations, 0.0, none, Certainty.PROVED)
     taken, dynamics, tried = whole, scene.rich, [whole]
-    truth = _Truth(scene)
     for model in _candidates(scene):
         watch(model.label)
-        found = _judged(scene, model, truth)
+        found = _judged(scene, model)
         if found is None:
             continue
         item, own = found
@@ -301,7 +304,7 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
         if item.ratio <= PART and item.operations < SAVES * taken.operations:
             taken, dynamics = item, own
             break
-    fewer = None if taken.model.linear else _without(scene, taken.model, truth, watch)
+    fewer = None if taken.model.linear else _without(scene, taken.model, watch)
     if fewer is not None and fewer[0].operations < SAVES * taken.operations:
         taken, dynamics = fewer
         tried.append(taken)
@@ -318,36 +321,15 @@ def _candidates(scene: Scene) -> list[Model]:
     return candidates
 
 
-class _Truth:
-    """The motion of the faithful model at the times, found when it is first asked for; None where it is dear."""
-
-    def __init__(self, scene: Scene) -> None:
-        self._scene = scene
-        self._found: Rows | None = None
-        self._asked = False
-
-    def states(self) -> Any | None:
-        scene = self._scene
-        if not self._asked:
-            self._asked = True
-            try:
-                coarse = rows(scene.method, scene.rich, replace(scene.setting, tolerance=1e-4), scene.times)
-                if cost(scene.rich, scene.method.traits.name, FLOAT64, coarse.work) < CHEAP / 10:
-                    self._found = rows(scene.method, scene.rich, scene.setting, scene.times)
-            except Breakdown:
-                pass
-        return None if self._found is None else self._found.states
-
-
-def _judged(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dynamics] | None:
+def _judged(scene: Scene, model: Model) -> tuple[Tried, Dynamics] | None:
     """A model with its error; None where there is no program for it, or it saves nothing."""
     try:
-        return _held_against(scene, model, truth)
+        return _held_against(scene, model)
     except Failure:
         return None
 
 
-def _held_against(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dynamics] | None:
+def _held_against(scene: Scene, model: Model) -> tuple[Tried, Dynamics] | None:
     """A model with its error; None where it saves nothing.  Raises Failure where it has no program."""
     dynamics = modelled(scene.scenario, model)
     operations = dynamics.right_hand_side.operations
@@ -358,15 +340,15 @@ def _held_against(scene: Scene, model: Model, truth: _Truth) -> tuple[Tried, Dyn
         errors = np.full(len(scene.targets), inf)
         why = Message("far off by its residual")
         return Tried(model, operations, naive, errors, Certainty.ESTIMATED, why), dynamics
-    return _estimated(scene, model, dynamics, truth), dynamics
+    return _estimated(scene, model, dynamics), dynamics
 
 
-def _estimated(scene: Scene, model: Model, dynamics: Dynamics, truth: _Truth) -> Tried:
+def _estimated(scene: Scene, model: Model, dynamics: Dynamics) -> Tried:
     """A model with its error by the equation of the difference, and by a rerun where that is cheap."""
     operations = dynamics.right_hand_side.operations
     unit = float(np.min(scene.targets))
     estimate = model_error(dynamics, scene.rich, scene.method, scene.setting, scene.times, scene.scale[:-1], unit)
-    rerun, how, why = truth.states(), Certainty.ESTIMATED, ""
+    rerun, how, why = scene.truth, Certainty.ESTIMATED, ""
     reached = estimate.states.shape[1] == len(scene.times)
     if rerun is not None and reached:
         trusted = estimate.trusted
@@ -432,7 +414,7 @@ def _energy_error(scene: Scene, simple: Dynamics, found: ModelEstimate) -> float
 # --- parameters that this motion does not feel ---
 
 
-def _without(scene: Scene, base: Model, truth: _Truth, watch: Callable[[str], None]) -> tuple[Tried, Dynamics] | None:
+def _without(scene: Scene, base: Model, watch: Callable[[str], None]) -> tuple[Tried, Dynamics] | None:
     """The model without every parameter that may be taken as zero; None where there is none."""
     ranked = _felt(scene, base)
     names = [name for name, ratio in ranked if 0 < ratio <= HOPELESS * PART]
@@ -441,7 +423,7 @@ def _without(scene: Scene, base: Model, truth: _Truth, watch: Callable[[str], No
         model = replace(base, without=tuple(names))
         watch(model.label)
         try:
-            found = _held_against(scene, model, truth)
+            found = _held_against(scene, model)
         except Failure:  # a mass that nothing else replaces, a divisor: it stays, and the others are looked at
             able = names if looked_at else [name for name in names if _has_program(scene, base, name)]
             looked_at = True

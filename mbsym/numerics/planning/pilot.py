@@ -8,8 +8,7 @@ tells the error; settings of a method are found by the slope of log rho over log
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isfinite, log
@@ -21,30 +20,13 @@ from mbsym.algebra.failures import Defect, Failure
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import EXTENDED, FLOAT64
 from mbsym.numerics.kernels.llvm import available
-from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work, compiled_kernel
+from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, compiled_kernel
 from mbsym.numerics.planning.prices import cost, cost_of_rows
-from mbsym.numerics.trade.comparison import filled
+from mbsym.numerics.trade.trial import Trial, trial_of
 
 #: Where within a step, its end included, and how many places in all.
 SHARES = np.array([0.17, 0.38, 0.61, 0.83, 1.0])
 MOST = 20_000
-
-
-@dataclass(frozen=True)
-class Rows:
-    """``states`` (2n, m), the work and the processor seconds of the integration, compiling not counted."""
-
-    states: Any
-    work: Work
-    seconds: float
-
-
-def rows(method: Method, dynamics: Dynamics, setting: Setting, times: Any, scalar: str = "float64") -> Rows:
-    """The states at increasing times from 0.  Raises Breakdown where they do not reach the last one."""
-    run = method.start(dynamics, setting, scalar)
-    started = time.thread_time()
-    states = filled(run, times)
-    return Rows(np.ascontiguousarray(states), replace(run.work), time.thread_time() - started)
 
 
 def places(method: Method, dynamics: Dynamics, setting: Setting, end: float) -> Any:
@@ -77,52 +59,6 @@ TRIES = 5
 ALIKE = 1.1
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """One way to integrate: a method in an arithmetic with a tolerance or a step."""
-
-    method: Method
-    scalar: str
-    setting: Setting
-
-    @property
-    def label(self) -> str:
-        """``dop853 1e-09``, ``rk4 h=0.001, float32``."""
-        arithmetic = "" if self.scalar == FLOAT64 else f", {self.scalar}"
-        return f"{self.method.traits.name} {self.shown}{arithmetic}"
-
-    @property
-    def shown(self) -> str:
-        """The tolerance or the step."""
-        if self.setting.step is not None:
-            return f"h={self.setting.step:.3g}"
-        decade = f"{self.setting.tolerance:.0e}"
-        return decade if float(decade) == self.setting.tolerance else f"{self.setting.tolerance:.3g}"
-
-    @property
-    def fineness(self) -> float:
-        """The tolerance, or the step."""
-        fineness = self.setting.tolerance if self.setting.step is None else self.setting.step
-        assert fineness is not None
-        return fineness
-
-
-@dataclass(frozen=True)
-class Trial(Candidate):
-    """What came of one: ``errors`` (k,) relative to the scales.
-
-    ``cost`` is that of its counted work (``planning.prices``), by which settings are chosen; ``seconds`` of the
-    processor are told, and decide nothing.
-    """
-
-    ratio: float
-    errors: Any
-    seconds: float
-    work: Work
-    cost: float
-    states: Any = None
-
-
 @dataclass
 class Bench:
     """Runs of one model judged by one reference.
@@ -130,8 +66,7 @@ class Bench:
     ``times`` are those at which runs are compared, ``shown`` the rows that are asked for and timed (all of them among
     ``times`` unless they are very many); ``targets`` the tolerable errors of coordinates, velocities and energy, shape
     (2n + 1,), inf where any is.  ``complete`` makes of a method one that shows whole states.
-    ``reference`` holds the quantities of a run whose own error is ``known`` (rho); no step is to be longer than
-    ``longest``.
+    ``stick`` is the run that judges them; no step is to be longer than ``longest``.
     """
 
     dynamics: Dynamics
@@ -140,8 +75,7 @@ class Bench:
     targets: Any
     complete: Callable[[Method], Method]
     scale: Any = None
-    reference: Any = None
-    known: float = 0.0
+    stick: Yardstick | None = None
     longest: float | None = None
     trials: list[Trial] = field(default_factory=list)
 
@@ -162,19 +96,19 @@ class Bench:
             setting = replace(setting, longest=min(setting.longest or self.longest, self.longest))
         # Steps of one length end at every row: between rows there is nothing to compare.
         times = self._rows if method.traits.fixed else self.times
-        found = rows(complete, self.dynamics, setting, times, scalar)
-        priced = found
-        if often:  # the rows that are asked for, and no others
-            priced = rows(complete, self.dynamics, setting, self.shown, scalar)
+        found = trial_of(complete, self.dynamics, setting, times, scalar).whole()
+        # Priced are the rows that are asked for, and no others.
+        priced = trial_of(complete, self.dynamics, setting, self.shown, scalar).whole() if often else found
         name, (numbers, count) = method.traits.name, priced.states.shape
         whole = cost(self.dynamics, name, scalar, priced.work) + cost_of_rows(name, priced.work, count, numbers)
         quantities = self.quantities(found.states, times)
-        ratio, errors = self.compared(quantities, self.reference) if self.reference is not None else (inf, None)
+        trial = replace(found, method=method, cost=whole, seconds=priced.seconds, states=quantities)
+        if self.stick is None:
+            return trial
+        error, errors = self.compared(quantities, self.stick.trial.states)
         # What the reference itself is wrong by is added: a run that happens to be the reference has no smaller error.
-        ratio += self.known
-        trial = Trial(method, scalar, setting, ratio, errors, priced.seconds, found.work, whole, quantities)
-        if self.reference is not None:
-            self.trials.append(replace(trial, states=None))
+        trial = replace(trial, error=error + self.stick.known, errors=errors)
+        self.trials.append(replace(trial, states=None))
         return trial
 
     @cached_property
@@ -207,24 +141,29 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
     ``limit`` is a cost; a method that is dearer before it is good enough is given up.
     """
     setting, found, last = start, None, None
-    slope = float(method.traits.order or 1) if start.step is not None else USUAL_SLOPE
+    slope = usual_slope(method, start)
     for _ in range(TRIES):
         trial = _tried(bench, method, scalar, setting)
         if trial is None:
             return found
-        if trial.ratio <= goal and (found is None or _preferred(trial, found)):
+        if trial.error <= goal and (found is None or _preferred(trial, found)):
             found = trial
-        if trial.ratio <= goal and trial.ratio >= WASTEFUL * goal:
+        if trial.error <= goal and trial.error >= WASTEFUL * goal:
             return found
-        if trial.ratio > goal and trial.cost > limit:
+        if trial.error > goal and trial.cost > limit:
             return found
         slope = _slope(last, trial, slope)
         last = trial
-        following = _next(trial, goal, slope, bench.spacing)
-        if following is None or following == setting:
+        after = following(trial, goal, slope, bench.spacing)
+        if after is None or after == setting:
             return found
-        setting = following
+        setting = after
     return found
+
+
+def usual_slope(method: Method, setting: Setting) -> float:
+    """d log rho / d log tolerance, or step, before it is measured."""
+    return float(method.traits.order or 1) if setting.step is not None else USUAL_SLOPE
 
 
 def _preferred(trial: Trial, other: Trial) -> bool:
@@ -246,37 +185,32 @@ def _tried(bench: Bench, method: Method, scalar: str, setting: Setting) -> Trial
 
 def _slope(last: Trial | None, now: Trial, slope: float) -> float:
     """d log rho / d log tolerance by the last two, where they tell."""
-    if last is None or not (isfinite(last.ratio) and isfinite(now.ratio) and last.ratio > 0 and now.ratio > 0):
+    if last is None or not (isfinite(last.error) and isfinite(now.error) and last.error > 0 and now.error > 0):
         return slope
     apart = log(now.fineness / last.fineness)
-    measured = log(now.ratio / last.ratio) / apart if apart else slope
+    measured = log(now.error / last.error) / apart if apart else slope
     return measured if 0.3 * slope <= measured <= 3 * slope else slope
 
 
-def _next(trial: Trial, goal: float, slope: float, spacing: float) -> Setting | None:
+def following(trial: Trial, goal: float, slope: float, spacing: float) -> Setting | None:
     """The setting at which rho should be ``AIM`` of the goal; None where the arithmetic has no finer one.
 
     Steps of one length are no longer than the ``spacing`` of the rows, at each of which one ends.
     """
-    ratio = min(max(trial.ratio, 1e-12 * goal), 1e12 * goal)
+    ratio = min(max(trial.error, 1e-12 * goal), 1e12 * goal)
     factor = min(max((AIM * goal / ratio) ** (1 / slope), 1e-4), 1e4)
     if trial.setting.step is not None:
-        return replace(trial.setting, step=min(_round(trial.setting.step * factor), spacing))
-    wanted = _round(min(trial.fineness * factor, 1e-2))
+        return replace(trial.setting, step=min(_rounded(trial.setting.step * factor), spacing))
+    wanted = _rounded(min(trial.fineness * factor, 1e-2))
     least = trial.method.traits.finest(trial.scalar)
     if wanted < least:
         return None if trial.fineness <= least else replace(trial.setting, tolerance=least)
     return replace(trial.setting, tolerance=wanted)
 
 
-def _round(x: float) -> float:
+def _rounded(x: float) -> float:
     """Two digits: what is printed is what was taken."""
     return float(f"{x:.1e}")
-
-
-def best(trials: Sequence[Trial]) -> Trial | None:
-    """The cheapest."""
-    return min(trials, key=lambda one: one.cost, default=None)
 
 
 # The run that others are judged by: the same equations so finely that its own error counts for little.
@@ -320,17 +254,13 @@ LONG = 20_000
 
 @dataclass(frozen=True)
 class Yardstick:
-    """``quantities`` (2n + 1, m) of the finest run; ``known``: its own error as a part of the targets (rho).
+    """The finest run, its states all quantities (2n + 1, m); ``known``: its own error as a part of the targets (rho).
 
     ``start`` is the tolerance at which rho is about what is aimed at, by the runs on the way.
     """
 
-    quantities: Any
+    trial: Trial
     known: float
-    method: str
-    scalar: str
-    setting: Setting
-    cost: float
     start: float
 
 
@@ -346,7 +276,7 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
     # An error is known by a finer run: the first one leaves room for that.
     tolerance = max(tolerance, method.traits.finest(scalar) / APART**2)
     before = bench.run(method, scalar, Setting(tolerance, None, most, longest))
-    best = _taken(before, inf, tolerance)
+    best = Yardstick(before, inf, _rounded(tolerance))
     while True:
         least = method.traits.finest(scalar)
         stalled = last < inf and gain > LEAST_GAIN and last * bench.finest_target < COARSE
@@ -374,7 +304,7 @@ def yardstick(bench: Bench, method: Method, tolerance: float, goal: float, most:
         known = max(known, _roundings(scalar) / bench.finest_target)
         if known <= best.known:
             factor = (AIM * goal / apart) ** (1 / USUAL_SLOPE) if apart > 0 else 1.0
-            best = _taken(now, known, max(coarser * min(factor, 1e3), least))
+            best = Yardstick(now, known, _rounded(max(coarser * min(factor, 1e3), least)))
         if known <= KNOWN * goal:
             return best
         before, last = now, apart
@@ -389,11 +319,6 @@ def _ruled(trial: Trial, longest: float, bench: Bench) -> float:
     if trial.work.steps * longest < MOSTLY * float(bench.times[-1]):
         return float(SHORTER**order / (1 - SHORTER**order))
     return 0.0
-
-
-def _taken(trial: Trial, known: float, start: float) -> Yardstick:
-    name = trial.method.traits.name
-    return Yardstick(trial.states, known, name, trial.scalar, trial.setting, trial.cost, float(f"{start:.1e}"))
 
 
 def _roundings(scalar: str) -> float:

@@ -130,7 +130,7 @@ class Bound:
 
 @dataclass(frozen=True)
 class Alternative:
-    """What another accuracy would cost: the setting and seconds, ``measured`` or judged by the slope of those that are.
+    """What another accuracy would cost: the cheapest setting that was measured to reach it.
 
     ``times`` is the ratio of its counted work to that of the plan, and ``seconds`` those of the plan so many times.
 
@@ -140,7 +140,6 @@ class Alternative:
     target: float
     label: str = ""
     seconds: float | None = None
-    measured: bool = False
     model: str = ""
     why: str = ""
     times: float = 1.0

@@ -20,7 +20,7 @@ from mbsym.numerics.planning.choice import Choice
 from mbsym.numerics.planning.kinds import Kind
 from mbsym.numerics.planning.model_choice import PART, ModelChoice, Scene, Tried
 from mbsym.numerics.planning.models import Model, described, parted
-from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Trial, Yardstick
+from mbsym.numerics.planning.pilot import ALIKE, WASTEFUL, Bench, Yardstick
 from mbsym.numerics.planning.plan import (
     ARITHMETIC,
     ENERGY,
@@ -36,6 +36,7 @@ from mbsym.numerics.planning.plan import (
 )
 from mbsym.numerics.planning.reduced import Reduced
 from mbsym.numerics.separable import Part
+from mbsym.numerics.trade.trial import Trial
 
 # What a setting on a model is worth: the shares of its error, and the bounds that they add up to.
 
@@ -75,7 +76,7 @@ def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
 
 def fits(trial: Trial, known: float, room: float) -> bool:
     """Whether the error of a trial, doubled, is within ``room``; with ``known``, that of what it was measured by."""
-    return DOUBLED * (trial.ratio - known) + known <= room
+    return DOUBLED * (trial.error - known) + known <= room
 
 
 def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
@@ -91,11 +92,14 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
         try:
             twin = bench.run(found.method, str(other), found.setting)
             _, apart = bench.compared(_again(bench, found), twin.states)
-            # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
-            both = apart + twin.errors
-            counted = (both > 0) & np.isfinite(both)
-            arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
-            measured, way = measured - arithmetic, Certainty.MEASURED
+            # Where stability rules the steps of two runs, these go their own ways, and so do their errors: runs that
+            # differ by about what either of them errs by tell nothing of rounding.
+            if not np.any(asked & (apart > twin.errors / 2) & (twin.errors > found.errors / 2)):
+                # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
+                both = apart + twin.errors
+                counted = (both > 0) & np.isfinite(both)
+                arithmetic = measured * np.divide(apart, both, out=np.zeros_like(both), where=counted)
+                measured, way = measured - arithmetic, Certainty.MEASURED
         except (Breakdown, Unusable):
             pass
     return (
@@ -160,7 +164,7 @@ class Settled:
     def measured_to(self) -> float | None:
         """How well the run is known that measured, where that is all by which the best trial differs from it."""
         known = self.stick.known
-        least = min((trial.ratio - known for trial in self.bench.trials), default=inf)
+        least = min((trial.error - known for trial in self.bench.trials), default=inf)
         return None if self.enough or least > APART * known else known * self.bench.finest_target
 
     @property
@@ -295,9 +299,9 @@ def _cheapest(found: Trial, least: float) -> str:
 def _closest(settled: Settled) -> str:
     """Of a plan that is not accurate enough."""
     trial, none = settled.found, _none(settled)
-    least = min((one.ratio for one in settled.bench.trials), default=inf)
-    near = min((one.cost for one in settled.bench.trials if one.ratio <= 2 * least), default=0.0)
-    if trial.ratio > 2 * least or trial.cost > ALIKE * near:
+    least = min((one.error for one in settled.bench.trials), default=inf)
+    near = min((one.cost for one in settled.bench.trials if one.error <= 2 * least), default=0.0)
+    if trial.error > 2 * least or trial.cost > ALIKE * near:
         return none
     text = "[[none]]: by counted work [[cheapest]] within twice the least error"
     return Message(text, none=none, cheapest=_cheapest(trial, near))
@@ -324,9 +328,9 @@ def _why_fineness(settled: Settled) -> str:
 
 
 def _fitting(found: Trial) -> str:
-    if found.ratio > 1:
+    if found.error > 1:
         return Message("as asked for, too coarse for this accuracy")
-    return Message("as asked for, finer than this accuracy needs" if found.ratio < WASTEFUL else "as asked for")
+    return Message("as asked for, finer than this accuracy needs" if found.error < WASTEFUL else "as asked for")
 
 
 def _why_scalar(settled: Settled) -> str:
@@ -377,7 +381,7 @@ def _priced(settled: Settled, trial: Trial) -> float:
 
 
 def _rank(trial: Trial) -> tuple[bool, float]:
-    return (trial.ratio > 1, trial.cost if trial.ratio <= 1 else trial.ratio)
+    return (trial.error > 1, trial.cost if trial.error <= 1 else trial.error)
 
 
 def _worst(settled: Settled, one: Trial | Tried) -> float:

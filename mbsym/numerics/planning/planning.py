@@ -31,13 +31,12 @@ from mbsym.numerics.planning.pilot import (
     ALIKE,
     KNOWN,
     MOST,
-    USUAL_SLOPE,
     Bench,
-    Trial,
     Yardstick,
+    following,
     places,
-    rows,
     searched,
+    usual_slope,
     yardstick,
 )
 from mbsym.numerics.planning.plan import ENERGY, Accuracy, Alternative, Bound, Plan
@@ -46,7 +45,8 @@ from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import Reduced, reduced
 from mbsym.numerics.planning.sizes import scaled_by_another, usual_sizes
 from mbsym.numerics.scenario import Scenario
-from mbsym.numerics.separable import Part, Separate, separated
+from mbsym.numerics.separable import Part, Separate, completing, separated
+from mbsym.numerics.trade.trial import Trial, trial_of
 
 # Which methods are tried for an accuracy, in which arithmetic, and from which setting on.
 
@@ -64,12 +64,8 @@ TAYLOR_FROM, TAYLOR_LONG = 1e-8, 3_000
 DUPLICATES = ("scipy-rk45", "scipy-dop853")
 
 
-@dataclass(frozen=True)
-class Contender:
-    """A method in an arithmetic."""
-
-    method: Method
-    scalar: str
+#: A method in an arithmetic.
+Contender = tuple[Method, str]
 
 
 def contenders(
@@ -100,7 +96,7 @@ def contenders(
             taylor_pays = target <= TAYLOR_FROM and dynamics.right_hand_side.operations <= TAYLOR_LONG
             if name == "taylor" and (scalar == FLOAT32 or model.linear or not taylor_pays):
                 continue
-            yield Contender(method, scalar)
+            yield method, scalar
 
 
 def in_more_digits() -> Iterator[Contender]:
@@ -108,7 +104,7 @@ def in_more_digits() -> Iterator[Contender]:
     if available(EXTENDED):
         for name in ("dop853", "taylor"):
             if name in METHODS and EXTENDED in METHODS[name].traits.scalars:
-                yield Contender(METHODS[name], EXTENDED)
+                yield METHODS[name], EXTENDED
 
 
 def first_setting(contender: Contender, tolerance: float, best: Trial | None, end: float, spacing: float) -> Setting:
@@ -116,26 +112,18 @@ def first_setting(contender: Contender, tolerance: float, best: Trial | None, en
 
     No step is longer than the ``spacing`` of the rows.
     """
-    traits = contender.method.traits
-    if not traits.fixed:
-        found = best.setting.tolerance if best is not None and best.setting.tolerance else tolerance
-        return Setting(tolerance=min(max(found, contender.method.traits.finest(contender.scalar)), 1e-3))
+    method, scalar = contender
+    if not method.traits.fixed:
+        start = best.setting.tolerance if best is not None and best.setting.tolerance else tolerance
+        return Setting(tolerance=min(max(start, method.traits.finest(scalar)), 1e-3))
     evaluations = best.work.evaluations if best is not None else 4_000
     return Setting(step=min(float(f"{end / max(10, evaluations / 4):.1e}"), spacing))
-
-
-#: How the cost of a method grows with its accuracy: cost ~ error**(-1/order).
-ORDERS = {"dop853": 8, "rk45": 5, "taylor": 16}
-USUAL_ORDER = 5
-
-#: No tolerance is coarser.
-COARSEST = 1e-2
 
 
 def alternatives(
     bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
 ) -> tuple[Alternative, Alternative]:
-    """(one digit more, one digit less)."""
+    """(one digit more, one digit less), each measured as the plan was, on its model."""
     more, less = (_other(bench, found, tried, taken, accuracy.finest, goal, factor) for factor in (0.1, 10.0))
     return more, less
 
@@ -145,52 +133,24 @@ def _other(
 ) -> Alternative:
     wanted = goal * factor
     model = _model_of(tried, factor)
-    price = model.operations / max(1, taken.operations)
     name = "" if model.model == taken.model else model.model.label
-    options: list[tuple[float, str, bool]] = [
-        (trial.cost * price, trial.label, not name) for trial in bench.trials if trial.ratio <= wanted
-    ]
-    judged = _judged(found, max(found.ratio / wanted, 1e-9), bench.spacing)
-    if judged is not None and not _tried_in_vain(bench, found, judged[2], wanted):
-        options.append((judged[0] * price, judged[1], False))
-    if not options:
+    start = following(found, wanted, usual_slope(found.method, found.setting), bench.spacing)
+    if start is not None:
+        _searched(bench, found.method, found.scalar, start, wanted, inf)
+    able = [trial for trial in bench.trials if trial.error <= wanted]
+    if not able:
         needed = found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars
         text = "[[scalar]] has no finer tolerance; extended arithmetic is needed"
         why = Message(text if needed else "[[scalar]] has no finer tolerance", scalar=found.scalar)
         return Alternative(target * factor, why=why, model=name)
-    cost, label, measured = min(options)
-    times = cost / found.cost
-    return Alternative(target * factor, label, found.seconds * times, measured, name, times=times)
+    least = min(able, key=lambda trial: trial.cost)
+    times = least.cost / found.cost * model.operations / max(1, taken.operations)
+    return Alternative(target * factor, least.label, found.seconds * times, name, times=times)
 
 
 def _model_of(tried: Sequence[Tried], factor: float) -> Tried:
     """The cheapest model that would be good enough; the faithful one has no error."""
     return min((one for one in tried if one.ratio <= PART * factor), key=lambda one: one.operations)
-
-
-def _tried_in_vain(bench: Bench, found: Trial, fineness: float, wanted: float) -> bool:
-    """Whether a setting at least as fine was not good enough: what is short is stepped over, whatever slopes say."""
-    same = [trial for trial in bench.trials if trial.method is found.method and trial.scalar == found.scalar]
-    return any(trial.fineness <= fineness and trial.ratio > wanted for trial in same)
-
-
-def _judged(found: Trial, worse: float, spacing: float) -> tuple[float, str, float] | None:
-    """(cost, label, tolerance or step) of the same method with an error ``worse`` times smaller.
-
-    None beyond its arithmetic.  A step is no longer than the ``spacing`` of the rows, and no tolerance is coarser than
-    ``COARSEST``: what errors are then smaller by costs what it costs there.
-    """
-    traits = found.method.traits
-    if found.setting.step is not None:
-        order = traits.order or USUAL_ORDER
-        growth = max(worse ** (1 / order), found.fineness / spacing)
-        return found.cost * growth, f"{traits.name} h={found.fineness / growth:.1g}", found.fineness / growth
-    worse = max(worse, min(1.0, (found.fineness / COARSEST) ** USUAL_SLOPE))
-    tolerance = found.fineness * worse ** (-1 / USUAL_SLOPE)
-    if tolerance < found.method.traits.finest(found.scalar):
-        return None
-    growth = worse ** (1 / ORDERS.get(traits.name, USUAL_ORDER))
-    return found.cost * growth, f"{traits.name} {tolerance:.0e}", tolerance
 
 
 #: Methods whose steps end at every row are judged where there are so many rows at least.
@@ -265,15 +225,12 @@ def planned(
     bench = Bench(model.dynamics, scene.times, times, worth, complete, scene.scale, longest=pins.longest)
     watch("a run to measure by")
     first = _first_tolerance(scene)
-    stick = _measured_by(bench, choice, first, goal)
-    bench.reference, bench.known = stick.quantities, stick.known
+    stick = bench.stick = _measured_by(bench, choice, first, goal)
     for _ in range(REPEATS):
-        trial = _settled(
-            bench, model.taken.model, choice, goal, pins, stick.start, watch, len(times) >= GRID, stick.cost
-        )
+        trial = _settled(bench, stick, model.taken.model, choice, goal, pins, watch, len(times) >= GRID)
         bounds = bounds_of(scene, accuracy, shares_of(bench, trial, stick, model))
         over = _over(bounds)
-        if over <= 1 or too_simple or pins.setting is not None or trial.ratio > goal:
+        if over <= 1 or too_simple or pins.setting is not None or trial.error > goal:
             break
         goal *= 0.7 / over
     if pins.setting is None:
@@ -285,11 +242,12 @@ def planned(
     worst = max(bounds, key=lambda one: one.total / one.target)
     enough = fits(trial, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
     settled = Settled(scene, model, choice, resting, parts, bench, stick, trial, pins.kinds, enough, room, worst)
+    items, measured_to = items_of(settled), settled.measured_to
     more, less = alternatives(bench, trial, model.tried, model.taken, accuracy, goal)
     return Plan(
         accuracy,
         end,
-        items_of(settled),
+        items,
         bounds,
         model.taken.model,
         trial.method.traits.name,
@@ -300,7 +258,7 @@ def planned(
         more,
         less,
         tuple(text for text in (remark, too_simple) if text),
-        measured_to=settled.measured_to,
+        measured_to=measured_to,
     )
 
 
@@ -332,7 +290,7 @@ def outlined(scenario: Scenario, accuracy: Accuracy, times: Any) -> tuple[Scene,
     grid = np.union1d(np.append(compared, end), places(choice.method, rich, Setting(COARSE), end))
     names = (*rich.system.coordinates, *rich.system.velocities, ENERGY)
     targets = accuracy.targets(names)
-    run = rows(choice.method, rich, Setting(COARSE), grid)
+    run = trial_of(choice.method, rich, Setting(COARSE), grid).whole()
     states = run.states
     stiff = [change.time for change in run.work.changes if METHODS[change.method].traits.implicit]
     if stiff:
@@ -372,7 +330,7 @@ def _completing(
 
     def complete(method: Method) -> Method:
         inner = Separate(moving, several, [method] * len(several)) if several and not method.traits.fixed else method
-        return inner if resting is None else resting.method(inner)
+        return inner if resting is None else completing(resting, inner)
 
     return complete, several
 
@@ -411,18 +369,17 @@ def _measured_by(bench: Bench, choice: Choice, first: float, goal: float) -> Yar
 
 def _settled(
     bench: Bench,
+    stick: Yardstick,
     model: Model,
     choice: Choice,
     goal: float,
     pins: Pins,
-    first: float,
     watch: Callable[[str], None],
     many: bool,
-    dearest: float,
 ) -> Trial:
     """The cheapest setting that is good enough, else the best that there is.
 
-    A method that costs more than ``dearest`` without being good enough is given up.
+    A method that costs more than what judges it without being good enough is given up.
 
     Raises Breakdown, Unusable.
     """
@@ -432,28 +389,28 @@ def _settled(
     found: Trial | None = None
     begun = len(bench.trials)
     stiff = choice.stiff
-    for contender in _allowed(bench, model, pins, stiff, many):
+    for method, scalar in _allowed(bench, model, pins, stiff, many):
         spent = sum(trial.cost for trial in bench.trials[begun:])
         if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):
             break
-        watch(f"{contender.method.traits.name}, {contender.scalar}")
-        if found is None and contender.scalar == FLOAT32:
+        watch(f"{method.traits.name}, {scalar}")
+        if found is None and scalar == FLOAT32:
             break  # what float64 does not reach, fewer digits will not
-        limit = dearest if found is None else found.cost
-        setting = first_setting(contender, first, found, float(bench.times[-1]), bench.spacing)
-        trial = _searched(bench, contender, setting, goal, limit)
+        limit = stick.trial.cost if found is None else found.cost
+        setting = first_setting((method, scalar), stick.start, found, float(bench.times[-1]), bench.spacing)
+        trial = _searched(bench, method, scalar, setting, goal, limit)
         if trial is not None and (found is None or trial.cost < found.cost):
             found = trial
     if found is None and pins.scalar is None:
-        for finer in in_more_digits():
-            if pins.method in (None, finer.method.traits.name):
-                watch(f"{finer.method.traits.name}, {finer.scalar}")
-                found = found or _searched(bench, finer, Setting(first), goal, inf)
+        for method, scalar in in_more_digits():
+            if pins.method in (None, method.traits.name):
+                watch(f"{method.traits.name}, {scalar}")
+                found = found or _searched(bench, method, scalar, Setting(stick.start), goal, inf)
     if found is None:
         if not bench.trials:
             raise Unusable("no method comes to the end of this motion")
-        least = min(trial.ratio for trial in bench.trials)
-        found = min((one for one in bench.trials if one.ratio <= 2 * least), key=lambda trial: trial.cost)
+        least = min(trial.error for trial in bench.trials)
+        found = min((trial for trial in bench.trials if trial.error <= 2 * least), key=lambda trial: trial.cost)
     return found
 
 
@@ -461,15 +418,15 @@ def _allowed(bench: Bench, model: Model, pins: Pins, stiff: bool, many: bool) ->
     if pins.method is not None:
         scalars = [pins.scalar] if pins.scalar is not None else [FLOAT64, FLOAT32]
         method = METHODS[pins.method]
-        return [Contender(method, scalar) for scalar in scalars if scalar in method.traits.scalars]
-    found = list(contenders(bench.dynamics, model, bench.finest_target, stiff, many))
+        return [(method, scalar) for scalar in scalars if scalar in method.traits.scalars]
     if pins.scalar == EXTENDED:
         return list(in_more_digits())
-    return [contender for contender in found if pins.scalar in (None, contender.scalar)]
+    found = contenders(bench.dynamics, model, bench.finest_target, stiff, many)
+    return [(method, scalar) for method, scalar in found if pins.scalar in (None, scalar)]
 
 
-def _searched(bench: Bench, contender: Contender, setting: Setting, goal: float, limit: float) -> Trial | None:
+def _searched(bench: Bench, method: Method, scalar: str, setting: Setting, goal: float, limit: float) -> Trial | None:
     try:
-        return searched(bench, contender.method, contender.scalar, setting, goal, limit)
+        return searched(bench, method, scalar, setting, goal, limit)
     except (Unusable, Failure):
         return None

@@ -10,7 +10,7 @@ Energy, pivots of the mass matrix and states at a breakdown are those of the who
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from random import Random
@@ -30,8 +30,7 @@ from mbsym.mechanics.variables import ring_environment, ring_of
 from mbsym.model.substitution import put
 from mbsym.model.system import System, acceleration_name, velocity_name
 from mbsym.numerics.dynamics import Dynamics
-from mbsym.numerics.methods.interface import Breakdown, Method, Passed, Piece, Run, Setting, compiled_kernel, met_by
-from mbsym.numerics.methods.tableaux import exact_number
+from mbsym.numerics.methods.interface import compiled_kernel
 from mbsym.numerics.scenario import Scenario, Specialised, substituted
 
 # Coordinates that stay where they start: a spatial system that moves in a plane is integrated in that plane.
@@ -244,10 +243,6 @@ class Reduced:
         """What one right-hand side costs: of the whole system, and without the coordinates that rest."""
         return self.whole.right_hand_side.operations, self.dynamics.right_hand_side.operations
 
-    def method(self, inner: Method) -> Method:
-        """A method that integrates the free coordinates and shows whole states."""
-        return _Completing(inner, self)
-
 
 def reduced(dynamics: Dynamics) -> Reduced | None:
     """The largest set of coordinates that rest in this scenario taken out; None where all may move.
@@ -294,96 +289,3 @@ def _unpushed(dynamics: Dynamics) -> Collection[str]:
             break
         resting_now &= ~pushed
     return [name for name, rests in zip(scenario.system.coordinates, resting_now, strict=True) if rests]
-
-
-class _Completing:
-    """A method over the free coordinates that shows whole states."""
-
-    def __init__(self, inner: Method, taken: Reduced) -> None:
-        self.traits = inner.traits
-        self._inner, self._taken = inner, taken
-
-    def start(
-        self, dynamics: Dynamics, setting: Setting, scalar: str = "float64", initial: Any = None, at: float = 0.0
-    ) -> Run:
-        """Raises ValueError where ``initial`` moves what rests."""
-        if dynamics is not self._taken.whole:
-            raise ValueError("this method was made for the dynamics of another scenario")
-        inner = self._inner.start(self._taken.dynamics, setting, scalar)
-        whole = _Whole(inner, self._taken)
-        if initial is not None or at:
-            whole.restart(at, whole.state if initial is None else initial)
-        return whole
-
-
-@dataclass(frozen=True)
-class _Completion:
-    """Whole states (q, q'): the free ones at ``places``, the others as at the ``start``."""
-
-    places: tuple[int, ...]
-    start: Any
-
-    def __call__(self, free: Any) -> Any:
-        """One state, or states in columns."""
-        found = np.empty((len(self.start), *np.shape(free)[1:]), self.start.dtype)
-        found[...] = self.start.reshape(-1, *[1] * (found.ndim - 1))
-        found[list(self.places)] = free
-        return found
-
-
-class _Whole:
-    """A run whose states are completed, in the arithmetic of the run."""
-
-    def __init__(self, inner: Run, taken: Reduced) -> None:
-        self._inner = inner
-        self.work = inner.work
-        places, start = taken.reduction.expanded(taken.whole.scenario)
-        dtype = np.asarray(inner.state).dtype
-        self._completed = _Completion(places, np.array([exact_number(x, dtype.type) for x in start], dtype))
-        self._show()
-
-    def _show(self) -> None:
-        self.time, self.state = self._inner.time, self._completed(self._inner.state)
-
-    @property
-    def passed(self) -> Passed | None:
-        """What the run has met on its way."""
-        found = met_by(self._inner)
-        if found is None:
-            return None
-        narrow = [replace(one, place=None) for one in found.narrow]
-        inside = [(time, self._completed(state)) for time, state in found.inside]
-        return Passed(found.switches, narrow, found.unresolved, inside)
-
-    def advance(self, until: float) -> Any:
-        self._guarded(lambda: self._inner.advance(until))
-        self._show()
-        return self.state
-
-    def step(self, until: float | None = None) -> Piece:
-        piece: Piece = self._guarded(lambda: self._inner.step(until))
-        self._show()
-        curve, completed = piece.curve, self._completed
-        return Piece(piece.start, piece.end, lambda times: completed(curve(times)))
-
-    def fill(self, times: Any) -> Any:
-        found = self._guarded(lambda: self._inner.fill(times))
-        self._show()
-        return self._completed(found)
-
-    def restart(self, time: float, state: Any) -> None:
-        """Raises ValueError where a state moves what rests."""
-        given, places = np.asarray(state), list(self._completed.places)
-        if not np.array_equal(self._completed(given[places]), given.astype(self.state.dtype)):
-            raise ValueError("a state that moves what was taken out of the integration because it rests")
-        self._inner.restart(time, given[places])
-        self._show()
-
-    def _guarded(self, action: Callable[[], Any]) -> Any:
-        """Breakdowns show whole states."""
-        try:
-            return action()
-        except Breakdown as found:
-            state = self._completed(found.state).astype(float)
-            filled = None if found.filled is None else self._completed(found.filled)
-            raise Breakdown(found.kind, found.message, found.time, state, filled) from None

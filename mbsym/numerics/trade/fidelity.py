@@ -13,7 +13,6 @@
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
@@ -28,12 +27,12 @@ from mbsym.model.states import InStates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.ledger.described import relative_size
-from mbsym.numerics.methods.interface import Breakdown, Method, Setting, Unusable
+from mbsym.numerics.methods.interface import Method, Setting, Unusable, Work
 from mbsym.numerics.planning.models import LinearisedDynamics
-from mbsym.numerics.planning.prices import cost
 from mbsym.numerics.planning.reduced import Reduction, resting
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
+from mbsym.numerics.trade.trial import Trial, trial_of
 
 #: Tolerance at which variants are integrated, and what differences below ``RESOLVED`` mean nothing.
 TIGHT, RESOLVED = 1e-13, 1e-11
@@ -60,21 +59,17 @@ class Variant:
 
 
 @dataclass(frozen=True)
-class ModelError:
+class ModelError(Trial):
     """The error of a model against the most faithful one, and what it costs.
 
-    ``label``, ``neglected`` and ``rank`` are those of its ``Variant``; ``operations`` those of one right-hand side;
+    ``model``, ``neglected`` and ``rank`` are those of its ``Variant``; ``operations`` those of one right-hand side;
     ``seconds`` of the processor the median for the same tolerance.
     """
 
-    label: str
-    neglected: str
-    rank: int
-    error: float
-    operations: int
-    evaluations: int
-    seconds: float
-    trouble: str = ""
+    model: str = ""
+    neglected: str = ""
+    rank: int = 0
+    operations: int = 0
 
 
 def variants(scenario: Scenario) -> Iterator[Variant]:
@@ -127,38 +122,40 @@ def measured(
     The error is the largest difference over coordinates, velocities and times, each relative to ``scale``, shape (2n,);
     by default its largest value at the times.
     """
-    runs = []
+    rows = []
     for variant in variants(scenario):
         watch(variant.label)
         try:
-            runs.append((variant, *_run(scenario, variant, method, times)))
+            trial = _run(scenario, variant, method, times)
         except Exception as raised:  # whatever goes wrong with one model is told of that one
             reason = raised if isinstance(raised, (Failure, Unusable)) else Defect.of(raised)
-            runs.append((variant, None, 0, 0, 0.0, str(reason)))
-    solved = [(variant.rank, states) for variant, states, *_ in runs if states is not None]
+            trial = Trial(method, FLOAT64, Setting(TIGHT), Work(), trouble=str(reason))
+        operations = 0 if trial.states is None and trial.ended is None else variant.dynamics.right_hand_side.operations
+        model, neglected, rank = variant.label, variant.neglected, variant.rank
+        rows.append(ModelError(**vars(trial), model=model, neglected=neglected, rank=rank, operations=operations))
+    solved = [row for row in rows if row.states is not None]
     if not solved:
         return ()
-    truth = max(solved, key=lambda item: item[0])[1]
+    truth = max(solved, key=lambda row: row.rank).states
     if scale is None:
         size = np.max(np.abs(truth), axis=1)
         scale = np.where(size > 0, size, 1.0)
     scale = np.asarray(scale)[:, np.newaxis]
-    rows = []
-    for variant, states, operations, evaluations, seconds, trouble in runs:
-        largest = inf if states is None else float(np.max(np.abs(states - truth) / scale))
-        error = largest if isfinite(largest) else inf
-        named = variant.label, variant.neglected, variant.rank
-        rows.append(ModelError(*named, error, operations, evaluations, seconds, trouble))
-    return tuple(rows)
+    return tuple(replace(row, error=_error(row.states, truth, scale), states=None) for row in rows)
+
+
+def _error(states: Any, truth: Any, scale: Any) -> float:
+    largest = inf if states is None else float(np.max(np.abs(states - truth) / scale))
+    return largest if isfinite(largest) else inf
 
 
 def model_advice(models: Sequence[ModelError], target: float) -> str:
     """How far the model that was simulated is from the most faithful one; empty where that is the same or unknown."""
-    own = next((row for row in models if row.label == DESCRIBED), None)
+    own = next((row for row in models if row.model == DESCRIBED), None)
     best = max((row for row in models if not row.trouble), key=lambda row: row.rank, default=None)
     if own is None or best is None or best is own or own.trouble or not own.error > RESOLVED:
         return ""
-    far, rich = f"{own.error:.1e}", best.label
+    far, rich = f"{own.error:.1e}", best.model
     text = Message("The model as described is [[error]] away from [[model]]", error=far, model=rich)
     if own.error > target:
         said = "[[what]]: an error of [[target]] is one of its equations, not of the motion."
@@ -166,27 +163,16 @@ def model_advice(models: Sequence[ModelError], target: float) -> str:
     return Message("[[what]], which adds to the error.", what=text)
 
 
-def _run(
-    scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]
-) -> tuple[Any, int, int, float, str]:
-    operations = variant.dynamics.right_hand_side.operations
-    seconds: list[float] = []
-    evaluations, dear = 0, 0.0
-    states: Any = None
-    while not seconds or len(seconds) < min(REPEATS, MOST / dear):
-        run = method.start(variant.dynamics, Setting(tolerance=TIGHT))
-        found = [np.array(run.state, dtype=float)]
-        started = time.thread_time()
-        try:
-            for t in times[1:]:
-                found.append(np.array(run.advance(float(t)), dtype=float))
-        except Breakdown as reason:
-            return None, operations, run.work.evaluations, time.thread_time() - started, reason.told
-        seconds.append(time.thread_time() - started)
-        states, evaluations = np.array(found).T, run.work.evaluations
-        dear = cost(variant.dynamics, method.traits.name, FLOAT64, run.work)
+def _run(scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]) -> Trial:
+    """A run of a variant with the states of the whole system, and the median of the seconds of several."""
+    runs: list[Trial] = []
+    while not runs or len(runs) < min(REPEATS, MOST / runs[-1].cost):
+        runs.append(trial_of(method, variant.dynamics, Setting(TIGHT), times))
+        if runs[-1].trouble:
+            return runs[-1]
+    states = runs[-1].states
     if variant.free is not None:
         whole = np.tile(np.array([float(x) for x in scenario.state])[:, np.newaxis], (1, len(times)))
         whole[list(variant.free)] = states
         states = whole
-    return states, operations, evaluations, statistics.median(seconds), ""
+    return replace(runs[-1], states=states, seconds=statistics.median(run.seconds for run in runs))

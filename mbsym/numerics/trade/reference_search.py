@@ -176,50 +176,6 @@ def in_doubles(state: Sequence[arb]) -> Any:
     return np.array(heads, np.longdouble) + np.array(tails, np.longdouble)
 
 
-def reference(
-    dynamics: Dynamics,
-    times: Sequence[float],
-    tolerance: float = 1e-24,
-    budget: float = 120.0,
-    watch: Callable[[float], None] = lambda t: None,
-    scale: Any | None = None,
-) -> Reference:
-    """The solution at ``times`` (the first is 0) with a local error of ``tolerance`` per step, and its own error.
-
-    ``scale`` says what each component is measured by; by default its largest absolute value at the times.
-    Raises Breakdown where the solution does not exist up to the end, or where one of its two runs costs more than
-    ``budget`` (``mbsym.numerics.planning.prices``).
-    """
-    started = time.perf_counter()
-    runs = []
-    with ctx.workprec(BITS):
-        for columns, local in ((COLUMNS, tolerance), (COLUMNS - 3, tolerance * 1e3)):
-            run = Extrapolation(dynamics, local, columns, budget)
-            states = [list(run.state)]
-            for t in times[1:]:
-                run.advance(float(t))
-                states.append(list(run.state))
-                watch(float(t))
-            runs.append(states)
-        first, second = runs
-        states_ = np.array([[float(x) for x in state] for state in first]).T
-        if scale is None:
-            size = np.max(np.abs(states_), axis=1)
-            scale = np.where(size > 0, size, 1.0)
-        error = 0.0
-        for i, size in enumerate(map(float, scale)):
-            error = max(error, *(abs(float(a[i] - b[i])) / size for a, b in zip(first, second, strict=True)))
-    seconds = time.perf_counter() - started
-    return Reference(
-        np.asarray(times, dtype=float),
-        states_,
-        error,
-        seconds,
-        Message("extrapolation, [[bits]] bits", bits=BITS),
-        scale,
-    )
-
-
 #: Places at which a reference is known, at least, and twice as many at most where its steps are many.
 PLACES = 4_000
 
@@ -289,12 +245,12 @@ def whole_reference(
         except Failure:
             raise
         except Exception as error:
-            failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0, np.empty(0))
+            failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0)
         else:
             return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
         finally:
             spent += search.spent
-    raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0, np.empty(0))
+    raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0)
 
 
 @dataclass
@@ -330,7 +286,7 @@ class _Search:
         some = max(allowed / 4, SOME)
         later = spent - 2 * FOLLOWED * LOOKED_AT  # steps are looked at in the beginning only
         if spent > allowed or (spent > some and later * self.end > far_too_long * allowed * t):
-            raise Breakdown(Cause.STEP_LIMIT, TOO_DEAR, t, np.empty(0))
+            raise Breakdown(Cause.STEP_LIMIT, TOO_DEAR, t)
 
     def next(self, meter: Callable[[], float]) -> None:
         """Begins another solution from 0 to the end, which costs what ``meter`` shows."""
@@ -427,7 +383,7 @@ def _explicit(search: _Search) -> Reference:
             return _agreeing(search, first, (METHODS[name], Setting(tolerance, longest=longest)), scalar, EXPLICIT)
         except Unusable:
             continue
-    raise Breakdown(Cause.STEP_LIMIT, "no second method", 0.0, np.empty(0))
+    raise Breakdown(Cause.STEP_LIMIT, "no second method", 0.0)
 
 
 def _implicit(search: _Search) -> Reference:

@@ -21,7 +21,6 @@ is smaller than a hundred times the reference's own error is not called an error
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -38,17 +37,16 @@ from mbsym.numerics.constrained import drift
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT32, FLOAT64
 from mbsym.numerics.kernels.llvm import available, kernels
-from mbsym.numerics.methods.interface import Breakdown, Cause, Method, Setting, Unusable, Work
+from mbsym.numerics.methods.interface import Method, Setting, Unusable, Work
 from mbsym.numerics.methods.table import METHODS
 from mbsym.numerics.planning.choice import choose
-from mbsym.numerics.planning.pilot import Candidate
-from mbsym.numerics.planning.prices import STARTED, STARTED_EACH, cost
+from mbsym.numerics.planning.prices import STARTED, STARTED_EACH
 from mbsym.numerics.scenario import Scenario
 from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade import fidelity
-from mbsym.numerics.trade.comparison import filled
 from mbsym.numerics.trade.fidelity import ModelError
 from mbsym.numerics.trade.reference_search import IMPLICIT, Reference, whole_reference
+from mbsym.numerics.trade.trial import Candidate, Trial, trial_of
 
 #: A reference must be so much better than what it judges.
 MARGIN = 100.0
@@ -57,8 +55,8 @@ MARGIN = 100.0
 SHORT = 0.25
 REPEATS = 5
 
-#: A run is stopped when it has cost so much at the earliest, and looked at in so many places meanwhile.
-LEAST, BLOCKS = 0.05, 64
+#: A run is stopped when it has cost so much at the earliest.
+LEAST = 0.05
 
 #: The part of the budget that the likely winner may spend, which is tried first, and the tolerance that it is asked at.
 FIRST, USUAL_TOLERANCE = 0.4, 1e-10
@@ -68,25 +66,16 @@ COMPARED = 1e-6
 
 
 @dataclass(frozen=True)
-class Measured:
-    """What one candidate cost and how wrong it was; ``trouble`` says why there is no error.
+class Measured(Trial):
+    """A row: what one candidate cost, and how wrong it was.
 
     ``strayed``: the largest drift from constraints on positions, and on velocities; None where there are none.
-    ``carried``: at how many singular positions of constraints it was carried over.  ``cost``: the counted work of the
-    row, in seconds of a usual machine.
+    ``cost``: the counted work of all that was done for the row, in seconds of a usual machine.
     """
 
-    candidate: Candidate
-    error: float
-    drift: float
-    evaluations: int
-    steps: int
-    seconds: float
-    trouble: str = ""
+    drift: float = inf
     front: bool = False
     strayed: tuple[float, float] | None = None
-    carried: int = 0
-    cost: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -190,65 +179,48 @@ class _Judge:
         So is an exception that nobody foresaw; ``defect`` says whether it was one.  Raises Unusable.
         """
         self.defect = False
+        how = candidate.method, candidate.scalar, candidate.setting
         try:
             with np.errstate(over="ignore"):  # extended numbers beyond the range of float64
-                return self._measure(candidate, limit)
+                return self._measure(*how, limit)
         except (Unusable, Failure):
             raise
         except Exception as error:
             self.defect = True
-            return Measured(candidate, inf, inf, 0, 0, 0.0, str(Defect.of(error)))
+            return Measured(*how, Work(), trouble=str(Defect.of(error)))
 
-    def _measure(self, candidate: Candidate, limit: float) -> Measured:
+    def _measure(self, method: Method, scalar: str, setting: Setting, limit: float) -> Measured:
         times = self.reference.times
-        run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
-        self.starting = self._compiling(candidate)
-        self.spent += self.starting
-        started, before = time.thread_time(), self.spent
-
-        def reached(t: float) -> None:
-            self.spent = before + self._cost(candidate, run.work)
-            if self.spent - before > limit and t < times[-1]:
-                raise Breakdown(Cause.STEP_LIMIT, "too dear to be measured", t, np.array(run.state, dtype=float))
-
-        try:
-            matrix = filled(run, times, min(BLOCKS, len(times) - 1), reached)
-            work, typical = self._seconds(candidate, time.thread_time() - started, run.work, before + limit)
-        except Breakdown as found:
-            wasted = time.thread_time() - started
-            self.spent = max(self.spent, before + self._cost(candidate, run.work))
-            return Measured(candidate, inf, inf, run.work.evaluations, run.work.steps, wasted, found.told)
+        trial = trial_of(method, self.dynamics, setting, times, scalar, limit)
+        self.starting = self._compiling(method, scalar)  # a method that does not apply has compiled nothing
+        until = self.spent + self.starting + limit
+        self.spent += self.starting + trial.cost
+        if not trial.trouble and trial.cost <= SHORT:
+            trial = self._repeated(trial, until)
+        row = Measured(method, scalar, setting, trial.work, 0.0, trial.seconds, trouble=trial.trouble)
+        if trial.trouble:
+            return row
         self.spent += COMPARED * len(times)
-        error, changed, strayed = self._error(matrix), self._drift(times, matrix), self._strayed(times, matrix)
-        carried = len(run.work.singular)
-        return Measured(
-            candidate, error, changed, work.evaluations, work.steps, typical, strayed=strayed, carried=carried
-        )
+        states = trial.states
+        error, strayed = self._error(states), self._strayed(times, states)
+        return replace(row, error=error, drift=self._drift(times, states), strayed=strayed)
 
-    def _cost(self, candidate: Candidate, work: Work) -> float:
-        return cost(self.dynamics, candidate.method.traits.name, candidate.scalar, work)
-
-    def _compiling(self, candidate: Candidate) -> float:
+    def _compiling(self, method: Method, scalar: str) -> float:
         """What a method costs before its first step: once, but for those that compile every setting."""
-        traits = candidate.method.traits
-        ladder = (traits.name, candidate.scalar)
-        again = ladder in self._ladders and traits.name not in STARTED_EACH
-        self._ladders.add(ladder)
+        again = _name(method, scalar) in self._ladders and method.traits.name not in STARTED_EACH
+        self._ladders.add(_name(method, scalar))
         return 0.0 if again else STARTED * self.dynamics.right_hand_side.operations
 
-    def _seconds(self, candidate: Candidate, with_rows: float, work: Work, until: float) -> tuple[Work, float]:
-        """What the run takes without the places at which it was compared, where these count."""
-        if self._cost(candidate, work) > SHORT:
-            return work, with_rows
-        end, taken, spent = float(self.reference.times[-1]), list[float](), 0.0
-        while not taken or (spent < SHORT and len(taken) < REPEATS and self.spent < until):
-            run = candidate.method.start(self.dynamics, candidate.setting, candidate.scalar)
-            started = time.thread_time()
-            run.advance(end)
-            taken.append(time.thread_time() - started)
-            own = self._cost(candidate, run.work)
-            spent, self.spent = spent + own, self.spent + own
-        return run.work, statistics.median(taken)
+    def _repeated(self, trial: Trial, until: float) -> Trial:
+        """The same with the seconds that it takes without the places at which it was compared, where these count."""
+        end, runs, spent = self.reference.times[-1:], list[Trial](), 0.0
+        while not runs or (spent < SHORT and len(runs) < REPEATS and self.spent < until):
+            again = trial_of(trial.method, self.dynamics, trial.setting, np.append(0.0, end), trial.scalar)
+            if again.trouble:
+                return again
+            runs.append(again)
+            spent, self.spent = spent + again.cost, self.spent + again.cost
+        return replace(runs[-1], states=trial.states, seconds=statistics.median(run.seconds for run in runs))
 
     def _error(self, states: Any) -> float:
         with np.errstate(all="ignore"):
@@ -331,9 +303,9 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
     """log2 of the ratio of errors when the step is halved, in the range where neither roundoff nor coarseness rules."""
     ladders: dict[tuple[str, str], list[Measured]] = {}
     for row in rows:
-        traits = row.candidate.method.traits
+        traits = row.method.traits
         if traits.fixed and traits.order is not None and isfinite(row.error):
-            ladders.setdefault((traits.name, row.candidate.scalar), []).append(row)
+            ladders.setdefault((traits.name, row.scalar), []).append(row)
     for (name, scalar), ladder in ladders.items():
         floor = min(row.error for row in ladder)
         slopes = []
@@ -341,7 +313,7 @@ def _orders(rows: Sequence[Measured]) -> Iterator[Order]:
             if coarse.error < 0.05 and fine.error > 30 * floor:
                 slopes.append(log2(coarse.error / fine.error))
         if slopes:
-            nominal = ladder[0].candidate.method.traits.order
+            nominal = ladder[0].method.traits.order
             assert nominal is not None
             yield Order(name, scalar, nominal, statistics.median(slopes[-3:]), len(slopes))
 
@@ -367,7 +339,7 @@ def advice(found: Tradeoff, target: float) -> Message:
             "Nothing tried reaches [[target]]; the most accurate is [[setting]] with an error of [[error]] in [[time]]."
         )
         error, time = f"{nearest.error:.1e}", duration(nearest.seconds)
-        return Message(text, target=wanted, setting=nearest.candidate.label, error=error, time=time)
+        return Message(text, target=wanted, setting=nearest.label, error=error, time=time)
     judged = best.error > found.smallest_judged
     text = (
         "[[setting]] reaches [[target]] in the least time measured here: error [[error]] over the whole interval (the "
@@ -375,7 +347,7 @@ def advice(found: Tradeoff, target: float) -> Message:
     )
     return Message(
         text,
-        setting=best.candidate.label,
+        setting=best.label,
         target=wanted,
         error=f"{best.error:.1e}" if judged else Message("below [[bound]]", bound=least),
         known=f"{known:.1e}",
@@ -404,7 +376,7 @@ def _less(found: Tradeoff, best: Measured, target: float) -> Message:
 def _compared(other: Measured, best: Measured) -> Message:
     times, time = f"{other.seconds / best.seconds:.2g}", duration(other.seconds)
     text = "costs [[time]], [[times]] times as much ([[setting]])"
-    return Message(text, time=time, times=times, setting=other.candidate.label)
+    return Message(text, time=time, times=times, setting=other.label)
 
 
 # The trade of one scenario as a whole: reference, simpler models, ladders of settings, for what the budget pays.

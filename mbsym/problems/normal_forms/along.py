@@ -27,6 +27,7 @@ from mbsym.algebra.tower import MOST_ROOTS, Element, Tower
 from mbsym.algebra.truncated import Truncated
 from mbsym.expressions.message import Message
 from mbsym.formulas.formula import Shown
+from mbsym.mechanics.constraints.expansion import OnManifold
 from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.equilibrium import Equilibrium
 from mbsym.problems.normal_forms.birkhoff import absolute
@@ -91,15 +92,18 @@ def along(
     values: Mapping[str, Fraction],
     conservative: bool,
     cyclic: Collection[str],
+    manifold: Callable[[int], OnManifold] | None = None,
 ) -> Along:
     """All exceptional values of ``name`` in an open interval; ``values`` are the numbers of the other parameters.
+
+    With ``manifold`` in the coordinates that constraints leave.
 
     Raises NotAlong where the system is of another kind, NotExpanded, NoClosedForm.
     """
 
     @cache
     def to(order: int) -> Expansion:
-        expanded = expansion(scene, whole, equilibrium, order, cyclic)
+        expanded = expansion(scene, whole, equilibrium, order, cyclic, manifold)
         return taken_in(expanded) if conservative else expanded
 
     with ctx.workprec(PRECISION):

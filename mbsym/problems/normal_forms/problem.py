@@ -158,15 +158,17 @@ def normal_forms(
     values: Mapping[str, Any] | None,
     conservative: bool,
     cyclic: Collection[str],
+    manifold: Callable[[int], OnManifold] | None = None,
 ) -> NormalForms:
     """What terms of higher order decide of the motion of the system ``whole``; ``scene`` is over the ring.
 
     ``conservative``: applied forces are zero or have a generalized potential; ``cyclic`` coordinates are in neither.
+    With ``manifold`` in the coordinates that constraints leave.
     ``values`` of all parameters, rational or enclosed; None where not all are known.  Raises NotExpanded,
     NoClosedForm.
     """
 
-    expanded = _Expanded(scene, whole, equilibrium, conservative, cyclic)
+    expanded = _Expanded(scene, whole, equilibrium, conservative, cyclic, manifold)
     found = expanded.to(4)
     coordinates = tuple(name for i, name in enumerate(found.coordinates) if i not in found.cyclic)
     with ctx.workprec(PRECISION):

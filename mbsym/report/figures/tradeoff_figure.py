@@ -53,7 +53,7 @@ def _drawn(system: System, until: float, found: Tradeoff, target: float, models:
     ladders: dict[tuple[str, str], list[Measured]] = {}
     for row in found.rows:
         if isfinite(row.error) and row.error < WORST:
-            ladders.setdefault((row.candidate.method.traits.name, row.candidate.scalar), []).append(row)
+            ladders.setdefault((row.method.traits.name, row.scalar), []).append(row)
     styles = _styles(dict.fromkeys(name for name, _ in ladders))
     for (name, scalar), rows in ladders.items():
         label = name if scalar == "float64" else f"{name}, {say(scalar)}"
@@ -92,7 +92,7 @@ def _drawn(system: System, until: float, found: Tradeoff, target: float, models:
     if found.smallest_judged > finest / 100:
         _line(axes, found.smallest_judged, GREY, say("limit of the reference"))
     for model in _drawable(models):
-        _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.label)))
+        _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.model)))
     # Patterns of lines need some length to be told apart.
     figure.legend(loc="outside right upper", frameon=False, fontsize=9, handlelength=3.4)
     return figure

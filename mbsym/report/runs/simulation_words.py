@@ -63,14 +63,11 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
     given = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
 
-    # Where the two runs part nobody knows the state, but the energy may be kept all the same.
-    errors = run.error.quantities if isinstance(run.error, ErrorEstimate) and run.error.parted is None else ()
-
     def told(found: Conservation, place: int) -> Message:
         error = 0.0
-        if errors and found.standing is Standing.CHANGING and len(run.times):
-            states = np.vstack([run.trajectory.times, run.trajectory.states])
-            error = swayed(run.dynamics.energies, place, states, [difference.largest for difference in errors])
+        if found.standing is Standing.CHANGING and len(run.times):
+            points = np.vstack([run.trajectory.times, run.trajectory.states])
+            error = swayed(run.dynamics.energies, place, points, _errors(run))
         line = conservation_line(found, error)
         if found.standing is not Standing.CHANGING or not given:
             return line
@@ -79,6 +76,18 @@ def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     if not run.dynamics.natural:
         yield "T2 - T0 - U", told(run.conservation, 1)
     yield "T - U", told(run.energy_conservation, 0)
+
+
+def _errors(run: Simulation) -> list[float]:
+    """Of each component; where they are not known, what a single step may err by.
+
+    Where the run and a better one part nobody knows the state, but the energy may be kept all the same.
+    """
+    if isinstance(run.error, ErrorEstimate) and run.error.parted is None:
+        return [difference.largest for difference in run.error.quantities]
+    states, tolerance = run.trajectory.states, run.trajectory.setting.tolerance
+    least = max(tolerance or 0.0, float(np.finfo(states.dtype).eps))
+    return [least * float(size) for size in np.max(np.abs(states), axis=1)]
 
 
 def invariant_line(found: Conservation) -> Message:

@@ -1,4 +1,4 @@
-"""The measured trade as CSV and as rows of text."""
+"""The measured trade as CSV, as JSON and as rows of text."""
 
 from __future__ import annotations
 
@@ -9,10 +9,14 @@ from typing import Any
 
 from mbsym.expressions.message import Message, duration, joined, worded
 from mbsym.model.quantities import marked
+from mbsym.model.system import System
 from mbsym.numerics.kernels.interface import FLOAT64
 from mbsym.numerics.trade.fidelity import RESOLVED, ModelError
-from mbsym.numerics.trade.tradeoff import Measured, Tradeoff
+from mbsym.numerics.trade.tradeoff import Measured, Study, Tradeoff
+from mbsym.report.documents import tradeoff as doc
+from mbsym.report.documents.base import written as document
 from mbsym.report.runs.trajectory_csv import text_table
+from mbsym.source.yaml_writer import meaning
 
 COLUMNS = (
     "method", "arithmetic", "tolerance", "step", "error", "drift", "evaluations", "steps", "seconds", "cost", "front",
@@ -32,6 +36,23 @@ def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
     )
 
 
+def tradeoff_json(system: System, found: Study, sentence: str, time: float, target: float, budget: float) -> str:
+    """``tradeoff.json``: the same with what was asked, and the recommendation."""
+    trade = found.trade
+    content = doc.Tradeoff.from_result(
+        trade,
+        system=system.name,
+        description_sha256=meaning(system),
+        time=time,
+        target=target,
+        budget=budget,
+        models=found.models,
+        recommended=trade.cheapest(target) if target >= trade.smallest_judged else None,
+        sentence=sentence,
+    )
+    return document(content)
+
+
 def constrained(rows: Sequence[Measured]) -> bool:
     """Whether drifts from constraints are among what was measured."""
     return any(row.strayed is not None for row in rows)
@@ -47,22 +68,24 @@ def fidelity_csv(rows: Sequence[ModelError]) -> str:
     """One row a model."""
     lines = []
     for row in rows:
-        what = (row.label, row.neglected)
-        lines.append((*what, _number(row.error), row.operations, row.evaluations, _number(row.seconds), row.trouble))
+        what = (row.model, row.neglected)
+        lines.append(
+            (*what, _number(row.error), row.operations, row.work.evaluations, _number(row.seconds), row.trouble)
+        )
     return text_table(MODEL_COLUMNS, lines)
 
 
 def _row(row: Measured, tied: bool) -> Sequence[object]:
-    candidate, setting = row.candidate, row.candidate.setting
+    setting = row.setting
     cells = (
-        candidate.method.traits.name,
-        candidate.scalar,
+        row.method.traits.name,
+        row.scalar,
         "" if setting.tolerance is None else f"{setting.tolerance:.0e}",
         "" if setting.step is None else repr(setting.step),
         _number(row.error),
         _number(row.drift),
-        row.evaluations,
-        row.steps,
+        row.work.evaluations,
+        row.work.steps,
         _number(row.seconds),
         _number(row.cost),
         "yes" if row.front else "no",
@@ -101,17 +124,17 @@ def shown(rows: Sequence[Measured], smallest_judged: float) -> list[tuple[str, .
     lines: list[tuple[str, ...]] = []
     tied = constrained(rows)
     for row in rows:
-        name = row.candidate.method.traits.name
+        name = row.method.traits.name
         error = Message("fails") if row.trouble else _error(row.error, smallest_judged)
         lines.append(
             (
-                name if row.candidate.scalar == FLOAT64 else joined([name, worded(row.candidate.scalar)]),
-                row.candidate.shown,
+                name if row.scalar == FLOAT64 else joined([name, worded(row.scalar)]),
+                row.shown,
                 error,
                 "" if row.trouble else f"{row.drift:.1e}",
                 *(["" if row.strayed is None else f"{max(row.strayed):.1e}"] if tied else []),
-                str(row.evaluations),
-                str(row.steps),
+                str(row.work.evaluations),
+                str(row.work.steps),
                 duration(row.seconds),
                 f"{row.cost:.2g}",
                 "*" if row.front else "",
@@ -132,5 +155,5 @@ def models_shown(rows: Sequence[ModelError]) -> list[tuple[str, ...]]:
         error = (
             worded(row.trouble) if row.trouble else f"{row.error:.1e}" if row.error > RESOLVED else f"< {RESOLVED:.0e}"
         )
-        lines.append((row.label, row.neglected, error, str(row.operations), duration(row.seconds)))
+        lines.append((row.model, row.neglected, error, str(row.operations), duration(row.seconds)))
     return lines

@@ -161,6 +161,8 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     if tied is not None:
         freedom = len(tied.coordinates) - tied.velocity_rank
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
+        if tied.demanded.satisfied is False:
+            said += [" ", Said("(at values of the parameters that satisfy further relations; the given ones do not)")]
     cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:

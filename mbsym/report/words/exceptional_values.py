@@ -7,6 +7,7 @@ from typing import Any
 
 from flint import arb
 
+from mbsym.expressions.message import Message, joined, worded
 from mbsym.model.system import System
 from mbsym.problems.normal_forms import Judged, Outcome, Theorem
 from mbsym.problems.normal_forms.along import Along, Special
@@ -25,8 +26,8 @@ VANISHING = {
     "determinant": "D4 = 0",
     "1:2": "w1 = 2 w2",
     "1:3": "w1 = 3 w2",
-    "root": "a root is zero",
-    "pair": "two roots have the sum zero",
+    "root": Message("a root is zero"),
+    "pair": Message("two roots have the sum zero"),
 }
 
 #: Digits of a value in the terminal.
@@ -36,23 +37,30 @@ DIGITS = 20
 def lines(found: Along) -> Iterator[str]:
     """From the lower end to the upper one: what holds between values, and at each of them."""
     if found.cyclic:
-        kept = ", their momenta unperturbed" if found.hamiltonian else ""
-        yield f"without the cyclic coordinates {', '.join(found.cyclic)}{kept}"
+        text = "without the cyclic coordinates [[names]]"
+        if found.hamiltonian:
+            text = "without the cyclic coordinates [[names]], their momenta unperturbed"
+        yield Message(text, names=", ".join(found.cyclic))
     ends = [str(found.low), *(_number(one) for one in found.specials), str(found.high)]
     for k, between in enumerate(found.between):
         short = [end if "/" in end or len(end) < 9 else f"{float(end):.6g}" for end in ends[k : k + 2]]
-        yield f"{found.name} from {short[0]} to {short[1]}: {_said(between.judged)}"
+        text = "[[name]] from [[low]] to [[high]]: [[verdict]]"
+        yield Message(text, name=found.name, low=short[0], high=short[1], verdict=_said(between.judged))
         if k < len(found.specials):
             special = found.specials[k]
-            what = ", ".join(VANISHING[key] for key in special.vanishing)
-            yield f"{found.name} = {ends[k + 1]}: {_told(special)}"
-            yield f"  {what}; {found.name} is a root of {_polynomial(special.polynomial, found.name)}"
-            yield from (f"  {number}" for number in _numbers(special.judged))
+            yield joined((f"{found.name} = {ends[k + 1]}", _told(special)), ": ")
+            yield Message(
+                "  [[what]]; [[name]] is a root of [[polynomial]]",
+                what=joined((worded(VANISHING[key]) for key in special.vanishing), ", "),
+                name=found.name,
+                polynomial=_polynomial(special.polynomial, found.name),
+            )
+            yield from (joined(("  ", number), "") for number in _numbers(special.judged))
             if special.verdict is not None:
                 continue
             if special.judged.outcome is Outcome.UNDECIDED and special.judged.why in REASONS:
-                yield f"  {REASONS[special.judged.why]}"
-    yield "Between these values each verdict holds throughout (proved); the ends of the interval are left out."
+                yield joined(("  ", worded(REASONS[special.judged.why])), "")
+    yield Message("Between these values each verdict holds throughout (proved); the ends of the interval are left out.")
 
 
 def _number(special: Special) -> str:
@@ -66,37 +74,52 @@ def _told(special: Special) -> str:
 
 
 def _said(judged: Judged) -> str:
-    return judged.outcome.value + (f" ({judged.theorem.value})" if judged.theorem is not Theorem.NONE else "")
+    outcome = worded(judged.outcome.value)
+    if judged.theorem is Theorem.NONE:
+        return outcome
+    return Message("[[told]] ([[hint]])", told=outcome, hint=worded(judged.theorem.value))
 
 
 def _numbers(judged: Judged) -> Iterator[str]:
     if judged.coefficient is not None and judged.amplitude_of and _is_zero(judged.coefficient):
-        yield (
-            f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
-            f"{judged.amplitude_of} is without a term of third order, or it is not told from zero"
+        yield Message(
+            "a pair of imaginary roots of frequency [[frequency]]; whether the growth of the amplitude of [[name]] has "
+            "a term of third order is undecided",
+            frequency=decimal(judged.frequencies[0]),
+            name=judged.amplitude_of,
         )
     elif judged.degree is not None and judged.amplitude_of:
-        yield (
-            f"a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}, the growth of the amplitude of "
-            f"{judged.amplitude_of} has no term of third order and begins with {decimal(judged.coefficient)} times its "
-            f"power {judged.degree}"
+        yield Message(
+            "a pair of imaginary roots of frequency [[frequency]], the growth of the amplitude of [[name]] has no term "
+            "of third order and begins with [[rate]] times its power [[degree]]",
+            frequency=decimal(judged.frequencies[0]),
+            name=judged.amplitude_of,
+            rate=decimal(judged.coefficient),
+            degree=judged.degree,
         )
     elif judged.coefficient is not None and judged.amplitude_of:
-        borders = {Outcome.ASYMPTOTIC: "a soft border: ", Outcome.UNSTABLE: "a hard border: "}
-        yield (
-            f"{borders.get(judged.outcome, '')}a pair of imaginary roots of frequency {decimal(judged.frequencies[0])}"
-            f", the amplitude of {judged.amplitude_of} grows at the rate {decimal(judged.coefficient)} times its cube"
+        borders = {Outcome.ASYMPTOTIC: Message("a soft border: "), Outcome.UNSTABLE: Message("a hard border: ")}
+        yield Message(
+            "[[border]]a pair of imaginary roots of frequency [[frequency]], the amplitude of [[name]] grows at the "
+            "rate [[rate]] times its cube",
+            border=borders.get(judged.outcome, ""),
+            frequency=decimal(judged.frequencies[0]),
+            name=judged.amplitude_of,
+            rate=decimal(judged.coefficient),
         )
     if judged.theorem is Theorem.EQUAL and judged.coefficient is not None:
-        yield f"delta A = {decimal(judged.coefficient)} in Sokolskii's normal form"
+        yield Message("delta A = [[value]] in Sokolskii's normal form", value=decimal(judged.coefficient))
     if judged.along:
-        yield (
-            f"the energy along the direction of the zero root begins with {decimal(judged.coefficient)} times the "
-            f"power {judged.degree} of the deviation of {judged.along}"
+        yield Message(
+            "the energy along the direction of the zero root begins with [[rate]] times the power [[degree]] of the "
+            "deviation of [[name]]",
+            rate=decimal(judged.coefficient),
+            degree=judged.degree,
+            name=judged.along,
         )
     if judged.sides is not None:
         left, right = map(decimal, judged.sides)
-        yield f"|H4| = {left} on the resonance, against {right}"
+        yield Message("|H4| = [[left]] on the resonance, against [[right]]", left=left, right=right)
     yield from (f"D{order} = {decimal(value)}" for order, value in judged.determinants if not _is_zero(value))
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from weakref import WeakKeyDictionary
 
 from mbsym.algebra.failures import Failure, message_of
+from mbsym.analysis.constrained import in_free_coordinates
 
 if TYPE_CHECKING:
     from mbsym.analysis.expanding import Expansion
@@ -70,7 +71,7 @@ def flow_measured(found: SmallParameters, system: System) -> Measured | str:
     """The error of the flow on the slow manifold; why it was not measured."""
     if found not in _FLOWS:
         assert found.slow is not None
-        _FLOWS[found] = measured_or_why(system, found.slow)
+        _FLOWS[found] = measured_or_why(in_free_coordinates(system), found.slow)
     return _FLOWS[found]
 
 
@@ -87,7 +88,7 @@ def oscillation_measured(found: SmallParameters, system: System) -> MeasuredOrde
     """The errors of the periodic solution at parts of the small parameter; why they were not measured."""
     if found not in _WAVES:
         assert found.oscillation is not None
-        _WAVES[found] = orders_or_why(system, found.oscillation)
+        _WAVES[found] = orders_or_why(in_free_coordinates(system), found.oscillation)
     return _WAVES[found]
 
 
@@ -103,7 +104,7 @@ def orders_or_why(
 def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
     """All effective potentials, each held against the motion itself: what any output shows of them."""
     if found not in _AVERAGES:
-        _AVERAGES[found] = tuple(_judged(found, system))
+        _AVERAGES[found] = tuple(_judged(found, in_free_coordinates(system)))
     return _AVERAGES[found]
 
 

@@ -23,6 +23,39 @@ UNIFORM = "Under these weights the equations are quasi-homogeneous."
 NOT_UNIFORM = "Under these weights the equations are not quasi-homogeneous."
 
 
+#: What is said behind a proof, where it holds for more, and of whom.
+ANY_LENGTH = Message("; unit vectors of any length")
+ALMOST = Message(", for almost all values of the parameters")
+NOTHING_KNOWN = "What there is for almost all [[name]] is not known to be all: of other values nothing is proved."
+NOT_LOOKED_FOR = Message(
+    "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
+)
+
+
+def weights_here(variables: Sequence[Inline], given: Sequence[int]) -> Message:
+    """Where they are others than those of the list."""
+    return Message("weights are [[weights]] here", weights=weights_text(variables, given))
+
+
+def no_further(name: str, low: object, high: object) -> Message:
+    """Along a parameter."""
+    text = "at no rational value of [[name]] from [[low]] to [[high]] was a further one found"
+    return Message(text, name=name, low=low, high=high)
+
+
+def all_values(but: Sequence[object]) -> Message:
+    """All of a parameter, ``but`` those that were told."""
+    return Message("At all other values") if but else Message("At all values")
+
+
+def undecided_at(name: str, values: Sequence[object], polynomials: Sequence[object]) -> Iterator[Message]:
+    """Values of a parameter, and zeros of polynomials in it."""
+    for value in values:
+        yield Message("whether there are others at [[name]] = [[value]] is undecided", name=name, value=value)
+    for p in polynomials:
+        yield Message("undecided at the zeros of [[polynomial]]", polynomial=str(p).replace("x", name))
+
+
 def weights_text(variables: Sequence[Inline], given: Sequence[int]) -> str:
     """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
     return Writer().inline(weighted(variables, given))
@@ -141,9 +174,10 @@ _NONE = {
 }
 #: The length of a unit vector is constant, too: it is 1, and problem 7 may list it.
 _NONE_BUT_LENGTHS = {
-    True: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved for "
-    "almost all values of the parameters).",
-    False: "But for lengths of unit vectors, which are 1, there is none up to weighted degree [[degree]] (proved).",
+    True: "But for relations that every state keeps, as lengths of unit vectors are, there is none up to weighted "
+    "degree [[degree]] (proved for almost all values of the parameters).",
+    False: "But for relations that every state keeps, as lengths of unit vectors are, there is none up to weighted "
+    "degree [[degree]] (proved).",
 }
 #: Those of vectors of one body are integrals of the kinematic equations alone.
 _TRIVIAL = "Lengths of unit vectors and products of two of them are the same in every motion: 1 and 0."

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 from mbsym.expressions.message import Message
 from mbsym.maps.axis import Axis
 from mbsym.studies.request import Flag, Named, Number, Numbers, Range, Whole
-from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line
+from mbsym.studies.study import Answer, Asked, Exit, Line, NotFit, Refusal, Study, Unfit, Watch, heading, line, refused
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import InvariantRelations, Setting
@@ -158,7 +158,7 @@ def _lines(found: Found) -> Iterator[Line | Block]:
     for head, texts in _sections(found):
         yield heading(head)
         for text in texts:
-            yield line(f"    {text}", whole=True)
+            yield line("    ", text, whole=True)
 
 
 def _sections(found: Found) -> Iterator[tuple[str, Iterator[str]]]:
@@ -168,16 +168,18 @@ def _sections(found: Found) -> Iterator[tuple[str, Iterator[str]]]:
 
     there, integrals, relations = found.there, found.integrals, found.relations
     if found.line is not None:
-        yield "Special values", along_lines(there, integrals, found.line)
+        yield Message("Special values"), along_lines(there, integrals, found.line)
     if found.cases is not None:
-        yield "Special cases", cases_lines(there, found.cases)
+        yield Message("Special cases"), cases_lines(there, found.cases)
     if relations is not None:
-        yield "Integrals where another one is zero", level_lines(there, integrals, relations.levels)
-        yield "Integrals where another one has a value that is not zero", other_lines(there, relations.others)
-        yield "Linear invariant relations", relation_lines(there, relations.linear)
-        yield "Invariant relations f = 0 with f' = K f", darboux_lines(there, integrals, relations.darboux)
+        yield Message("Integrals where another one is zero"), level_lines(there, integrals, relations.levels)
+        nonzero = Message("Integrals where another one has a value that is not zero")
+        yield nonzero, other_lines(there, relations.others)
+        yield Message("Linear invariant relations"), relation_lines(there, relations.linear)
+        yield Message("Invariant relations f = 0 with f' = K f"), darboux_lines(there, integrals, relations.darboux)
     if found.at is not None:
-        yield f"Values of {found.at.name} with further f' = K f", darboux_values(there, integrals, found.at)
+        head = Message("Values of [[name]] with further f' = K f", name=found.at.name)
+        yield head, darboux_values(there, integrals, found.at)
 
 
 def as_json(asked: Asked, request: Request, found: Found) -> str:
@@ -191,12 +193,12 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import Failure, Limit
 
     if isinstance(error, ZeroDivisionError):
-        return Refusal(f"no integrals: {error}", Exit.BAD_INPUT)
+        return refused("no integrals", error, Exit.BAD_INPUT)
     if not isinstance(error, Failure):
         return None
     if error.limit is Limit.DEGREE:
-        return Refusal(f"no integrals: {error}; {error.remedy}", Exit.BAD_INPUT)
-    return Refusal(f"no integrals: {error}")
+        return refused("no integrals", error, Exit.BAD_INPUT, remedied=True)
+    return refused("no integrals", error)
 
 
 STUDY = Study(

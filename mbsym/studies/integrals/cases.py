@@ -5,7 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.words.integrals_words import case_title, conditions_text, level_title, weights_text
+from mbsym.expressions.message import Message, joined
+from mbsym.report.words.integrals_words import (
+    ANY_LENGTH,
+    NOTHING_KNOWN,
+    all_values,
+    case_title,
+    conditions_text,
+    level_title,
+    no_further,
+    undecided_at,
+    weights_here,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -15,34 +26,30 @@ if TYPE_CHECKING:
 def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Iterator[str]:
     """The values, what there is at each, and what is known of the others."""
     if found.weights not in (None, usual.grading.weights):
-        yield f"weights are {weights_text(there.field.variables, found.weights or ())} here"
-    degree = usual.degree
-    length = "" if found.weights is None or not there.vectors else "; unit vectors of any length"
+        yield weights_here(there.field.variables, found.weights or ())
+    length = "" if found.weights is None or not there.vectors else ANY_LENGTH
     for one in found.values:
         yield f"{found.name} = {one.value}"
         yield from _special(there, one)
     if not found.values:
-        yield f"at no rational value of {found.name} from {found.low} to {found.high} was a further one found"
-    for value in found.undecided:
-        yield f"whether there are more at {found.name} = {value} is undecided"
-    for p in found.irrational:
-        yield f"undecided at the zeros of {str(p).replace('x', found.name)}"
-    without = f" that does not contain {', '.join(usual.aside)}" if usual.aside else ""
-    others = "At all other values" if found.values or found.undecided else "At all values"
-    interval = f"of {found.name} from {found.low} to {found.high}"
+        yield no_further(found.name, found.low, found.high)
+    yield from undecided_at(found.name, found.undecided, found.irrational)
+    without = Message(" that does not contain [[names]]", names=", ".join(usual.aside)) if usual.aside else ""
     if not found.usual:
-        yield f"What there is for almost all {found.name} is not known to be all: of other values nothing is proved."
-    elif found.whole:
-        yield (
-            f"{others} {interval}, rational or not, there is none of weight up to {degree}{without} "
-            "(proved, but for algebraic numbers whose polynomials over the integers need coefficients beyond 10^9"
-            f"{length})."
+        yield Message(NOTHING_KNOWN, name=found.name)
+        return
+    text = (
+        "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there is "
+        "no further integral of weight up to [[degree]][[without]] (proved[[length]]); irrational values are undecided."
+    )
+    if found.whole:
+        text = (
+            "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of "
+            "weight up to [[degree]][[without]] (proved, but for algebraic numbers whose polynomials over the integers "
+            "need coefficients beyond 10^9[[length]])."
         )
-    else:
-        yield (
-            f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to {degree}"
-            f"{without} (proved{length}); irrational values are undecided."
-        )
+    ends = {"all": all_values(found.values or found.undecided), "low": found.low, "high": found.high}
+    yield Message(text, name=found.name, **ends, degree=usual.degree, without=without, length=length)
 
 
 def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
@@ -51,22 +58,27 @@ def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
         yield conditions_text(case, lambda p: str(there.formula(p)))
         yield from _special(there, case.special)
     if not found.cases:
-        yield "no case was found"
-    yield (
-        f"{found.families} families of parameters were looked at (some zero, some equal that play the same part), and "
-        "conditions of degree up to 3 in each. Integrals are proved; that there are no other cases is not."
+        yield Message("no case was found")
+    yield Message(
+        "Families of parameters searched (some zero, some equal that play the same part): [[count]], with conditions "
+        "of degree up to 3 in each. The integrals are proved; that there are no other cases is not.",
+        count=found.families,
     )
     if found.left:
-        yield (
-            f"{found.left} further families were not looked at within the budget (--budget): nothing is known of them."
+        yield Message(
+            "Families beyond the budget (--budget): [[count]]; nothing is known of them.",
+            count=found.left,
         )
     if found.unread:
-        yield f"In {found.unread} families the rank drops elsewhere, too, under conditions that were not found."
+        yield Message(
+            "Families in which the rank also drops under conditions that were not found: [[count]].",
+            count=found.unread,
+        )
 
 
 def _special(there: Setting, one: Special) -> Iterator[str]:
     for weight, f in one.integrals:
-        yield f"  {case_title(weight)}: {there.formula(f)}"
+        yield joined(("  ", case_title(weight), ": ", there.formula(f)), "")
     for level in one.levels:
         for weight, f in level.integrals:
-            yield f"  {level_title(weight, level)}: {there.formula(f)}"
+            yield joined(("  ", level_title(weight, level), ": ", there.formula(f)), "")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from mbsym.report.words.integrals_words import title
+from mbsym.expressions.message import Message
+from mbsym.report.words.integrals_words import ALMOST, ANY_LENGTH, NOT_LOOKED_FOR, title
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -15,52 +16,81 @@ if TYPE_CHECKING:
 def other_lines(there: Setting, found: OtherLevels | None) -> Iterator[str]:
     """What holds on single levels, and what is known of all others."""
     if found is None:
-        yield "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
+        yield NOT_LOOKED_FOR
         return
     for level in found.levels:
         yield from _of(there, found, level)
     if not found.levels:
-        yield "There is no integral in the list whose values could be looked at."
+        yield Message("There is no integral in the list whose values could be looked at.")
 
 
 def _of(there: Setting, found: OtherLevels, other_level: OtherLevel) -> Iterator[str]:
-    that = f"that of weight {other_level.level.weight} ({title(other_level.level)})"
-    value = that if other_level.power == 1 else f"the power {other_level.power} of {that}"
+    that = Message(
+        "the integral of weight [[weight]] ([[name]])",
+        weight=other_level.level.weight,
+        name=title(other_level.level),
+    )
+    power = other_level.power
+    value = that if power == 1 else Message("the power [[power]] of [[integral]]", power=power, integral=that)
     vectors = bool(there.field.relations) and (not found.fixed or found.weights is not None)
-    length = "; unit vectors of any length" if vectors else ""
-    almost = ", for almost all values of the parameters" if there.field.parameters else ""
     if not other_level.looked:
-        yield f"where {that} has another value than zero there may be others: not found within the budget."
+        yield Message("where [[integral]] is not zero there may be others: not found within the budget.", integral=that)
         return
     for at in other_level.values:
         for weight, f in at.integrals:
-            yield f"where {value} is {at.value}, one of weight {weight}: {there.formula(f)}"
+            yield Message(
+                "where [[integral]] is [[value]], one of weight [[weight]]: [[formula]]",
+                integral=value,
+                value=at.value,
+                weight=weight,
+                formula=there.formula(f),
+            )
         if not at.complete:
-            yield f"  where it is {at.value} there may be others: not found within the budget"
+            yield Message("  where it is [[value]] there may be others: not found within the budget", value=at.value)
     for number in other_level.undecided:
-        yield f"whether there are others where {value} is {number} is undecided"
+        text = "whether there are others where [[integral]] is [[value]] is undecided"
+        yield Message(text, integral=value, value=number)
     for p in other_level.irrational:
-        yield f"undecided where {value} is a zero c of {str(p).replace('x', 'c')}"
+        text = "undecided where [[integral]] is a zero c of [[polynomial]]"
+        yield Message(text, integral=value, polynomial=str(p).replace("x", "c"))
     if not other_level.complete:
-        yield (
-            f"where {that} has another value than zero there may be others at almost all of its values: those are "
-            "integrals that hold everywhere, of higher weight or not found, with this value put in."
+        yield Message(
+            "where [[integral]] is not zero there may be others at almost all of its values: those are integrals that "
+            "hold everywhere, of higher weight or not found, with this value put in.",
+            integral=that,
         )
         return
-    none = f"there is none beyond those that hold everywhere of weight up to {found.degree}{almost}"
     if other_level.drops:
-        yield f"where {that} has single values, other than zero, there may be others: put in numbers with --set."
-    elif not other_level.by_rank:
-        yield f"where {that} has any value but zero {none} (proved{length})."
+        text = "where [[integral]] has single values, other than zero, there may be others: put in numbers with --set."
+        yield Message(text, integral=that)
+        return
+    known = {
+        "integral": that,
+        "degree": found.degree,
+        "almost": ALMOST if there.field.parameters else "",
+        "length": ANY_LENGTH if vectors else "",
+    }
+    if not other_level.by_rank:
+        text = (
+            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
+            "[[degree]][[almost]] (proved[[length]])."
+        )
     elif there.field.parameters:
-        yield f"where {that} has any value but zero {none} (verified at random parameters modulo a prime{length})."
+        text = (
+            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
+            "[[degree]][[almost]] (verified at random parameters modulo a prime[[length]])."
+        )
     elif other_level.whole:
-        yield (
-            f"where {that} has any value but zero {none} (proved, but for algebraic numbers whose polynomials over the "
-            f"integers need coefficients beyond 10^9{length})."
+        text = (
+            "where [[integral]] is not zero there is none beyond those that hold everywhere of weight up to "
+            "[[degree]][[almost]] (proved, but for algebraic numbers whose polynomials over the integers need "
+            "coefficients beyond 10^9[[length]])."
         )
     else:
-        yield (
-            f"where {value} has any other rational value than zero, with numerator and denominator up to 10^9, {none} "
-            f"(proved{length}); other irrational ones are undecided."
+        known["integral"] = value
+        text = (
+            "where [[integral]] has any other rational value but zero, with numerator and denominator up to 10^9, "
+            "there is none beyond those that hold everywhere of weight up to [[degree]][[almost]] (proved[[length]]); "
+            "other irrational values are undecided."
         )
+    yield Message(text, **known)

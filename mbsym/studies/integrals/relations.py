@@ -5,8 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from mbsym.expressions.message import Message, joined
 from mbsym.problems.polynomial_integrals.result import Obstacle
-from mbsym.report.words.integrals_words import equations_text, level_title, title, weights_text
+from mbsym.report.words.integrals_words import (
+    ALMOST,
+    ANY_LENGTH,
+    NOT_LOOKED_FOR,
+    NOTHING_KNOWN,
+    all_values,
+    equations_text,
+    level_title,
+    no_further,
+    title,
+    undecided_at,
+    weights_here,
+)
 
 if TYPE_CHECKING:
     from mbsym.analysis.polynomial import Setting
@@ -20,12 +33,17 @@ if TYPE_CHECKING:
 
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
-    Obstacle.NOT_HOMOGENEOUS: "relations between variables, of several unit vectors, angles or roots, "
-    "are not looked at here",
-    Obstacle.MIXED: "a K of that weight may hold products of variables, which is not looked at",
-    Obstacle.NOT_AT_REST: "K is read off at rest where one variable alone is not zero, and there is no rest there",
-    Obstacle.TOO_MANY: "there may be more K of one weight than are looked at",
+    Obstacle.NOT_HOMOGENEOUS: Message(
+        "relations between variables, of several unit vectors, angles or roots, are not looked at here"
+    ),
+    Obstacle.MIXED: Message("a K of that weight may hold products of variables, which is not looked at"),
+    Obstacle.NOT_AT_REST: Message(
+        "K is read off at rest where one variable alone is not zero, and there is no rest there"
+    ),
+    Obstacle.TOO_MANY: Message("there may be more K of one weight than are looked at"),
 }
+#: Of an f that no motion makes zero.
+NO_RELATION = Message("no relation of motions: it is zero nowhere, or the equations are not defined there")
 #: Where nothing is looked for along a line.
 UNLOOKED = (Obstacle.NOT_HOMOGENEOUS, Obstacle.MIXED, Obstacle.NOT_AT_REST)
 
@@ -39,100 +57,126 @@ def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
     for relation in found.relations:
         yield f"{write(relation.polynomial)} = 0"
         if relation.conditions:
-            yield f"  where {equations_text(relation.conditions, write)}"
+            yield Message("  where [[conditions]]", conditions=equations_text(relation.conditions, write))
         if relation.nonzero:
-            yield f"  provided {', '.join(f'{write(p)} != 0' for p in relation.nonzero)}"
+            nonzero = ", ".join(f"{write(p)} != 0" for p in relation.nonzero)
+            yield Message("  provided [[conditions]]", conditions=nonzero)
     if not found.relations:
-        yield "none was found" if not found.complete else "there are none (proved)"
+        yield Message("none was found" if not found.complete else "there are none (proved)")
     elif found.complete:
-        yield "There are no other forms that are linear in the variables of least weight (proved)."
+        yield Message("There are no other forms that are linear in the variables of least weight (proved).")
     if not found.complete:
-        yield "Whether there are others is undecided: roots of parameters and families of forms were not followed."
+        yield Message(
+            "Whether there are others is undecided: roots of parameters and families of forms were not followed."
+        )
 
 
 def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels | None) -> Iterator[str]:
     """What holds where an integral of the list is zero, and that nothing else does."""
     if levels is None:
-        yield "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
+        yield NOT_LOOKED_FOR
         return
     if levels.weights not in (None, found.grading.weights):
-        yield f"weights are {weights_text(there.field.variables, levels.weights or ())} here"
-    length = "" if levels.weights is None or not there.vectors else "; unit vectors of any length"
-    almost = ", for almost all values of the parameters" if there.field.parameters else ""
+        yield weights_here(there.field.variables, levels.weights or ())
+    length = "" if levels.weights is None or not there.vectors else ANY_LENGTH
+    almost = ALMOST if there.field.parameters else ""
     for level in levels.levels:
         for weight, f in level.integrals:
-            yield f"{level_title(weight, level)}: {there.formula(f)}"
-        where = f"where that of weight {level.level.weight} ({title(level.level)}) is zero"
-        other = "no other" if level.integrals else "none beyond those that hold everywhere"
+            yield joined((level_title(weight, level), there.formula(f)), ": ")
+        known = {"weight": level.level.weight, "name": title(level.level), "degree": found.degree}
         if level.complete:
-            yield f"{where} there is {other} of weight up to {found.degree}{almost} (proved{length})."
+            text = (
+                "where the integral of weight [[weight]] ([[name]]) is zero there is none beyond those that hold "
+                "everywhere of weight up to [[degree]][[almost]] (proved[[length]])."
+            )
+            if level.integrals:
+                text = (
+                    "where the integral of weight [[weight]] ([[name]]) is zero there is no other of weight up to "
+                    "[[degree]][[almost]] (proved[[length]])."
+                )
+            yield Message(text, **known, almost=almost, length=length)
         else:
-            yield f"{where} there may be others of weight up to {found.degree}: not found within the budget."
+            yield Message(
+                "where the integral of weight [[weight]] ([[name]]) is zero there may be others of weight up to "
+                "[[degree]]: not found within the budget.",
+                **known,
+            )
     if not levels.levels:
-        yield "There is no integral in the list whose zeros could be looked at."
+        yield Message("There is no integral in the list whose zeros could be looked at.")
 
 
 def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPolynomials) -> Iterator[str]:
     """Each f with its K, and whether there are others."""
     if found.weights != usual.grading.weights:
-        yield f"weights are {weights_text(there.field.variables, found.weights)} here"
-    almost = ", for almost all values of the parameters" if there.field.parameters else ""
-    length = "; unit vectors of any length" if there.vectors else ""
+        yield weights_here(there.field.variables, found.weights)
+    almost = ALMOST if there.field.parameters else ""
+    length = ANY_LENGTH if there.vectors else ""
     for polynomial in found.polynomials:
-        yield f"weight {polynomial.weight}: {there.formula(polynomial.polynomial)} = 0"
+        formula = there.formula(polynomial.polynomial)
+        yield Message("weight [[weight]]: [[formula]] = 0", weight=polynomial.weight, formula=formula)
         yield f"  K = {there.quotient(polynomial.cofactor, there.field.denominator)}"
         if not polynomial.defined:
-            yield "  no relation of motions: it is zero nowhere, or the equations are not defined there"
+            yield joined(("  ", NO_RELATION), "")
     for count in found.counts:
         if not count.complete:
             cofactor = there.quotient(count.cofactor, there.field.denominator)
-            yield (
-                f"of weight {count.weight} with K = {cofactor} there are at most {count.most - count.products} more; "
-                "they were not found within the budget."
+            yield Message(
+                "of weight [[weight]] with K = [[cofactor]] there are at most [[more]] more; they were not found "
+                "within the budget.",
+                weight=count.weight,
+                cofactor=cofactor,
+                more=count.most - count.products,
             )
     if found.obstacle is not None:
-        yield f"Whether there are others is undecided: {UNDECIDED[found.obstacle]}."
+        yield Message("Whether there are others is undecided: [[why]].", why=UNDECIDED[found.obstacle])
     elif found.complete:
-        none = "Every other f of weight up to" if found.polynomials else "There is none of weight up to"
-        but = " is a combination of products of these and of integrals" if found.polynomials else ""
-        yield (
-            f"{none} {found.degree} with K not zero and coefficients that are rational (in the parameters)"
-            f"{but}{almost} (proved{length})."
+        text = (
+            "There is none of weight up to [[degree]] with K not zero and coefficients that are rational (in the "
+            "parameters)[[almost]] (proved[[length]])."
         )
+        if found.polynomials:
+            text = (
+                "Every other f of weight up to [[degree]] with K not zero and coefficients that are rational (in the "
+                "parameters) is a combination of products of these and of integrals[[almost]] (proved[[length]])."
+            )
+        yield Message(text, degree=found.degree, almost=almost, length=length)
 
 
 def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlong) -> Iterator[str]:
     """Each value of the parameter with its f and K, and what is known of other values."""
-    name, interval = found.name, f"of {found.name} from {found.low} to {found.high}"
+    name = found.name
     for special in found.values:
         yield f"{name} = {special.value}"
         for f in special.polynomials:
-            yield f"  weight {f.weight}: {there.formula(f.polynomial)} = 0"
+            formula = there.formula(f.polynomial)
+            yield joined(("  ", Message("weight [[weight]]: [[formula]] = 0", weight=f.weight, formula=formula)), "")
             yield f"    K = {there.quotient_over(special.field, f.cofactor)}"
             if not f.defined:
-                yield "    no relation of motions: it is zero nowhere, or the equations are not defined there"
+                yield joined(("    ", NO_RELATION), "")
     if found.general.obstacle in UNLOOKED:
-        yield f"not looked for: {UNDECIDED[found.general.obstacle]}"
+        yield Message("not looked for: [[why]]", why=UNDECIDED[found.general.obstacle])
         return
     if not found.values:
-        yield f"at no rational value {interval} was a further one found"
-    for value in found.undecided:
-        yield f"whether there are others at {name} = {value} is undecided"
-    for p in found.irrational:
-        yield f"undecided at the zeros of {str(p).replace('x', name)}"
+        yield no_further(name, found.low, found.high)
+    yield from undecided_at(name, found.undecided, found.irrational)
     for p in found.square:
-        yield f"undecided where {there.formula(p)} is the square of a rational number: there may be others at each"
+        text = "undecided where [[formula]] is the square of a rational number: there may be others at each"
+        yield Message(text, formula=there.formula(p))
     if found.left:
-        yield f"{found.left} possible K were not looked at within the budget: of these nothing is known."
+        yield Message("Possible K beyond the budget: [[count]]; nothing is known of them.", count=found.left)
     if not found.followed:
-        yield "Not all K that become rational at single values were followed: of these nothing is known."
+        yield Message("Not all K that become rational at single values were followed: nothing is known of them.")
     if not found.general.complete:
-        yield f"What there is for almost all {name} is not known to be all: of other values nothing is proved."
+        yield Message(NOTHING_KNOWN, name=name)
     elif found.complete:
-        length = "; unit vectors of any length" if there.vectors else ""
-        others = "At all other values" if found.values else "At all values"
-        yield (
-            f"{others} {interval} with numerator and denominator up to 10^9 there is none of weight up to "
-            f"{usual.degree} with rational coefficients beyond those for almost all {name} (proved{length}); "
-            "irrational values are undecided."
+        yield Message(
+            "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there "
+            "is none of weight up to [[degree]] with rational coefficients beyond those for almost all [[name]] "
+            "(proved[[length]]); irrational values are undecided.",
+            all=all_values(found.values),
+            name=name,
+            low=found.low,
+            high=found.high,
+            degree=usual.degree,
+            length=ANY_LENGTH if there.vectors else "",
         )

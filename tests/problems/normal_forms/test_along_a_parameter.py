@@ -16,6 +16,7 @@ from mbsym.analysis.judge import exceptional
 from mbsym.analysis.stages import Unavailable
 from mbsym.problems.normal_forms import Outcome, Theorem, Why
 from mbsym.problems.normal_forms.along import NotAlong
+from mbsym.problems.normal_forms.expansion import NotExpanded
 from mbsym.report.schemas import schema
 from mbsym.report.words.exceptional_values import lines
 from mbsym_cli.main import main
@@ -130,7 +131,7 @@ def test_refusals() -> None:
     values = {parameter.name: one for parameter in satellite.system.parameters}
     with pytest.raises(NotAlong, match="two frequencies"):
         exceptional(satellite, "A", interval, values)
-    with pytest.raises(Unavailable, match="constraints"):
+    with pytest.raises(NotExpanded, match="under constraints only rests"):
         exceptional(mbsym.load(SYSTEMS / "rolling-disc.yaml"), "m", interval, {})
     with pytest.raises(NotAlong, match="sum is zero"):
         exceptional(mbsym.load(SYSTEMS / "ziegler.yaml"), "P", interval, dict.fromkeys("mlk", one))

@@ -124,6 +124,6 @@ def test_an_energy_that_is_a_quotient_is_said_to_be_one():
     assert mbsym.loads(SLEIGH).polynomial_integrals.found.rational == ()
 
 
-def test_tied_positions_are_refused_with_the_reason():
+def test_relations_that_share_their_variables_are_refused_with_the_reason():
     with pytest.raises(NoClosedForm, match="constraints tie positions"):
         setting(mbsym.load(SHIPPED / "four-bar.yaml"))
