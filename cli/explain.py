@@ -125,8 +125,8 @@ def _verdict(word: str) -> Iterator[str]:
             "equations are all there is)"
         ),
         Word.STABLE_BUT_CYCLIC: (
-            "everything else stays near; cyclic coordinates may drift: stability with respect to a part of the "
-            "variables (Rumyantsev)"
+            "everything else stays near, velocities measured by the kinetic energy; cyclic coordinates may drift: "
+            "stability with respect to a part of the variables (Rumyantsev), not Lyapunov's with positions counted"
         ),
         Word.GYROSCOPIC: (
             "the first approximation is stable by gyroscopic forces; no theorem decides the nonlinear system"
