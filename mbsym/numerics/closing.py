@@ -31,6 +31,12 @@ from mbsym.numerics.states import dynamics_of, scenario_in_states, scenario_in_v
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
 
+#: The least part of a step of Newton's method that is tried.
+LEAST_PART = 1 / 64
+
+#: So many ways aside of the start are tried where no whole step of Newton's method leads to the constraints.
+MOST_BESIDE = 8
+
 #: A gap of a row is closed below this part of the row's slope times the coordinates' sizes.
 CLOSED = 1e-11
 
@@ -248,20 +254,47 @@ class _Search:
         """A position on the constraints, and whether it is the closest one to ``start``.  Raises NotClosed."""
         if not self.h:
             return start[: self.p].copy(), True
-        found = self._descended(start)
+        found, straight = self._descended(start)
         better, closest = self._along(found, start)
+        if straight:
+            return better[: self.p], closest
+        # A mechanism closes in several ways; the one that was found may be folded up far away from another.
+        sizes = self.constraints.extents(start)
+        far = np.linalg.norm(self.constraints.towards(0.0, start, better) / sizes)
+        free = np.where(self.free[False], sizes, 0.0) / 2
+        ways = np.vstack([free, np.diag(free)[self.free[False]][:MOST_BESIDE]])
+        for way in (*ways, *-ways):
+            try:
+                beside, _ = self._descended(self.constraints.displaced(0.0, start, way))
+            except NotClosed:
+                continue
+            other, stationary = self._along(beside, start)
+            distance = np.linalg.norm(self.constraints.towards(0.0, start, other) / sizes)
+            if distance < (1 - 1e-6) * far:
+                better, closest, far = other, stationary, distance
         return better[: self.p], closest
 
-    def _descended(self, start: Any) -> Any:
-        """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed."""
-        found, damping = start.copy(), 0.0
+    def _descended(self, start: Any) -> tuple[Any, bool]:
+        """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed.
+
+        A part t of a step y is taken after which f + t J y is left but for t |J y|/4: a longer one would lead far away,
+        where the constraints are other ones.  Beside the position: whether whole steps led there.
+        """
+        found, damping, straight = start.copy(), 0.0, True
         f, rows, weights = self.rows(found, False)
         for _ in range(STEPS):
             if self._small(f, rows, found) and damping == 0.0:
                 break
-            moved = self.constraints.displaced(0.0, found, weights @ _shortest(rows, -f, damping))
-            new, new_rows, new_weights = self.rows(moved, False)
-            if np.all(np.isfinite(new)) and np.linalg.norm(new) < np.linalg.norm(f):
+            step, part, gap = _shortest(rows, -f, damping), 1.0, np.linalg.norm(f)
+            change = rows @ step
+            while True:
+                moved = self.constraints.displaced(0.0, found, weights @ (part * step))
+                new, new_rows, new_weights = self.rows(moved, False)
+                linear = bool(np.linalg.norm(new - f - part * change) <= part * np.linalg.norm(change) / 4)
+                if linear or part < LEAST_PART:
+                    break
+                part, straight = part / 2, False
+            if np.all(np.isfinite(new)) and np.linalg.norm(new) < gap and linear:
                 found, f, rows, weights = moved, new, new_rows, new_weights
                 damping = 0.0 if damping < 1e-6 else damping / 10
             elif self._small(f, rows, found):
@@ -273,24 +306,31 @@ class _Search:
         if not self._small(f, rows, found):
             gaps = [Gap(name, abs(float(x))) for name, x in zip(self.constraints.names, f, strict=False)]
             raise NotClosed(found, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.p + 1]])
-        return found
+        return found, straight
 
     def _along(self, found: Any, start: Any) -> tuple[Any, bool]:
         """From a position on the constraints to the closest one to ``start``, as long as that leads closer."""
-        reached = found
         for _ in range(ALONG):
-            f, rows, weights = self.rows(found, False)
-            back = np.linalg.lstsq(weights, self.constraints.towards(0.0, found, start), rcond=None)[0]
+            _, rows, weights = self.rows(found, False)
+            back = self._lengths(weights, found, start)
             tangent = back - _shortest(rows, rows @ back)
-            moved = self.constraints.displaced(0.0, found, weights @ (tangent + _shortest(rows, -f)))
-            if not np.all(np.isfinite(moved)):
-                return reached, False
             if np.linalg.norm(tangent) <= 1e-9 * (np.linalg.norm(back) + 1e-30) or not np.any(back):
-                return self._settled(moved, reached), True
-            found = moved
-            if self._small(f, rows, found):
-                reached = found
-        return self._settled(found, reached), False
+                return self._settled(found, found), True
+            part = 1.0
+            while True:
+                moved = self.constraints.displaced(0.0, found, weights @ (part * tangent))
+                closer = self._settled(moved, found) if np.all(np.isfinite(moved)) else found
+                if np.linalg.norm(self._lengths(weights, closer, start)) < np.linalg.norm(back):
+                    break
+                part /= 2
+                if part < LEAST_PART:  # what is left of the way shortens it by less than roundings
+                    return found, bool(np.linalg.norm(tangent) <= 1e-6 * np.linalg.norm(back))
+            found = closer
+        return found, False
+
+    def _lengths(self, weights: Any, state: Any, start: Any) -> Any:
+        """The way from a state back to ``start``, in lengths measured by M."""
+        return np.linalg.lstsq(weights, self.constraints.towards(0.0, state, start), rcond=None)[0]
 
     def _settled(self, state: Any, otherwise: Any) -> Any:
         """A few steps of Newton's method; ``otherwise`` where they do not end on the constraints."""

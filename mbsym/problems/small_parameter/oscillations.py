@@ -413,8 +413,3 @@ def _put(orders: Orders, place: int, value: Element) -> None:
         orders.series[i] = [x.mapped(change) for x in one[: orders.complete]]
     orders.shifts = [change(x) for x in orders.shifts[: orders.complete - 1]]
     orders.products.clear()
-
-
-def values_of(found: Oscillation) -> Mapping[str, Element]:
-    """Constants of the solution by the symbols that stand for them in the tower."""
-    return {AMPLITUDE: found.amplitude, **{f"#{name}": x for name, x in found.constants}}

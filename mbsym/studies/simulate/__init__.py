@@ -125,7 +125,9 @@ class Request:
         Whole("N", "Rows of the table.", usual="2001, more for fast motion", least=2, most=10**18, why=ENDS),
     ] = None
     every: Annotated[float | None, Number("DT", "A row every DT instead.")] = None
-    method: Annotated[str, Word(None, "auto or one of those above.", "-m", choices=_methods, what="method")] = "auto"
+    method: Annotated[
+        str, Word(None, "auto, or one that 'mbsym explain simulate' lists.", "-m", choices=_methods, what="method")
+    ] = "auto"
     tolerance: Annotated[
         float | None,
         Number("X", "Error of one step, relative and absolute.", least=FINEST, most=COARSEST, usual="1e-10 in float64"),
