@@ -229,8 +229,8 @@ def _force() -> click.Option:
 
         Force.wanted = Force.wanted or value
 
-    told = "Replace files that mbsym did not write, too."
-    return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=told)
+    help_text = "Replace files that mbsym did not write, too."
+    return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=help_text)
 
 
 def _debug() -> click.Option:
