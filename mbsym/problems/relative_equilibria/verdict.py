@@ -113,8 +113,9 @@ class LinearAtRest:
     @property
     def _alike(self) -> bool:
         """Whether all positions are alike for the kinetic energy."""
+        ring, names = self.found.ring, self.found.system.coordinates
         try:
-            return constantly_curved(self.found.ring, self.matrices[0], self.found.system.coordinates)
+            return constantly_curved(ring, self.matrices[0], lambda x, i: ring.derivative(x, names[i]))
         except Failure:
             return False
 

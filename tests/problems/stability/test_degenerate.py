@@ -159,15 +159,23 @@ bodies:
         ("x**2 + 2*y**2 = 1", "x: 1, y: 0", Word.STABLE_BUT_CYCLIC),
         ("x**2 + y**2 + z**2 = 1", "x: 0, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
         ("x**2 + 2*y**2 + 3*z**2 = 3", "x: 0, y: 0, z: 1", Word.UNSTABLE),
+        ("x**2 + 4*y**2 = 4", "x: 2, y: 0, z: 0", Word.STABLE_BUT_CYCLIC),
+        ("z + z**3 = x**2", "x: 0, y: 0, z: 0", Word.STABLE_BUT_CYCLIC),
+        ("z + z**3 = x**2 + y**2", "x: 0, y: 0, z: 0", Word.UNSTABLE),
+        ("z**2 = x**2 + 2*y**2", "x: 1, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
+        ("z**2 + 1 = x**2 + y**2", "x: 1, y: 0, z: 0", Word.UNSTABLE),
+        ("(x**2 + y**2 + z**2 + 3)**2 = 16*(x**2 + y**2)", "x: 3, y: 0, z: 0", Word.UNSTABLE),
+        ("b*x**2 + b*y**2 + 2*z**2 = 2", "x: 0, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
     ],
 )
 def test_no_forces_at_all_but_constraints(relation: str, coordinates: str, word: Word) -> None:
-    """On a curve and on a sphere all places are alike, on an ellipsoid they are not."""
+    """On curves, spheres, cylinders and cones all places are alike, on ellipsoids, hyperboloids, tori they are not."""
     names = [one.partition(":")[0].strip() for one in coordinates.split(",")]
     position = ", ".join([*names, "0"][:3])
     text = f"""
 mbsym: 1
 name: Free
+parameters: {{b: 2}}
 bodies:
   - {{name: one, attached to: 0, connection point: [{position}], mass: 1, coordinates: [{", ".join(names)}]}}
 constraints: [{{relation: {relation}}}]
