@@ -15,7 +15,7 @@ from itertools import combinations
 from typing import Any, Generic, overload
 
 from mbsym.algebra.base import Algebra, S
-from mbsym.algebra.failures import Limit, NoClosedForm
+from mbsym.algebra.failures import Failure, Limit, NoClosedForm, TooLargeError
 
 Rows = Iterable[Iterable[S]]
 Table = Sequence[Sequence[S]]
@@ -161,7 +161,7 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
     Zeros cost nothing; of a full matrix up to 2^n sets of columns are looked at.
     """
     known: dict[int, S] = {0: algebra.one}  # minors of the rows so far, by their columns as a bit mask
-    found = []
+    minors = []
     for size, row in enumerate(rows, start=1):
         entries = [(j, x) for j, x in enumerate(row) if not algebra.vanishes(x)]
         following: dict[int, S] = {}
@@ -177,8 +177,8 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
                 previous = following.get(key, algebra.zero)
                 following[key] = previous - term if beyond % 2 else previous + term
         known = {key: minor for key, x in following.items() if not algebra.vanishes(minor := algebra.reduce(x))}
-        found.append(known.get((1 << size) - 1, algebra.zero))
-    return found
+        minors.append(known.get((1 << size) - 1, algebra.zero))
+    return minors
 
 
 def determinant(algebra: Algebra[S], rows: Table[S]) -> S:
@@ -231,7 +231,7 @@ def faddeev(rows: Table[Any], zero: Any, one: Any) -> tuple[list[list[list[Any]]
     """
     m = len(rows)
     now = [[one if i == j else zero for j in range(m)] for i in range(m)]
-    found, coefficients = [now], [one]
+    adjugates, coefficients = [now], [one]
     for k in range(1, m + 1):
         columns = list(zip(*now, strict=True))
         product = [[dot(row, column) for column in columns] for row in rows]
@@ -239,8 +239,8 @@ def faddeev(rows: Table[Any], zero: Any, one: Any) -> tuple[list[list[list[Any]]
         coefficients.append(c)
         now = [[x + c if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
         if k < m:
-            found.append(now)
-    return found, coefficients[::-1]
+            adjugates.append(now)
+    return adjugates, coefficients[::-1]
 
 
 def determinant_by_traces(rows: Table[Any], zero: Any, one: Any) -> Any:
@@ -352,6 +352,45 @@ def null_vectors(algebra: Algebra[S], reduced: Mapping[int, Sequence[S]], size: 
     return basis
 
 
+def null_space_of_polynomials(
+    algebra: Algebra[Any], rows: Table[Any], size: int, certain: Callable[[Any], bool] = bool, most: int | None = None
+) -> list[list[Any]]:
+    """A basis of the vectors of ``size`` components that every row annuls, without fractions: times their pivots.
+
+    A pivot is the first entry, column by column, that is ``certain`` not to vanish.  Raises Failure where there is
+    none, TooLargeError where an entry on the way has more than ``most`` terms.
+    """
+    work, pivots = [[algebra.reduce(x) for x in row] for row in rows], list[int]()
+    while held := [
+        (r, c) for c in range(size) for r in range(len(pivots), len(work)) if not algebra.vanishes(work[r][c])
+    ]:
+        at, place = len(pivots), next(((r, c) for r, c in held if certain(work[r][c])), None)
+        if place is None:
+            raise Failure("no pivot is known to differ from zero")
+        (r, column), top = place, work[place[0]]
+        work[at], work[r] = top, work[at]
+        for r, row in enumerate(work):
+            if r != at and not algebra.vanishes(row[column]):
+                if most is not None and max(map(len, (*row, *top))) > most:
+                    raise TooLargeError
+                products = (
+                    (algebra.times(top[column], x), algebra.times(row[column], y))
+                    for x, y in zip(row, top, strict=True)
+                )
+                work[r] = [algebra.reduce(a - b) for a, b in products]
+        pivots.append(column)
+    basis = []
+    for free in (k for k in range(size) if k not in pivots):
+        involved = {c: row for c, row in zip(pivots, work, strict=False) if not algebra.vanishes(row[free])}
+        vector = [algebra.zero] * size
+        for k in (free, *involved):
+            factors = (row[c] for c, row in involved.items() if c != k)
+            product = reduce(lambda a, b: algebra.reduce(algebra.times(a, b)), factors, algebra.one)
+            vector[k] = product if k == free else algebra.reduce(-algebra.times(product, involved[k][free]))
+        basis.append(vector)
+    return basis
+
+
 class PrimitiveRows(Generic[S]):
     """Sparse rows of polynomials in reduced echelon form, without fractions: entries have no common factor.
 
@@ -380,7 +419,7 @@ class PrimitiveRows(Generic[S]):
     def _without(self, row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
         common = pivot[k].gcd(row[k])
         a, b, zero = pivot[k] / common, row[k] / common, self.algebra.zero
-        found: dict[int, Any] = {}
+        remaining: dict[int, Any] = {}
         for j in {*row, *pivot}:
             if j == k:
                 continue
@@ -389,9 +428,9 @@ class PrimitiveRows(Generic[S]):
             if value != 0:
                 if len(value) > self._most:
                     raise NoClosedForm(self._too_long, limit=Limit.TERMS, remedy=self._remedy)
-                found[j] = value
-        if not found:
-            return found
-        shared = reduce(lambda x, y: x.gcd(y), found.values())
-        shared = shared * next(iter(found.values())).leading_coefficient()
-        return {j: value / shared for j, value in found.items()}
+                remaining[j] = value
+        if not remaining:
+            return remaining
+        shared = reduce(lambda x, y: x.gcd(y), remaining.values())
+        shared = shared * next(iter(remaining.values())).leading_coefficient()
+        return {j: value / shared for j, value in remaining.items()}

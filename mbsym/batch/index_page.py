@@ -32,7 +32,7 @@ def index_page(summary: Summary, name: str, language: Language) -> str:
     """The page; ``name`` is that of the summary beside it."""
     page = _Page(language.say)
     rows = "\n".join(map(page.row, summary.rows))
-    columns = ("description", "system", "outcome", "stability", "claims and self-checks", "files")
+    columns = ("description", "name", "outcome", "stability", "claims and self-checks", "files")
     return f"""<!DOCTYPE html>
 <html lang="{language.name}">
 <head>

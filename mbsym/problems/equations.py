@@ -9,7 +9,7 @@ them:  M q'' = f + J^T lambda,  J q'' + gamma = 0;  without multipliers  Y^T M Y
 
 where x runs over the prescribed quantities and Q_i are the generalised forces of loads without a force function.
 
-Other forms (``mbsym run --form routh,hamilton``; ``canonical.canonical``), of systems without constraints:
+Other forms (``mbsym run --form routh,hamilton``; ``canonical``), of systems without constraints:
 
     Routh:     R = L - beta.c' of the coordinates s, the momenta beta of the cyclic coordinates c being constants where
                no other force acts on c;  M_R s'' = f_R;  R = 1/2 s'.M_R s' + b.s' - W with the reduced potential W
@@ -60,7 +60,7 @@ class Equations(Shown):
 
     @property
     def in_speeds(self) -> bool:
-        """Whether they are in speeds of their own (``in_speeds.speeds``), not in generalised velocities."""
+        """Whether they are in speeds of their own (``in_speeds``), not in generalised velocities."""
         return False
 
     @property

@@ -1,4 +1,4 @@
-"""Problem 3 where velocities are variables of their own: speeds u with q' = Y(q) u + y0(q, t).
+"""Problems 3 and 7, and their self-check, in velocities of their own: speeds u with q' = Y(q) u + y0(q, t).
 
     M u' = f                                            Kane's equations (equally Boltzmann-Hamel)
     s' = g(s, u, t)                                     kinematic equations

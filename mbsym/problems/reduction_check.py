@@ -16,7 +16,7 @@ import random
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flint import arb
+from flint import arb, arb_mat, fmpq_mat
 
 from mbsym.algebra.base import Scalar
 from mbsym.algebra.evaluate import Carrier
@@ -48,10 +48,10 @@ def check_reduced_motion(
         carry = Carrier(ring, place.state.numbers, place.state.values)
         free = place.free_residuals()
         named = zip(about.speeds, own, strict=True)
-        found = [(Message("equation [[name]]", name=name), -carry(x.polynomial), free[name].a) for name, x in named]
+        compared = [(Message("equation [[name]]", name=name), -carry(x.polynomial), free[name].a) for name, x in named]
         satisfied = all(x.is_zero for x in residuals[: len(residuals) - len(about.speeds)])
         zero = place.state.numbers.zero
-        return found + [
+        return compared + [
             (Message("[[label]] on the motion", label=label), x, zero) for label, x in place.left_over if satisfied
         ]
 
@@ -130,9 +130,9 @@ class _Disturbed:
             parts[self.system.coordinates[i]][1] = -x
         rows = list(self._rows())
         unmoved = _eliminated(rows, moving, [row.acceleration.a for row in rows])[0]
-        given = {entry.coordinate for entry in self.system.motion}
+        with_motion = {entry.coordinate for entry in self.system.motion}
         for i, x in unmoved.items():
-            if self.system.coordinates[i] not in given:
+            if self.system.coordinates[i] not in with_motion:
                 key = acceleration_name(self.system.coordinates[i])
                 values[key] = values.get(key, zero) - x
         rows = list(self._rows())
@@ -232,16 +232,10 @@ def _size(x: Any) -> float:
 
 
 def _solved(matrix: Sequence[Sequence[Scalar]], values: Sequence[Scalar]) -> list[Scalar]:
-    """y with matrix y = values, by elimination with the largest pivots."""
-    work = [[*row, value] for row, value in zip(matrix, values, strict=True)]
-    size = len(work)
-    for c in range(size):
-        best = max(range(c, size), key=lambda k: _size(work[k][c]))
-        if _size(work[best][c]) == 0:
-            raise SingularPoint("the constraints do not determine the dependent quantities")
-        work[c], work[best] = work[best], work[c]
-        for k in range(size):
-            if k != c:
-                factor = work[k][c] / work[c][c]
-                work[k] = [x - factor * y for x, y in zip(work[k], work[c], strict=True)]
-    return [work[c][size] / work[c][c] for c in range(size)]
+    """y with matrix y = values.  Raises SingularPoint."""
+    size, balls = len(values), any(isinstance(x, arb) for row in (*matrix, values) for x in row)
+    kind: Any = arb_mat if balls else fmpq_mat
+    try:
+        return kind(size, size, [x for row in matrix for x in row]).solve(kind(size, 1, list(values))).entries()
+    except ZeroDivisionError:
+        raise SingularPoint("the constraints do not determine the dependent quantities") from None

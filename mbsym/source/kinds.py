@@ -14,24 +14,8 @@ from mbsym.expressions.parser import ascii_safe
 from mbsym.expressions.place import Span
 from mbsym.expressions.tree import ZERO, Expression
 from mbsym.model.system import INERTIAL, rational
-from mbsym.source import placed
+from mbsym.source import grammar, placed
 from mbsym.source.bodies import read_body_name
-from mbsym.source.grammar import (
-    BodyName,
-    Ends,
-    Equation,
-    Formula,
-    Key,
-    Kind,
-    Name,
-    Named,
-    Record,
-    Same,
-    Type,
-    Vector,
-    Way,
-    Word,
-)
 from mbsym.source.keys import ALIASES, UNSUPPORTED
 from mbsym.source.placed import Entry, Node, Scalar, Sequence
 from mbsym.source.reading import ZERO_VECTOR, Fields, Reading
@@ -54,7 +38,7 @@ class Section:
     """
 
     what: str
-    kinds: Mapping[str, Kind]
+    kinds: Mapping[str, grammar.Kind]
     example: str
     meant: Mapping[str, str]
     checks: Mapping[str, Callable[[Item, Any], bool]]
@@ -64,8 +48,8 @@ class Section:
     def read(self, node: Node | None, bodies: list[str], reading: Reading) -> tuple[Any, ...]:
         """Every item, in its order."""
         nodes = () if node is None else reading.items(node, f"'{self.what}s'")
-        found = (self._item(one, bodies, reading) for one in nodes)
-        return tuple(one for one in found if one is not None)
+        values = (self._item(item_node, bodies, reading) for item_node in nodes)
+        return tuple(value for value in values if value is not None)
 
     def _item(self, node: Node, bodies: list[str], reading: Reading) -> Any | None:
         if not isinstance(node, placed.Mapping) or len(node.entries) != 1:
@@ -111,7 +95,7 @@ class Item:
     """
 
     name: str
-    kind: Kind
+    kind: grammar.Kind
     span: Span
     value: Node
     bodies: list[str]
@@ -122,23 +106,23 @@ class Item:
 
     def read(self, hint: str | None) -> Any | None:
         """What is made of it; None where there is nothing to make it of."""
-        if not isinstance(self.kind.type, Record):
+        if not isinstance(self.kind.type, grammar.Record):
             errors = self.reading.errors
             self._keep("", self._value(self.kind.type, self.value, f"'{self.name}'"), errors)
             return self._made(self.kind.ways[0], {"": self.kind.type})
         self.fields = self.reading.fields(self.value, f"'{self.name}'", self.kind.keys, hint)
         way = self._way(self.fields)
         for key in self.kind.keys:
-            if key in way.keys if way is not None else all(key in one.keys for one in self.kind.ways):
+            if key in way.keys if way is not None else all(key in other.keys for other in self.kind.ways):
                 self._read_key(self.fields, key, self.kind.keys[key])
         return None if way is None else self._made(way, {key: self.kind.keys[key].type for key in way.keys})
 
-    def _made(self, way: Way, types: Mapping[str, Type]) -> Any | None:
+    def _made(self, way: grammar.Way, types: Mapping[str, grammar.Type]) -> Any | None:
         """What is made of the values: of two ends or sides, two of its fields are."""
         values: list[Any] = []
         for key, of in types.items():
             value = self.values[key]
-            if isinstance(of, Ends | Equation):
+            if isinstance(of, grammar.Ends | grammar.Equation):
                 if value is None:
                     return None
                 values += value
@@ -154,29 +138,29 @@ class Item:
     def value_error(self, code: str, message: str, key: str, hint: str | None = None) -> None:
         """A complaint about the value of a key that is there."""
         assert self.fields is not None
-        self.reading.error(code, message, self.fields.found[key].value.span, hint)
+        self.reading.error(code, message, self.fields.entries[key].value.span, hint)
 
     def warning(self, code: str, message: str, key: str, hint: str | None = None) -> None:
         assert self.fields is not None
         self.reading.complaints.warning(code, message, self.fields.key_span(key), hint)
 
-    def _way(self, fields: Fields) -> Way | None:
+    def _way(self, fields: Fields) -> grammar.Way | None:
         """The last of the ways whose first key is there; what belongs to others does not go with it."""
         ways = self.kind.ways
         if len(ways) == 1:
             return ways[0]
-        found = [way for way in ways if way.keys[0] in fields.found]
-        if not found:
+        matching = [way for way in ways if way.keys[0] in fields.entries]
+        if not matching:
             names = " nor ".join(f"'{way.keys[0]}'" for way in ways)
             if fields.sound:  # else there was no mapping
                 self.reading.error(
                     "missing-key", "[[what]] has neither [[names]]", fields.span, what=worded(fields.what), names=names
                 )
             return None
-        fields.exclude(found[-1].keys[0], (key for key in self.kind.keys if key not in found[-1].keys))
-        return found[-1]
+        fields.exclude(matching[-1].keys[0], (key for key in self.kind.keys if key not in matching[-1].keys))
+        return matching[-1]
 
-    def _read_key(self, fields: Fields, name: str, key: Key) -> None:
+    def _read_key(self, fields: Fields, name: str, key: grammar.Key) -> None:
         node = fields.require(name) if key.required else fields.get(name)
         if node is not None:
             errors = self.reading.errors
@@ -184,35 +168,35 @@ class Item:
         elif key.required:
             self.values[name] = _nothing(key.type)
         else:
-            self.values[name] = self.values[key.default.key] if isinstance(key.default, Same) else key.default
+            self.values[name] = self.values[key.default.key] if isinstance(key.default, grammar.Same) else key.default
 
     def _keep(self, name: str, value: Any, errors: int) -> None:
         self.values[name] = value
         if self.reading.errors == errors:
             self.sound.add(name)
 
-    def _value(self, wanted: Type, node: Node, what: str) -> Any:
+    def _value(self, value_type: grammar.Type, node: Node, what: str) -> Any:
         """The value of a node; where something is wrong with it, what can be gone on with, or None."""
-        match wanted:
-            case Formula(allowed):
+        match value_type:
+            case grammar.Formula(allowed):
                 return self.reading.expression(node, allowed)
-            case Vector(allowed, direction):
+            case grammar.Vector(allowed, direction):
                 return self._vector(node, allowed, direction)
-            case BodyName():
-                return self._body(node, wanted, what)
-            case Name(of):
+            case grammar.BodyName():
+                return self._body(node, value_type, what)
+            case grammar.Name(of):
                 scalar = self.reading.scalar(node, what)
                 if scalar is not None:
                     self.reading.scope.check_name(scalar.text, scalar.span, Allowed(what, (of,)))
                 return "" if scalar is None else scalar.text
-            case Word(choices):
+            case grammar.Word(choices):
                 known = {str(choice): choice for choice in choices}
                 return known.get(self.reading.word(node, what, known) or "", choices[0])
-            case Ends(record):
+            case grammar.Ends(record):
                 return self._ends(node, record, what)
-            case Equation():
-                return self._equation(node, wanted)
-            case Named(Formula(allowed), of):
+            case grammar.Equation():
+                return self._equation(node, value_type)
+            case grammar.Named(grammar.Formula(allowed), of):
                 return self._named(node, allowed, of)
         raise TypeError(f"{what} has no reader")
 
@@ -223,7 +207,7 @@ class Item:
             self.reading.error("bad-direction", "an axis has a direction: this one is zero", node.span)
         return vector
 
-    def _body(self, node: Node, body_name: BodyName, what: str) -> str:
+    def _body(self, node: Node, body_name: grammar.BodyName, what: str) -> str:
         """A body by its name; ``ground`` is the inertial frame where that may be and no body is called so."""
         written = node.text.strip() if isinstance(node, Scalar) else ""
         if body_name.ground and written == _GROUND and _GROUND not in self.bodies:
@@ -232,7 +216,7 @@ class Item:
             self.reading.error("unknown-body", "a force on the inertial frame 0 does nothing", node.span)
         return read_body_name(node, what, self.bodies, self.reading) or INERTIAL
 
-    def _ends(self, node: Node, record: Record, what: str) -> tuple[Any, Any] | None:
+    def _ends(self, node: Node, record: grammar.Record, what: str) -> tuple[Any, Any] | None:
         """The two ends in a list of two."""
         items = self.reading.items(node, what)
         if len(items) == 2:
@@ -244,7 +228,7 @@ class Item:
             self.reading.error("wrong-shape", message, node.span, f"[{hint}]")
         return None
 
-    def _end(self, node: Node, record: Record) -> Any:
+    def _end(self, node: Node, record: grammar.Record) -> Any:
         assert record.made is not None
         article = "an" if record.called[0] in "aeiou" else "a"
         fields = self.reading.fields(node, f"{article} {record.called}", record.keys)
@@ -254,7 +238,7 @@ class Item:
             values.append(_nothing(key.type) if inner is None else self._value(key.type, inner, f"'{name}'"))
         return record.made(*values)
 
-    def _equation(self, node: Node, equation: Equation) -> tuple[Expression, Expression] | None:
+    def _equation(self, node: Node, equation: grammar.Equation) -> tuple[Expression, Expression] | None:
         """``left = right``; without an equals sign the expression is meant to be zero, and that is complained about."""
         scalar = self.reading.scalar(node, f"'{self.name}'")
         if scalar is None:
@@ -276,7 +260,7 @@ class Item:
 
     def _named(self, node: Node, allowed: Allowed, of: str) -> tuple[tuple[str, Expression], ...]:
         """Pairs of a name and an expression."""
-        found = []
+        pairs = []
         entries = list(self.reading.entries(node, f"'{self.name}'"))
         known = self.reading.scope.of_kind(of)
         if spelled := _spelled_out(entries, known, of):
@@ -291,8 +275,8 @@ class Item:
             sound = self.reading.scope.check_name(entry.key.text, entry.key.span, key)
             value = self.reading.expression(entry.value, allowed)
             if sound:
-                found.append((entry.key.text, value))
-        return tuple(found)
+                pairs.append((entry.key.text, value))
+        return tuple(pairs)
 
 
 def _spelled_out(entries: list[Entry], known: Any, of: str) -> str:
@@ -303,15 +287,15 @@ def _spelled_out(entries: list[Entry], known: Any, of: str) -> str:
     return value.text if isinstance(value, Scalar) and value.text in known else ""
 
 
-def _nothing(wanted: Type) -> Any:
+def _nothing(value_type: grammar.Type) -> Any:
     """What stands for a value that is not there."""
-    match wanted:
-        case Formula():
+    match value_type:
+        case grammar.Formula():
             return ZERO
-        case Vector():
+        case grammar.Vector():
             return ZERO_VECTOR
-        case BodyName():
+        case grammar.BodyName():
             return INERTIAL
-        case Name():
+        case grammar.Name():
             return ""
     return None

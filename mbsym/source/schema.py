@@ -9,32 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from mbsym.source.grammar import (
-    About,
-    BodyName,
-    Either,
-    Ends,
-    Equation,
-    Figure,
-    Flag,
-    Formula,
-    Index,
-    Integer,
-    Key,
-    Kind,
-    Kinds,
-    Listed,
-    Name,
-    Named,
-    Nothing,
-    Record,
-    String,
-    Text,
-    Type,
-    Unit,
-    Vector,
-    Word,
-)
+from mbsym.source import grammar
 from mbsym.source.keys import ALIASES, DESCRIPTION, VERSION, spellings
 
 Schema = dict[str, Any]
@@ -48,15 +23,15 @@ _EXPRESSION: Schema = {
 }
 
 #: Types that have no parts.
-_PLAIN: dict[type[Type], Schema] = {
-    Text: {"type": ["string", "number", "boolean"]},
-    BodyName: {"type": ["string", "number", "boolean"]},
-    Unit: {"type": ["string", "integer"]},
-    Name: {"type": "string", "pattern": _NAME},
-    Index: {"type": ["string", "integer"]},
-    About: {"type": ["string", "integer"]},
-    Equation: {"type": "string"},
-    Nothing: {"type": "null"},
+_PLAIN: dict[type[grammar.Type], Schema] = {
+    grammar.Text: {"type": ["string", "number", "boolean"]},
+    grammar.BodyName: {"type": ["string", "number", "boolean"]},
+    grammar.Unit: {"type": ["string", "integer"]},
+    grammar.Name: {"type": "string", "pattern": _NAME},
+    grammar.Index: {"type": ["string", "integer"]},
+    grammar.About: {"type": ["string", "integer"]},
+    grammar.Equation: {"type": "string"},
+    grammar.Nothing: {"type": "null"},
 }
 
 
@@ -72,39 +47,39 @@ def json_schema() -> Schema:
     }
 
 
-def _schema(value: Type, definitions: Schema) -> Schema:
+def _schema(value: grammar.Type, definitions: Schema) -> Schema:
     """The schema of a type; those that have a name there are put into ``definitions``."""
     match value:
-        case Formula() | Figure():
+        case grammar.Formula() | grammar.Figure():
             return _reference("expression")
-        case Vector():
+        case grammar.Vector():
             return _defined("vector", lambda: _list(_reference("expression"), 3, 3), definitions)
-        case BodyName(new=False):
-            return _defined("body name", lambda: _PLAIN[BodyName], definitions)
-        case Word(choices):
+        case grammar.BodyName(new=False):
+            return _defined("body name", lambda: _PLAIN[grammar.BodyName], definitions)
+        case grammar.Word(choices):
             return {"enum": _choices(choices)}
-        case Integer(least, most):
+        case grammar.Integer(least, most):
             number = {"type": "integer", "minimum": least, **({} if most is None else {"maximum": most})}
             return {"anyOf": [number, {"type": "string", "pattern": f"^{'-?' if least < 0 else ''}[0-9]{{1,4}}$"}]}
-        case String(longest):
+        case grammar.String(longest):
             return {"type": "string", **({} if longest is None else {"maxLength": longest})}
-        case Flag(false):
+        case grammar.Flag(false):
             return {"enum": [True, False, "true", "false"]} if false else {"const": True}
-        case Listed(item, least, most, unique):
+        case grammar.Listed(item, least, most, unique):
             return _list(_schema(item, definitions), least, most) | ({"uniqueItems": True} if unique else {})
-        case Named(item, one=one):
+        case grammar.Named(item, one=one):
             names = {"type": "object", "patternProperties": {_NAME: _schema(item, definitions)}}
             return {**names, "additionalProperties": False, **(_ONE if one else {})}
-        case Either(types, called):
-            schema: Schema = {"anyOf": [_schema(one, definitions) for one in types]}
+        case grammar.Either(types, called):
+            schema: Schema = {"anyOf": [_schema(alternative, definitions) for alternative in types]}
             return _defined(called, lambda: schema, definitions) if called else schema
-        case Ends(record):
+        case grammar.Ends(record):
             return _list(_schema(record, definitions), 2, 2)
-        case Record():
+        case grammar.Record():
             if not value.called:
                 return _record(value, definitions)
             return _defined(value.called, lambda: _record(value, definitions), definitions)
-        case Kinds(kinds, called):
+        case grammar.Kinds(kinds, called):
             return _defined(called, lambda: _kinds(kinds, called, definitions), definitions)
     return _PLAIN[type(value)]
 
@@ -131,8 +106,8 @@ def _list(item: Schema, least: int, most: int | None) -> Schema:
 
 def _choices(choices: tuple[str | int, ...]) -> list[str | int]:
     """Words in all their spellings; numbers may be quoted."""
-    found = [other for choice in choices for other in (choice, *spellings(str(choice)))]
-    return [*found, *(str(choice) for choice in choices if isinstance(choice, int))]
+    words = [other for choice in choices for other in (choice, *spellings(str(choice)))]
+    return [*words, *(str(choice) for choice in choices if isinstance(choice, int))]
 
 
 def _spellings(keys: Mapping[str, Schema]) -> Schema:
@@ -140,16 +115,16 @@ def _spellings(keys: Mapping[str, Schema]) -> Schema:
     return {**keys, **{other: keys[key] for other, key in ALIASES.items() if key in keys}}
 
 
-def _key(key: Key, definitions: Schema) -> Schema:
+def _key(key: grammar.Key, definitions: Schema) -> Schema:
     return {**_schema(key.type, definitions), "description": key.meaning}
 
 
-def _record(record: Record, definitions: Schema) -> Schema:
+def _record(record: grammar.Record, definitions: Schema) -> Schema:
     """A mapping with a fixed set of keys."""
     properties = {name: _key(key, definitions) for name, key in record.keys.items()}
     schema: Schema = {"type": "object", "properties": _spellings(properties), "additionalProperties": False}
     schema |= _required([name for name, key in record.keys.items() if key.required])
-    return schema | ({"oneOf": [{"required": [one]} for one in record.one_of]} if record.one_of else {})
+    return schema | ({"oneOf": [{"required": [name]} for name in record.one_of]} if record.one_of else {})
 
 
 def _required(names: list[str], any_of: tuple[str, ...] = ()) -> Schema:
@@ -164,7 +139,7 @@ def _required(names: list[str], any_of: tuple[str, ...] = ()) -> Schema:
     return {**({"required": plain} if plain else {}), **({"allOf": either} if either else {})}
 
 
-def _kinds(kinds: Mapping[str, Kind], called: str, definitions: Schema) -> Schema:
+def _kinds(kinds: Mapping[str, grammar.Kind], called: str, definitions: Schema) -> Schema:
     """One object with a property for each kind, not a choice of objects: a validator then points at the wrong key."""
     properties = {name: _kind(kind, definitions) for name, kind in kinds.items()}
     return {
@@ -176,7 +151,7 @@ def _kinds(kinds: Mapping[str, Kind], called: str, definitions: Schema) -> Schem
     }
 
 
-def _kind(kind: Kind, definitions: Schema) -> Schema:
+def _kind(kind: grammar.Kind, definitions: Schema) -> Schema:
     """Of a kind that is given in several ways the first key of a way says which others go with it."""
     schema = _key(kind, definitions)
     if len(kind.ways) == 1:

@@ -27,10 +27,10 @@ NAMES = {"sin", "cos", "sqrt", "exp", "log", "tanh", "det", "sum", "const", "dot
          "SciPy", "heyoka", "lsoda", "bdf", "phi", "hat", "text", "FILE", "run",
          "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz", "rad"}  # fmt: skip
 #: Not of words: quoted lines, codes, commands to be pasted, options, files, assignments.
-NO_WORDS = r"^ *\d* \|.*|(?:error|warning)\[[a-z-]+\]|mbsym [[a-z].*|--[a-z-]+|[\w./*-]+\.\w{1,7}\b|\b\w+/[\w./-]*"
+NO_WORDS = r"^ *\d* \|.*|(?:error|warning)\[[a-z-]+\]|mbsym [a-z\[].*|--[a-z-]+|[\w./*-]+\.\w{1,7}\b|\b\w+/[\w./-]*"
 #: They print a file, or codes and labels of one, or are about no description.
 OF_FILES = ("diff", "convert", "schema", "explain", "examples", "new", "lsp", "edit", "watch")
-FOR_PROGRAMS = {"--json", "--output-format", "--help", "-h", "--python", "--wolfram", "--version"}
+FOR_PROGRAMS = {"--json", "--output-format", "--help", "-h", "--latex", "--python", "--wolfram", "--version"}
 
 COMMANDS = [
     "check in",
@@ -171,6 +171,15 @@ DOCUMENTED = [
 @pytest.mark.parametrize("line", DOCUMENTED)
 def test_a_documented_command_speaks_the_language(line: str, folder: Path) -> None:
     assert not untranslated(shlex.split(line), folder)
+
+
+def test_the_page_of_a_batch_speaks_the_language(folder: Path) -> None:
+    CliRunner().invoke(main, ["batch", "in", "--format", "json"])
+    page = (folder / "build" / "index.html").read_text(encoding="utf-8")
+    body = re.sub(r"<[^>]*>", "\n", page.partition("</head>")[2])
+    assert body.count("⟦") > 15
+    assert not outside(body, "mbsym batch key mas mass " + (folder / "in" / "good.yaml").read_text(encoding="utf-8"))
+    assert '<html lang="ru">' in page
 
 
 def test_complaints_about_wrong_descriptions_speak_the_language(marks: None) -> None:

@@ -129,7 +129,7 @@ FIGURES = ("histories", "phase-planes", "drift", "motion", "mass-centres")
 
 
 def test_help_names_every_method() -> None:
-    text = " ".join(CliRunner().invoke(main, ["simulate", "--help"]).output.split()).partition("Options:")[0]
+    text = " ".join(CliRunner().invoke(main, ["explain", "simulate"]).output.split()).partition("Options:")[0]
     assert not [name for name in METHODS if not any(f" {name}{sign}" in text for sign in " ,;")]
 
 
@@ -504,7 +504,7 @@ def test_a_constant_too_large_for_float32_is_said_to_be_that(tmp_path: Path) -> 
     path = described(tmp_path, NEPTUNE.replace("m: 1,", "m: 1e26,"))
     done = mbsym(path, "--time", "1e8", "--arithmetic", "float32", "-f", "csv", "-o", tmp_path / "out")
     assert done.exit_code != 0
-    assert "beyond the range of single precision (float32)" in done.stderr
+    assert "beyond the range of float32" in done.stderr
 
 
 def test_exponential_growth_is_not_said_to_end_in_finite_time(tmp_path: Path) -> None:

@@ -16,7 +16,10 @@ from mbsym.expressions.message import GAP
 
 ROOT = Path(mbsym.__file__).parent
 #: The layers whose refusals can stand in a report, or on a page.
-LAYERS = ("algebra", "analysis", "formulas", "mechanics", "model", "picture", "problems", "report/viewer")
+LAYERS = (
+    *("algebra", "analysis", "batch", "formulas", "maps", "mechanics", "model", "numerics", "picture", "problems"),
+    *("report", "simulation", "studies", "sweeps"),
+)
 #: What is said before a reason, by the function that says it, and which argument that is.
 BEFORE = {"refused": 0, "failed": 1}
 #: Where among the arguments of a complaint about an option the message stands; a hint follows.

@@ -17,20 +17,8 @@ from typing import Any
 from flint import fmpq
 
 from mbsym.algebra.failures import Defect, Limit, TooLargeError
+from mbsym.algebra.plane import numbers
 from mbsym.algebra.plane.fields import Extension, Over, OverField
-from mbsym.algebra.plane.numbers import (
-    Integer,
-    Number,
-    Rational,
-    Root,
-    between_simply,
-    bound,
-    high,
-    low,
-    number,
-    primitive,
-    roots_between,
-)
 from mbsym.algebra.plane.projection import LEADING, Abscissa, Box, Curve
 
 #: In place of the number of a curve: the lower and the upper edge of the box.
@@ -47,19 +35,19 @@ class Section:
     """A branch of a curve over a strip, or an edge of the box; ``y`` is where it is over the strip's sample."""
 
     curve: int
-    y: Root | Rational
+    y: numbers.Root | numbers.Rational
 
 
 @dataclass(frozen=True)
 class Column:
     """What lies over the strip between two abscissas: sections from below to above, edges included."""
 
-    x: Rational
+    x: numbers.Rational
     sections: tuple[Section, ...]
 
-    def middle(self, cell: int) -> Rational:
+    def middle(self, cell: int) -> numbers.Rational:
         """A simple rational number between section ``cell`` and the one above it."""
-        return between_simply(self.sections[cell].y, self.sections[cell + 1].y)
+        return numbers.between_simply(self.sections[cell].y, self.sections[cell + 1].y)
 
 
 @dataclass(frozen=True)
@@ -85,16 +73,16 @@ class Fibre:
     right: tuple[int, ...]
 
 
-def column(curves: Sequence[Curve], box: Box, x: Rational) -> Column:
+def column(curves: Sequence[Curve], box: Box, x: numbers.Rational) -> Column:
     """The branches over a rational x that is not critical."""
-    found: list[tuple[Root, int]] = []
+    branches: list[tuple[numbers.Root, int]] = []
     for k, curve in enumerate(curves):
         p = curve.over(x)
         if p.degree() > 0:
-            found += [(root, k) for root in roots_between(primitive(p), box.y0, box.y1)]
+            branches += [(root, k) for root in numbers.roots_between(numbers.primitive(p), box.y0, box.y1)]
     # Different numbers: curves meet over critical abscissas only.
-    found.sort(key=lambda pair: _Ordered(pair[0]))
-    sections = [Section(BOTTOM, box.y0), *(Section(k, root) for root, k in found), Section(TOP, box.y1)]
+    branches.sort(key=lambda pair: _Ordered(pair[0]))
+    sections = [Section(BOTTOM, box.y0), *(Section(k, root) for root, k in branches), Section(TOP, box.y1)]
     return Column(x, tuple(sections))
 
 
@@ -123,26 +111,26 @@ def _order(a: Ordinate, b: Ordinate) -> int:
     if a is b:
         return 0
     for _ in range(MOST_HALVINGS):
-        if not (high(a) >= low(b) and high(b) >= low(a)):
+        if not (numbers.high(a) >= numbers.low(b) and numbers.high(b) >= numbers.low(a)):
             break
         for x in (a, b):
             if not isinstance(x, fmpq):
                 x.halve()
     else:
         raise TooLargeError("points of curves lie too close together", limit=Limit.DIGITS)
-    return -1 if high(a) < low(b) else 1
+    return -1 if numbers.high(a) < numbers.low(b) else 1
 
 
-def _over_rational(curves: Sequence[Curve], box: Box, x: Rational) -> list[FibrePoint]:
+def _over_rational(curves: Sequence[Curve], box: Box, x: numbers.Rational) -> list[FibrePoint]:
     """All polynomials f(x, .) are factored over the rationals."""
-    through: dict[str, tuple[Integer, dict[int, int]]] = {}
+    through: dict[str, tuple[numbers.Integer, dict[int, int]]] = {}
     for k, curve in enumerate(curves):
-        for factor, power in primitive(curve.over(x)).factor()[1]:
+        for factor, power in numbers.primitive(curve.over(x)).factor()[1]:
             if factor.degree() > 0:
                 through.setdefault(str(factor), (factor, {}))[1][k] = int(power)
     fibre_points = []
     for factor, powers in through.values():
-        roots = [number(root) for root in roots_between(factor, box.y0, box.y1)]
+        roots = [numbers.number(root) for root in numbers.roots_between(factor, box.y0, box.y1)]
         roots += [y for y in (box.y0, box.y1) if factor(y) == 0]
         fibre_points += [FibrePoint(y, tuple(sorted(powers.items()))) for y in roots]
     return fibre_points
@@ -187,11 +175,11 @@ def _roots_of(field: Extension, k: int, whole: OverField, order: int) -> list[_N
     """
     if order == 0 or (order >= LEADING and field.coprime(whole, field.derivative(whole))):
         return [_Node(root, {k: 1}) for root in field.roots(field.monic(whole))]
-    found = field.double_roots(whole) if order < LEADING else None
-    if found is None:
+    splitting = field.double_roots(whole) if order < LEADING else None
+    if splitting is None:
         pieces = _with_multiplicity(field, whole)
         return [_Node(root, {k: m}) for piece, m in pieces for root in field.roots(piece)]
-    doubles, simple, count = found
+    doubles, simple, count = splitting
     singular = False if order == count else True if count == 1 else None
     return [*(_Node(root, {k: 2}, singular) for root in doubles), *(_Node(root, {k: 1}) for root in simple)]
 
@@ -203,8 +191,8 @@ def _meet(field: Extension, at: Abscissa, wholes: Mapping[int, OverField], nodes
     a, b = wholes[first], wholes[second]
     if min(orders.values()) >= LEADING and field.coprime(a, b):
         return  # both have a root at infinity
-    found = field.common_roots(a, b) if orders[first] == 0 else None
-    common = field.roots(field.squarefree(field.gcd(a, b))) if found is None else found[0]
+    common_part = field.common_roots(a, b) if orders[first] == 0 else None
+    common = field.roots(field.squarefree(field.gcd(a, b))) if common_part is None else common_part[0]
     for root in common:
         _join(nodes, root, j, k)
 
@@ -212,7 +200,7 @@ def _meet(field: Extension, at: Abscissa, wholes: Mapping[int, OverField], nodes
 def _join(nodes: list[_Node], common: Over, j: int, k: int) -> None:
     """Makes one of the nodes of two curves at a common root."""
     for _ in range(MOST_HALVINGS):
-        hits = [[node for node in nodes if one in node.through and _touch(node.root, common)] for one in (j, k)]
+        hits = [[node for node in nodes if curve in node.through and _touch(node.root, common)] for curve in (j, k)]
         if not all(hits):
             raise Defect("curves that meet have no root in common")
         if len(hits[0]) == len(hits[1]) == 1:
@@ -257,9 +245,9 @@ def connected(
     columns: tuple[Column | None, Column | None],
 ) -> Fibre:
     """The fibre with the sections of the columns to its left and right that end in its points."""
-    separators = [between_simply(a.y, b.y) for a, b in pairwise(points)]
+    separators = [numbers.between_simply(a.y, b.y) for a, b in pairwise(points)]
     along = [(k, c, curve.along(c)) for k, curve in enumerate(curves) for c in separators]
-    lines = [(k, c, primitive(p)) for k, c, p in along if p.degree() > 0]
+    lines = [(k, c, numbers.primitive(p)) for k, c, p in along if p.degree() > 0]
     sides = []
     for column_, sense in zip(columns, (-1, 1), strict=True):
         sides.append(() if column_ is None else _attached(curves, box, at, separators, lines, column_, sense))
@@ -270,8 +258,8 @@ def _attached(
     curves: Sequence[Curve],
     box: Box,
     at: Abscissa,
-    separators: Sequence[Rational],
-    lines: Sequence[tuple[int, Rational, Integer]],
+    separators: Sequence[numbers.Rational],
+    lines: Sequence[tuple[int, numbers.Rational, numbers.Integer]],
     beside: Column,
     sense: int,
 ) -> tuple[int, ...]:
@@ -283,7 +271,7 @@ def _attached(
         p = curve.over(near)
         if p.degree() < 1:
             continue
-        q = primitive(p)
+        q = numbers.primitive(p)
         count = 0
         for j, (a, b) in enumerate(pairwise([box.y0, *separators])):
             count += _count(q, a, b)
@@ -293,18 +281,20 @@ def _attached(
     return (0, *below, len(beside.sections))
 
 
-def _count(p: Integer, a: Rational, b: Rational) -> int:
+def _count(p: numbers.Integer, a: numbers.Rational, b: numbers.Rational) -> int:
     """Roots of a square-free polynomial in (a, b)."""
-    most: int = bound(p, a, b)
-    return most if most < 2 else len(roots_between(p, a, b))
+    most: int = numbers.bound(p, a, b)
+    return most if most < 2 else len(numbers.roots_between(p, a, b))
 
 
-def _near(alpha: Number, sample: Rational, sense: int, lines: Sequence[Integer]) -> Rational:
+def _near(
+    alpha: numbers.Number, sample: numbers.Rational, sense: int, lines: Sequence[numbers.Integer]
+) -> numbers.Rational:
     """A rational x between alpha and the sample with no zero of any polynomial between alpha and x, ends included."""
     if isinstance(alpha, fmpq):
         near = sample
         for p in lines:
-            while p(near) == 0 or bound(p, min(alpha, near), max(alpha, near)):
+            while p(near) == 0 or numbers.bound(p, min(alpha, near), max(alpha, near)):
                 near = (alpha + near) / 2
         return near
     while alpha.low <= sample <= alpha.high:
@@ -313,7 +303,7 @@ def _near(alpha: Number, sample: Rational, sense: int, lines: Sequence[Integer])
     for p in lines:
         while True:
             a, b = (near, alpha.high) if sense < 0 else (alpha.low, near)
-            if p(a) != 0 and p(b) != 0 and not bound(p, a, b):
+            if p(a) != 0 and p(b) != 0 and not numbers.bound(p, a, b):
                 break
             alpha.halve()
             edge = alpha.low if sense < 0 else alpha.high

@@ -21,16 +21,7 @@ from flint import fmpq, fmpq_poly
 
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import Limit, TooLargeError
-from mbsym.algebra.plane.numbers import (
-    Integer,
-    Number,
-    Rational,
-    Univariate,
-    ascending,
-    number,
-    primitive,
-    roots_between,
-)
+from mbsym.algebra.plane import numbers
 from mbsym.algebra.terms import coefficients_in, univariate
 
 Polynomial = Any  # a flint.fmpq_mpoly in two generators
@@ -40,10 +31,10 @@ Polynomial = Any  # a flint.fmpq_mpoly in two generators
 class Box:
     """x0 <= x <= x1, y0 <= y <= y1.  Raises ValueError where it is empty."""
 
-    x0: Rational
-    x1: Rational
-    y0: Rational
-    y1: Rational
+    x0: numbers.Rational
+    x1: numbers.Rational
+    y0: numbers.Rational
+    y1: numbers.Rational
 
     def __post_init__(self) -> None:
         for name in ("x0", "x1", "y0", "y1"):
@@ -51,11 +42,11 @@ class Box:
         if not (self.x0 < self.x1 and self.y0 < self.y1):
             raise ValueError("an empty box")
 
-    def __contains__(self, point: tuple[Rational, Rational]) -> bool:
+    def __contains__(self, point: tuple[numbers.Rational, numbers.Rational]) -> bool:
         return bool(self.x0 <= point[0] <= self.x1 and self.y0 <= point[1] <= self.y1)
 
     @property
-    def area(self) -> Rational:
+    def area(self) -> numbers.Rational:
         return (self.x1 - self.x0) * (self.y1 - self.y0)
 
 
@@ -83,7 +74,7 @@ class Curve:
     of: tuple[int, ...]
 
     @cached_property
-    def in_y(self) -> tuple[Univariate, ...]:
+    def in_y(self) -> tuple[numbers.Univariate, ...]:
         """The coefficients of 1, y, y^2, ... as polynomials in x."""
         return coefficients(self.polynomial, 1)
 
@@ -96,11 +87,11 @@ class Curve:
     def degree(self) -> int:
         return len(self.in_y) - 1
 
-    def over(self, x: Rational) -> Univariate:
+    def over(self, x: numbers.Rational) -> numbers.Univariate:
         """f(x, .)"""
         return fmpq_poly([c(x) for c in self.in_y])
 
-    def along(self, y: Rational) -> Univariate:
+    def along(self, y: numbers.Rational) -> numbers.Univariate:
         """f(., y)"""
         total = fmpq_poly([0])
         for c in reversed(self.in_y):
@@ -112,7 +103,7 @@ class Curve:
 class Vertical:
     """An irreducible polynomial in x alone."""
 
-    polynomial: Integer
+    polynomial: numbers.Integer
     of: tuple[int, ...]
 
 
@@ -129,7 +120,7 @@ class Abscissa:
     factors that vanish on the whole line.
     """
 
-    x: Number
+    x: numbers.Number
     degenerate: Mapping[int, int]
     meeting: Mapping[frozenset[int], int]
     vertical: tuple[int, ...]
@@ -139,27 +130,27 @@ class Abscissa:
         return isinstance(self.x, fmpq)
 
 
-def coefficients(p: Polynomial, generator: int) -> tuple[Univariate, ...]:
+def coefficients(p: Polynomial, generator: int) -> tuple[numbers.Univariate, ...]:
     """Of 1, g, g^2, ... for a polynomial in two generators, as polynomials in the other one."""
     return tuple(univariate(c, 1 - generator) for c in coefficients_in(p, generator))
 
 
 def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Vertical, ...]]:
     """The different irreducible factors of all polynomials.  Raises ValueError for a polynomial that is zero."""
-    found: dict[str, tuple[Polynomial, list[int]]] = {}
+    irreducible: dict[str, tuple[Polynomial, list[int]]] = {}
     for at, p in enumerate(factors):
         if p == 0:
             raise ValueError("a polynomial that is identically zero bounds nothing")
         for factor, _ in irreducible_factors(p)[1]:
             if not factor.is_constant():
-                _, of = found.setdefault(str(factor), (factor, []))
+                _, of = irreducible.setdefault(str(factor), (factor, []))
                 of.append(at)
     curves, verticals = [], []
-    for factor, of in found.values():
+    for factor, of in irreducible.values():
         if factor.degrees()[1]:
             curves.append(Curve(factor, tuple(of)))
         else:
-            verticals.append(Vertical(primitive(coefficients(factor, 1)[0]), tuple(of)))
+            verticals.append(Vertical(numbers.primitive(coefficients(factor, 1)[0]), tuple(of)))
     return tuple(curves), tuple(verticals)
 
 
@@ -189,10 +180,12 @@ def abscissas(
         progress("projection", len(curves) + at, whole)
         table.add(_in_x(curves[j].polynomial.resultant(curves[k].polynomial, 1)), meeting=(j, k))
     progress("projection", whole, whole)
-    found = table.abscissas()
-    if len(found) > budget.abscissas:
-        raise TooLargeError("[[count]] abscissas at which the picture may change", count=len(found), limit=Limit.WORK)
-    return found
+    critical = table.abscissas()
+    if len(critical) > budget.abscissas:
+        raise TooLargeError(
+            "[[count]] abscissas at which the picture may change", count=len(critical), limit=Limit.WORK
+        )
+    return critical
 
 
 def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
@@ -212,7 +205,7 @@ def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
         )
 
 
-def _in_x(p: Polynomial) -> Univariate:
+def _in_x(p: Polynomial) -> numbers.Univariate:
     return coefficients(p, 1)[0] if p != 0 else fmpq_poly([0])
 
 
@@ -221,18 +214,18 @@ class _Table:
 
     def __init__(self, box: Box) -> None:
         self.box = box
-        self.rows: dict[str, tuple[Integer, dict[int, int], dict[frozenset[int], int], set[int]]] = {}
+        self.rows: dict[str, tuple[numbers.Integer, dict[int, int], dict[frozenset[int], int], set[int]]] = {}
 
     def add(
         self,
-        p: Univariate,
+        p: numbers.Univariate,
         degenerate: int | None = None,
         meeting: tuple[int, int] | None = None,
         vertical: Sequence[int] = (),
         order: int = 1,
     ) -> None:
         """The irreducible factors of p, which is not zero; an exponent counts ``order`` times."""
-        for factor, exponent in primitive(p).factor()[1]:
+        for factor, exponent in numbers.primitive(p).factor()[1]:
             if factor.degree() < 1:
                 continue
             row = self.rows.setdefault(str(factor), (factor, {}, {}, set()))
@@ -245,7 +238,7 @@ class _Table:
     def abscissas(self) -> list[Abscissa]:
         """The roots in the box, and its edges."""
         box = self.box
-        found: list[tuple[Number, Abscissa]] = []
+        entries: list[tuple[numbers.Number, Abscissa]] = []
         edges = [box.x0, box.x1]
         for factor, degenerate, meeting, vertical in self.rows.values():
             about = (degenerate, meeting, tuple(sorted(vertical)))
@@ -254,11 +247,11 @@ class _Table:
                 if value in edges:
                     edges.remove(value)
                 if box.x0 <= value <= box.x1:
-                    found.append((value, Abscissa(value, *about)))
+                    entries.append((value, Abscissa(value, *about)))
                 continue
-            for root in roots_between(factor, box.x0, box.x1):
-                x = number(root)
-                found.append((x, Abscissa(x, *about)))
-        found += [(x, Abscissa(x, {}, {}, ())) for x in edges]
-        by = {id(x): abscissa for x, abscissa in found}
-        return [by[id(x)] for x in ascending([x for x, _ in found])]
+            for root in numbers.roots_between(factor, box.x0, box.x1):
+                x = numbers.number(root)
+                entries.append((x, Abscissa(x, *about)))
+        entries += [(x, Abscissa(x, {}, {}, ())) for x in edges]
+        by = {id(x): abscissa for x, abscissa in entries}
+        return [by[id(x)] for x in numbers.ascending([x for x, _ in entries])]

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from mbsym.algebra.failures import Failure
-from mbsym.algebra.matrices import components, determinant
+from mbsym.algebra.matrices import components, determinant, null_space_of_polynomials
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.signs import MOST_TERMS, Signs
 from mbsym.mechanics.motion import turning, unperturbed_with
@@ -89,41 +89,7 @@ class _Second:
 
     def _null(self, rows: Rows, size: int) -> Rows:
         """A basis of what the rows annul, wherever ``known`` holds.  Raises Failure where no pivot is certain."""
-        ring, work, pivots = self.ring, [list(row) for row in rows], list[int]()
-        while True:
-            at = len(pivots)
-            left = [(r, c) for c in range(size) for r in range(at, len(work)) if not work[r][c].is_zero()]
-            if not left:
-                break
-            pivot, column = next(((r, c) for r, c in left if self._sign(work[r][c]) in _NOT_ZERO), (-1, -1))
-            if column < 0:
-                raise Failure("no pivot is known to differ from zero")
-            work[at], work[pivot] = work[pivot], work[at]
-            top = work[at]
-            for r, row in enumerate(work):
-                if r != at and not row[column].is_zero():
-                    factor = row[column]
-                    work[r] = [
-                        ring.reduce(ring.times(top[column], x) - ring.times(factor, y))
-                        for x, y in zip(row, top, strict=True)
-                    ]
-            pivots.append(column)
-        basis = []
-        for free in (k for k in range(size) if k not in pivots):
-            scale = ring.one
-            for at, column in enumerate(pivots):
-                if not work[at][free].is_zero():
-                    scale = ring.reduce(ring.times(scale, work[at][column]))
-            vector = [ring.zero] * size
-            vector[free] = scale
-            for at, column in enumerate(pivots):
-                if not work[at][free].is_zero():
-                    rest = ring.quotient(scale, work[at][column])
-                    if rest is None:
-                        raise Failure("no quotient")
-                    vector[column] = ring.reduce(-ring.times(rest, work[at][free]))
-            basis.append(vector)
-        return basis
+        return null_space_of_polynomials(self.ring, rows, size, lambda x: self._sign(x) in _NOT_ZERO)
 
     def _restricted(self, tangent: Rows, multipliers: dict[int, Polynomial]) -> Rows:
         ring, size = self.ring, range(len(tangent[0]))
@@ -139,10 +105,10 @@ class _Second:
         """q (q F_0 + p F_1) with p/q where the minors of order two are greatest."""
         ring = self.ring
         for i, j in combinations(range(len(first)), 2):
-            two = ring.times(second[i][i], second[j][j]) - ring.times(second[i][j], second[i][j])
-            one = ring.times(first[i][i], second[j][j]) + ring.times(second[i][i], first[j][j])
-            one = ring.reduce(one - ring.times(first[i][j], second[i][j]) * 2)
-            q, p = ring.reduce(two * 2), -one
+            quadratic = ring.times(second[i][i], second[j][j]) - ring.times(second[i][j], second[i][j])
+            linear = ring.times(first[i][i], second[j][j]) + ring.times(second[i][i], first[j][j])
+            linear = ring.reduce(linear - ring.times(first[i][j], second[i][j]) * 2)
+            q, p = ring.reduce(quadratic * 2), -linear
             if q.is_zero() or self._sign(q) not in _NOT_ZERO:
                 continue
             yield [

@@ -11,17 +11,8 @@ from mbsym.algebra.failures import Failure
 from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.splitting import Branch, Solved, Split, SplitLimits, exchanged, split
 from mbsym.formulas.formula import Formula
-from mbsym.problems.invariant_sets import second_variation
+from mbsym.problems.invariant_sets import result, second_variation
 from mbsym.problems.invariant_sets.branches import Arena, Place
-from mbsym.problems.invariant_sets.result import (
-    Definiteness,
-    Family,
-    Gap,
-    InvariantSets,
-    Kind,
-    SecondVariation,
-    StationarySet,
-)
 from mbsym.problems.invariant_sets.trials import gap_between, is_real
 
 #: Sets of one family that are looked at closely.
@@ -35,7 +26,7 @@ FEWER = SplitLimits(branches=300, terms=120)
 MOST_TERMS, MOST_DEGREE = 24, 4
 
 
-def invariant_sets(arena: Arena) -> InvariantSets:
+def invariant_sets(arena: Arena) -> result.InvariantSets:
     """The stationary sets of K = V_0 + sum lambda_k V_k, of V_1 + sum lambda_k V_k, ..., each family for itself.
 
     The last one has one integral alone, unless it is of the geometry: gradients of relations are independent.
@@ -55,7 +46,7 @@ def invariant_sets(arena: Arena) -> InvariantSets:
         generic += [p for p in taken if p not in generic]
     integrals = tuple((name, arena.formula(p)) for name, p in zip(arena.names, arena.integrals, strict=True))
     relations = tuple(arena.formula(p) for p in arena.relations)
-    return InvariantSets(
+    return result.InvariantSets(
         integrals=integrals,
         relations=relations,
         families=tuple(families),
@@ -65,12 +56,12 @@ def invariant_sets(arena: Arena) -> InvariantSets:
     )
 
 
-def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, ...]]:
+def _family(arena: Arena, whole: Polynomial) -> tuple[result.Family, tuple[Polynomial, ...]]:
     equations = in_angles(arena, whole) if arena.floating else [whole.derivative(g) for g in arena.variables]
     limits = IN_ANGLES if arena.floating else SplitLimits()
-    found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
-    branches, generic = list(found.branches), list(found.generic)
-    if found.unfinished:  # what fewer of the integrals make stationary is quickly found by itself
+    splitting = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
+    branches, generic = list(splitting.branches), list(splitting.generic)
+    if splitting.unfinished:  # what fewer of the integrals make stationary is quickly found by itself
         for part in _without_some(arena, equations):
             branches += part.branches
             generic += [p for p in part.generic if p not in generic]
@@ -88,10 +79,10 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[Family, tuple[Polynomial, 
     parts = failed if arena.floating or (failed and _conserved(arena)) else []
     sets = [stationary_set for stationary_set in sets if stationary_set not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
-    unfinished = found.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
-    sets.sort(key=lambda one: (one.dimension, one.union))
+    unfinished = splitting.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
+    sets.sort(key=lambda stationary_set: (stationary_set.dimension, stationary_set.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
-    return Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
+    return result.Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
 
 
 def _without_some(arena: Arena, equations: Sequence[Polynomial]) -> Iterator[Split]:
@@ -101,11 +92,11 @@ def _without_some(arena: Arena, equations: Sequence[Polynomial]) -> Iterator[Spl
     for count in reversed(range(1, len(free) + 1)):
         for some in combinations(free, count):
             fixed = [gens[g] for g in some]
-            found = split(
+            splitting = split(
                 [*fixed, *equations], (*arena.variables, *arena.constant), arena.signs.never_zero, limits=FEWER
             )
-            if not found.unfinished:
-                yield found
+            if not splitting.unfinished:
+                yield splitting
 
 
 def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
@@ -218,7 +209,7 @@ def _is_parameter(arena: Arena, p: Polynomial) -> bool:
 def _largest(places: Sequence[Place]) -> list[Place]:
     """Without those that lie in the closure of another."""
     kept_places: list[Place] = []
-    for place in sorted(places, key=lambda one: len(one.branch.solved) + len(one.branch.remaining)):
+    for place in sorted(places, key=lambda candidate: len(candidate.branch.solved) + len(candidate.branch.remaining)):
         if not any(_holds(other, place) for other in kept_places):
             kept_places.append(place)
     return kept_places
@@ -235,7 +226,7 @@ def _holds(outer: Place, inner: Place) -> bool:
     return all(inner.vanishes(p) is True for p in outer.branch.remaining)
 
 
-def _set(place: Place, whole: Polynomial) -> StationarySet | None:
+def _set(place: Place, whole: Polynomial) -> result.StationarySet | None:
     arena, dimensions = place.arena, place.dimensions
     if dimensions is None or place.vanishes(arena.denominator) is not False:
         return None  # no point was found over a finite field, or rates are perhaps not given there: nothing is said
@@ -246,8 +237,8 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
             top, bottom = place.fraction(slope)
             low, high = place.fraction(arena.denominator)
             motion.append((arena.name(g), top * high, bottom * low))
-    kind = Kind.STEADY if steady else Kind.MANIFOLD
-    first, gap = None, Gap.UNTRIED
+    kind = result.Kind.STEADY if steady else result.Kind.MANIFOLD
+    first, gap = None, result.Gap.UNTRIED
     variation = _variation(place, whole, steady)
     if steady:
         try:
@@ -255,7 +246,7 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
         except Failure:
             first = None
         gap = gap_between(place, variation, first)
-    return StationarySet(
+    return result.StationarySet(
         kind=kind,
         solved=tuple((arena.name(g), _value(place, g)) for g in arena.variables if g in place.solved),
         relations=tuple(arena.formula(p) for p in place.branch.remaining),
@@ -276,7 +267,7 @@ def _set(place: Place, whole: Polynomial) -> StationarySet | None:
     )
 
 
-def _variation(place: Place, whole: Polynomial, steady: bool) -> SecondVariation:
+def _variation(place: Place, whole: Polynomial, steady: bool) -> result.SecondVariation:
     """On the level of the integrals, or across the manifold; left out where it has equations that were not solved."""
     variables = place.arena.variables
     further = [p for p in place.branch.remaining if p not in place.geometric]
@@ -284,15 +275,15 @@ def _variation(place: Place, whole: Polynomial, steady: bool) -> SecondVariation
         if steady:
             return second_variation.on_level(place, whole)
         if place.arena.floating or any(p.degrees()[g] > 0 for p in further for g in variables):
-            return SecondVariation(Definiteness.LEFT_OUT, 0)
+            return result.SecondVariation(result.Definiteness.LEFT_OUT, 0)
         # For fixed multipliers that a branch has in terms of variables the set is smaller: these equations are its own.
         fixed = [s for s in place.branch.solved if s.unknown in place.arena.multipliers]
         if any(p.degrees()[g] > 0 for s in fixed for p in (s.numerator, s.denominator) for g in variables):
-            return SecondVariation(Definiteness.VARYING, 0)
+            return result.SecondVariation(result.Definiteness.VARYING, 0)
         return second_variation.across(place, whole)
     except Failure:
         pass
-    return SecondVariation(Definiteness.LEFT_OUT, 0)
+    return result.SecondVariation(result.Definiteness.LEFT_OUT, 0)
 
 
 def _value(place: Place, g: int) -> Formula:

@@ -20,6 +20,7 @@ from mbsym.algebra import rationals
 from mbsym.algebra.factors import irreducible_factors
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals import result
 from mbsym.problems.polynomial_integrals.darboux import darboux_along, darboux_polynomials
 from mbsym.problems.polynomial_integrals.families import cases
 from mbsym.problems.polynomial_integrals.gradings import Grading, grading
@@ -34,21 +35,6 @@ from mbsym.problems.polynomial_integrals.modular import (
     remainder,
 )
 from mbsym.problems.polynomial_integrals.other_levels import other_levels
-from mbsym.problems.polynomial_integrals.result import (
-    UNITY,
-    Along,
-    Case,
-    Cases,
-    DarbouxAlong,
-    DarbouxPolynomial,
-    DarbouxPolynomials,
-    Generator,
-    OnLevel,
-    OtherLevel,
-    OtherLevels,
-    PolynomialIntegrals,
-    Special,
-)
 from mbsym.problems.polynomial_integrals.search import polynomial_integrals, products
 from mbsym.problems.polynomial_integrals.values import along
 
@@ -57,12 +43,12 @@ MOST_WEIGHT = 2
 
 
 def cases_of(
-    usual: PolynomialIntegrals,
+    usual: result.PolynomialIntegrals,
     kinds: Sequence[Sequence[str]],
     known: Sequence[tuple[str, Any]],
     positive: Sequence[str],
     budget: float,
-) -> Cases:
+) -> result.Cases:
     """``cases`` of any field with at most one relation: of ``kinds`` of variables and ``known`` integrals.
 
     Raises NoClosedForm where the larger field has relations that are not homogeneous, or too many families.
@@ -77,16 +63,16 @@ def cases_of(
     name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
     down = _Down(name)
-    return replace(special, usual=usual, cases=tuple(down.case(one) for one in special.cases))
+    return replace(special, usual=usual, cases=tuple(down.case(case) for case in special.cases))
 
 
 def along_of(
-    usual: PolynomialIntegrals,
+    usual: result.PolynomialIntegrals,
     kinds: Sequence[Sequence[str]],
     known: Sequence[tuple[str, Any]],
     low: Fraction,
     high: Fraction,
-) -> Along:
+) -> result.Along:
     """``along`` of any field with at most one relation.
 
     Raises what ``along`` raises, NoClosedForm where the larger field has relations that are not homogeneous.
@@ -96,20 +82,20 @@ def along_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         raise NoClosedForm("special values are looked for where there is one unit vector or angle at most, and no root")
-    found = along(larger, low, high)
+    listing = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
-    values = [_new_at_one(larger, value, down) for value in found.values]
-    kept = tuple(value for value in values if value.integrals or value.levels)
-    return replace(found, values=kept, weights=larger.grading.weights[:-1])
+    values = [_new_at_one(larger, value, down) for value in listing.values]
+    fresh = tuple(value for value in values if value.integrals or value.levels)
+    return replace(listing, values=fresh, weights=larger.grading.weights[:-1])
 
 
-def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Special:
+def _new_at_one(larger: result.PolynomialIntegrals, raised: result.Special, down: _Down) -> result.Special:
     """What was found at a value, without what becomes a polynomial in the integrals in general where h is 1."""
-    value = one.field.context.constant(rationals.exact(one.value) if one.value is not None else 0)
-    images = [value, *one.field.context.gens()]
-    special = down.special(one)
+    value = raised.field.context.constant(rationals.exact(raised.value) if raised.value is not None else 0)
+    images = [value, *raised.field.context.gens()]
+    special = down.special(raised)
     there = at_random(special.field, PRIMES[0], "values at one")
-    general = [down.polynomial(f.polynomial.compose(*images, ctx=one.field.context)) for f in larger.generators]
+    general = [down.polynomial(f.polynomial.compose(*images, ctx=raised.field.context)) for f in larger.generators]
     pairs = [(f.weight, there.terms(p)) for f, p in zip(larger.generators, general, strict=True)]
     pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]
     fresh = tuple(
@@ -117,7 +103,7 @@ def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Speci
     )
     pairs += [(w, there.terms(f)) for w, f in fresh]
     on = []
-    for own, level in zip(one.levels, special.levels, strict=True):
+    for own, level in zip(raised.levels, special.levels, strict=True):
         zero = there.terms(general[larger.generators.index(own.level)])
         left = [(w, f) for w, f in level.integrals if not _spanned(there, there.terms(f), zero, pairs, larger.degree)]
         if left:
@@ -129,12 +115,12 @@ def _new_at_one(larger: PolynomialIntegrals, one: Special, down: _Down) -> Speci
 class ZeroLevels:
     """What holds where an integral is zero, one item for each; ``weights`` as in ``Along``."""
 
-    levels: tuple[OnLevel, ...]
+    levels: tuple[result.OnLevel, ...]
     weights: tuple[int, ...] | None
 
 
 def zero_levels_of(
-    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
 ) -> ZeroLevels | None:
     """``on_level`` for all ``levels`` of any field with at most one relation; None of others, which are not looked at.
 
@@ -160,13 +146,13 @@ def zero_levels_of(
             for w, f in ((w, primitive(usual.field, down.polynomial(f))) for w, f in at.integrals)
             if not _spanned(there, there.terms(f), zero, pairs, usual.degree)
         ]
-        on_levels.append(OnLevel(down.generator(one), tuple(fresh), at.counts))
+        on_levels.append(result.OnLevel(down.generator(one), tuple(fresh), at.counts))
     return ZeroLevels(tuple(on_levels), larger.grading.weights[:-1])
 
 
 def other_levels_of(
-    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> OtherLevels | None:
+    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> result.OtherLevels | None:
     """``other_levels`` of any field with at most one relation; None of others, which are not looked at.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
@@ -179,13 +165,13 @@ def other_levels_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         return None
-    (unity,) = [generator for generator in larger.generators if generator.name == UNITY]
-    found = other_levels(larger, unity)
+    (unity,) = [generator for generator in larger.generators if generator.name == result.UNITY]
+    outcome = other_levels(larger, unity)
     down = _Down(larger.field.variables[-1])
-    return replace(found, levels=tuple(map(down.other, found.levels)), weights=larger.grading.weights[:-1])
+    return replace(outcome, levels=tuple(map(down.other, outcome.levels)), weights=larger.grading.weights[:-1])
 
 
-def _irreducible(generator: Generator) -> bool:
+def _irreducible(generator: result.Generator) -> bool:
     """Whether a polynomial is no product over QQ of others; numbers do not count."""
     return sum(power for _, power in irreducible_factors(generator.polynomial)[1]) == 1
 
@@ -198,15 +184,17 @@ def _spanned(
     def reduce(terms: Terms) -> Terms:
         return terms if zero is None else remainder(terms, zero, there.prime)
 
-    rows = [reduce(one) for one in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)]
+    rows = [
+        reduce(terms) for terms in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)
+    ]
     columns = sorted({m for row in (*rows, f) for m in row} | set(reduce(f)), reverse=True)
     before, _ = echelon(rows, columns, there.prime)
     return len(echelon([*before, reduce(f)], columns, there.prime)[0]) == len(before)
 
 
 def darboux_of(
-    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> DarbouxPolynomials:
+    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> result.DarbouxPolynomials:
     """``darboux_polynomials`` of any field with at most one relation; of others that they were not looked for.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
@@ -221,12 +209,12 @@ def darboux_of(
 
 
 def darboux_along_of(
-    usual: PolynomialIntegrals,
+    usual: result.PolynomialIntegrals,
     kinds: Sequence[Sequence[str]],
     known: Sequence[tuple[str, Any]],
     low: Fraction,
     high: Fraction,
-) -> DarbouxAlong:
+) -> result.DarbouxAlong:
     """``darboux_along`` of any field with at most one relation; of others that nothing was looked for.
 
     Raises what ``darboux_along`` raises.
@@ -236,16 +224,16 @@ def darboux_along_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         return darboux_along(usual, low, high)
-    found = darboux_along(larger, low, high)
+    listing = darboux_along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     return replace(
-        found,
-        general=down.darboux(found.general),
+        listing,
+        general=down.darboux(listing.general),
         values=tuple(
             replace(value, field=down.field(value.field), polynomials=tuple(map(down.factor, value.polynomials)))
-            for value in found.values
+            for value in listing.values
         ),
-        square=tuple(map(down.polynomial, found.square)),
+        square=tuple(map(down.polynomial, listing.square)),
     )
 
 
@@ -254,17 +242,17 @@ WITHOUT = ", less a constant"
 
 
 def _larger(
-    usual: PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
-) -> PolynomialIntegrals | None:
+    usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
+) -> result.PolynomialIntegrals | None:
     """The integrals of the larger field; None where its relations are not integrals by their homogeneous parts."""
-    field, found = homogenised(usual.field, kinds)
-    if field.relations and not found.free:
+    field, larger_grading = homogenised(usual.field, kinds)
+    if field.relations and not larger_grading.free:
         return None
-    listed = [(UNITY, field.generator(field.variables[-1]))]
+    listed = [(result.UNITY, field.generator(field.variables[-1]))]
     for title, f in known:
         constant = any(not any(m[len(field.parameters) :]) for m in f.monoms())
-        listed.append((title + WITHOUT if constant else title, _filled(field, f, found.weights)))
-    return polynomial_integrals(field, found, usual.degree, listed)
+        listed.append((title + WITHOUT if constant else title, _filled(field, f, larger_grading.weights)))
+    return polynomial_integrals(field, larger_grading, usual.degree, listed)
 
 
 def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple[PolynomialField, Grading]:
@@ -288,7 +276,7 @@ def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple
     if best is None:
         raise NoClosedForm("there are no variables")
     weights = best[1]
-    name = UNITY
+    name = result.UNITY
     while name in (*field.parameters, *field.variables):
         name += "_"
     context = fmpq_mpoly_ctx.get([*field.context.names(), name], field.context.ordering())
@@ -302,8 +290,8 @@ def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple
     )
     numerators = _raised(larger, field.numerators, weights)
     larger = replace(larger, numerators=(*numerators, context.constant(0)))
-    found = grading(larger, [*kinds, (name,)], (*weights, 1))
-    return larger, found
+    larger_grading = grading(larger, [*kinds, (name,)], (*weights, 1))
+    return larger, larger_grading
 
 
 def _up(context: Any, p: Any) -> Any:
@@ -339,8 +327,8 @@ class _Down:
     def __init__(self, name: str) -> None:
         self.name = name
 
-    def case(self, one: Case) -> Case:
-        return Case(tuple(map(self.polynomial, one.conditions)), self.special(one.special))
+    def case(self, one: result.Case) -> result.Case:
+        return result.Case(tuple(map(self.polynomial, one.conditions)), self.special(one.special))
 
     def field(self, field: PolynomialField) -> PolynomialField:
         return replace(
@@ -352,31 +340,35 @@ class _Down:
             relations=tuple(map(self.polynomial, field.relations)),
         )
 
-    def darboux(self, found: DarbouxPolynomials) -> DarbouxPolynomials:
+    def darboux(self, original: result.DarbouxPolynomials) -> result.DarbouxPolynomials:
         return replace(
-            found,
-            weights=found.weights[:-1],
-            polynomials=tuple(map(self.factor, found.polynomials)),
-            counts=tuple(replace(count, cofactor=self.polynomial(count.cofactor)) for count in found.counts),
+            original,
+            weights=original.weights[:-1],
+            polynomials=tuple(map(self.factor, original.polynomials)),
+            counts=tuple(replace(count, cofactor=self.polynomial(count.cofactor)) for count in original.counts),
         )
 
-    def other(self, one: OtherLevel) -> OtherLevel:
-        values = tuple(replace(x, integrals=tuple((w, self.polynomial(f)) for w, f in x.integrals)) for x in one.values)
-        return replace(one, level=self.generator(one.level), values=values)
+    def other(self, other_level: result.OtherLevel) -> result.OtherLevel:
+        values = tuple(
+            replace(x, integrals=tuple((w, self.polynomial(f)) for w, f in x.integrals)) for x in other_level.values
+        )
+        return replace(other_level, level=self.generator(other_level.level), values=values)
 
-    def factor(self, one: DarbouxPolynomial) -> DarbouxPolynomial:
-        return replace(one, polynomial=self.polynomial(one.polynomial), cofactor=self.polynomial(one.cofactor))
+    def factor(self, polynomial: result.DarbouxPolynomial) -> result.DarbouxPolynomial:
+        return replace(
+            polynomial, polynomial=self.polynomial(polynomial.polynomial), cofactor=self.polynomial(polynomial.cofactor)
+        )
 
-    def special(self, one: Special) -> Special:
+    def special(self, one: result.Special) -> result.Special:
         smaller = self.field(one.field)
         write: Callable[[Any], Any] = lambda f: primitive(smaller, self.polynomial(f))  # noqa: E731
         levels = tuple(
-            OnLevel(self.generator(level.level), tuple((w, write(f)) for w, f in level.integrals), level.counts)
+            result.OnLevel(self.generator(level.level), tuple((w, write(f)) for w, f in level.integrals), level.counts)
             for level in one.levels
         )
         return replace(one, field=smaller, integrals=tuple((w, write(f)) for w, f in one.integrals), levels=levels)
 
-    def generator(self, one: Generator) -> Generator:
+    def generator(self, one: result.Generator) -> result.Generator:
         return replace(one, polynomial=self.polynomial(one.polynomial))
 
     def polynomial(self, p: Any) -> Any:

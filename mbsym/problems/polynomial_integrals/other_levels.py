@@ -29,18 +29,9 @@ from flint import fmpq_mpoly_ctx, nmod_mat, nmod_poly
 from mbsym.algebra import rationals
 from mbsym.algebra.failures import NoClosedForm
 from mbsym.algebra.polynomial_field import PolynomialField
+from mbsym.problems.polynomial_integrals import modular
 from mbsym.problems.polynomial_integrals.excess import Line, dropped, interpolated, others, rational, roots
 from mbsym.problems.polynomial_integrals.levels import Level, cofactors, kernel_on, levels, on_level, standard
-from mbsym.problems.polynomial_integrals.modular import (
-    PRIMES,
-    Exponents,
-    ModularField,
-    Terms,
-    count,
-    echelon,
-    remainder,
-    times,
-)
 from mbsym.problems.polynomial_integrals.result import (
     Generator,
     OtherLevel,
@@ -55,30 +46,30 @@ from mbsym.problems.polynomial_integrals.values import LARGEST, lifted_factor
 MOST_COLUMNS = 250
 
 
-def other_levels(found: PolynomialIntegrals, fixed: Generator | None) -> OtherLevels:
+def other_levels(integrals: PolynomialIntegrals, fixed: Generator | None) -> OtherLevels:
     """What holds where an integral of the list has a value that is not zero, and ``fixed`` is 1.
 
-    Of a quasi-homogeneous field; ``fixed`` is one of ``found.generators``, None where there is no such quantity.
+    Of a quasi-homogeneous field; ``fixed`` is one of ``integrals.generators``, None where there is no such quantity.
     """
-    listed = [level for level in levels(found) if level is not fixed]
-    return OtherLevels(found.degree, fixed is not None, tuple(_level(found, fixed, one) for one in listed))
+    listed = [level for level in levels(integrals) if level is not fixed]
+    return OtherLevels(integrals.degree, fixed is not None, tuple(_level(integrals, fixed, level) for level in listed))
 
 
-def _level(found: PolynomialIntegrals, fixed: Generator | None, generator: Generator) -> OtherLevel:
+def _level(integrals: PolynomialIntegrals, fixed: Generator | None, generator: Generator) -> OtherLevel:
     if fixed is None:
-        return OtherLevel(generator, 1, complete=found.complete)
+        return OtherLevel(generator, 1, complete=integrals.complete)
     step = gcd(generator.weight, fixed.weight)
     power, other = fixed.weight // step, generator.weight // step
-    weights = _weights(found.degree, generator.weight, fixed.weight)
-    rise = found.grading.rise or 0
+    weights = _weights(integrals.degree, generator.weight, fixed.weight)
+    rise = integrals.grading.rise or 0
     top = generator.weight * power
     most = max(weights)
     if most + rise < top:  # K is zero: F is an integral everywhere, and those are all known where the list is complete
-        return OtherLevel(generator, power, complete=_general(found, most).complete)
-    if count(found.grading.weights, most) > MOST_COLUMNS:
+        return OtherLevel(generator, power, complete=_general(integrals, most).complete)
+    if modular.count(integrals.grading.weights, most) > MOST_COLUMNS:
         return OtherLevel(generator, power, looked=False)
     try:
-        usual = _general(found, most)
+        usual = _general(integrals, most)
         return _Search(usual, fixed, generator, power, other, weights).result()
     except NoClosedForm:
         return OtherLevel(generator, power, looked=False)
@@ -92,20 +83,22 @@ def _weights(degree: int, first: int, second: int) -> list[int]:
     for n in range(1, bound + 1):
         if n - first in reached or n - second in reached:
             reached.add(n)
-    found = []
+    weights = []
     for start in range(min(step, degree + 1)):
         own = range(start, degree + 1, step)
-        found.append(next(n for n in range(own[-1], bound + 1) if all(n - w in reached for w in own)))
-    return sorted({n for n in found if n})
+        weights.append(next(n for n in range(own[-1], bound + 1) if all(n - w in reached for w in own)))
+    return sorted({n for n in weights if n})
 
 
-def _general(found: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
+def _general(integrals: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
     """The integrals up to a larger degree; those known keep their names."""
-    if degree <= found.degree:
-        return found
-    known = [(generator.name, generator.polynomial) for generator in found.generators]
-    larger = polynomial_integrals(found.field, found.grading, degree, known)
-    return replace(larger, generators=(*found.generators, *(x for x in larger.generators if x.weight > found.degree)))
+    if degree <= integrals.degree:
+        return integrals
+    known = [(generator.name, generator.polynomial) for generator in integrals.generators]
+    larger = polynomial_integrals(integrals.field, integrals.grading, degree, known)
+    return replace(
+        larger, generators=(*integrals.generators, *(x for x in larger.generators if x.weight > integrals.degree))
+    )
 
 
 class _Search:
@@ -141,11 +134,11 @@ class _Search:
 
     def result(self) -> OtherLevel:
         source = Random("levels")
-        numbers = {name: source.randrange(1, PRIMES[0]) for name in self.usual.field.parameters}
-        line = Line(self.field, PRIMES[0], numbers | {self.name: 0}, dict.fromkeys(numbers, 0) | {self.name: 1})
-        total = nmod_poly([1], PRIMES[0])
+        numbers = {name: source.randrange(1, modular.PRIMES[0]) for name in self.usual.field.parameters}
+        line = Line(self.field, modular.PRIMES[0], numbers | {self.name: 0}, dict.fromkeys(numbers, 0) | {self.name: 1})
+        total = nmod_poly([1], modular.PRIMES[0])
         for weight in self.weights:
-            total = total * self._drops(line.at(source.randrange(1, PRIMES[0])), weight, source)
+            total = total * self._drops(line.at(source.randrange(1, modular.PRIMES[0])), weight, source)
             steps = weight // self.weight + 1
             total = total * dropped(line, lambda there, w=weight, s=steps: self._products(there, w, s), steps)  # type: ignore[misc]
         if total == 0:
@@ -159,7 +152,7 @@ class _Search:
 
     def _at_numbers(self, zeros: Sequence[int], factors: Sequence[Any], whole: bool, usual: bool) -> OtherLevel:
         values, undecided = [], []
-        for value in sorted(x for x in (rational(root, PRIMES[0]) for root in zeros) if x is not None):
+        for value in sorted(x for x in (rational(root, modular.PRIMES[0]) for root in zeros) if x is not None):
             if max(abs(value.numerator), value.denominator) > LARGEST:
                 continue
             there = self.at(value)
@@ -175,15 +168,15 @@ class _Search:
         polynomial = self.top - rationals.exact(value) * self.bottom
         zero = replace(self.one, polynomial=polynomial, weight=self.weight)
         try:
-            found = on_level(self.usual, zero)
+            on_value = on_level(self.usual, zero)
         except NoClosedForm:
             return None
-        return SpecialLevel(value, found.integrals, found.complete)
+        return SpecialLevel(value, on_value.integrals, on_value.complete)
 
-    def _zero(self, there: ModularField) -> Level:
+    def _zero(self, there: modular.ModularField) -> Level:
         return Level(self.level, self.weight, there.terms(self.level))
 
-    def _drops(self, there: ModularField, weight: int, source: Random) -> nmod_poly:
+    def _drops(self, there: modular.ModularField, weight: int, source: Random) -> nmod_poly:
         """A polynomial in k that vanishes where the K with  K W  in the image of D become more.
 
         With N the linear relations of that image the K are the kernel of  N (x^b V^a) - k N (x^b U^b).
@@ -194,8 +187,8 @@ class _Search:
         multiples = cofactors(self.usual, weight, zero)
         parts = [there.derivative(m) for m in columns]
         upper, lower = (there.terms(p) for p in (self._up(self.top), self._up(self.bottom)))
-        tops = [times({b: 1}, upper, prime) for b in multiples]
-        bottoms = [times({b: 1}, lower, prime) for b in multiples]
+        tops = [modular.times({b: 1}, upper, prime) for b in multiples]
+        bottoms = [modular.times({b: 1}, lower, prime) for b in multiples]
         rows = {key: k for k, key in enumerate(dict.fromkeys(m for p in (*parts, *tops, *bottoms) for m in p))}
         if not multiples:
             return nmod_poly([1], prime)
@@ -221,29 +214,29 @@ class _Search:
             drops = drops.gcd(interpolated(values, shift, prime))
         return drops
 
-    def _products(self, there: ModularField, weight: int, steps: int) -> list[Terms]:
+    def _products(self, there: modular.ModularField, weight: int, steps: int) -> list[modular.Terms]:
         """Products of integrals modulo W, times a power of its leading coefficient."""
         zero = self._zero(there)
         pairs = [(own, there.terms(f)) for own, f in self.known]
         spanned = products(pairs, weight, True, there.prime, len(self.field.variables), lambda terms: terms)
         scale = pow(zero.terms[zero.leading], steps, there.prime)
-        rests = [remainder(one, zero.terms, there.prime) for one in spanned]
+        rests = [modular.remainder(terms, zero.terms, there.prime) for terms in spanned]
         return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
     def _usual_is_complete(self, line: Line, source: Random) -> bool:
         """Whether for almost all k there is nothing beyond products."""
-        there = line.at(source.randrange(1, PRIMES[0]))
+        there = line.at(source.randrange(1, modular.PRIMES[0]))
         zero = self._zero(there)
         for weight in self.weights:
             columns = standard(self.usual.grading.weights, weight, zero)
             most = kernel_on(there, columns, cofactors(self.usual, weight, zero), zero)
-            rows, _ = echelon(self._products(there, weight, 1), columns, there.prime)
+            rows, _ = modular.echelon(self._products(there, weight, 1), columns, there.prime)
             if len(most) > len(rows):
                 return False
         return True
 
 
-def _matrix(columns: Sequence[Terms], rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+def _matrix(columns: Sequence[modular.Terms], rows: Mapping[modular.Exponents, int], prime: int) -> nmod_mat:
     entries = [0] * (len(rows) * len(columns))
     for k, column in enumerate(columns):
         for key, value in column.items():
@@ -251,7 +244,7 @@ def _matrix(columns: Sequence[Terms], rows: Mapping[Exponents, int], prime: int)
     return nmod_mat(len(rows), len(columns), entries, prime)
 
 
-def _identity(rows: Mapping[Exponents, int], prime: int) -> nmod_mat:
+def _identity(rows: Mapping[modular.Exponents, int], prime: int) -> nmod_mat:
     return nmod_mat([[int(i == j) for j in range(len(rows))] for i in range(len(rows))], prime)
 
 

@@ -1,4 +1,7 @@
-"""What is known of a slow integral manifold: coefficients, the flow on it, who attracts whom, what was checked."""
+"""What is known of slow integral manifolds, and of periodic solutions near those of a linear system.
+
+Of a manifold: coefficients, the flow on it, who attracts whom, what was checked.
+"""
 
 from __future__ import annotations
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from mbsym.algebra.characteristic import Matrix, Polynomial
-from mbsym.algebra.matrices import dot
+from mbsym.algebra.failures import TooLargeError
+from mbsym.algebra.matrices import Operators, dot, null_space_of_polynomials
 from mbsym.problems.displacements import Basis
 from mbsym.problems.stability.words import Fact
 
@@ -102,22 +103,22 @@ class LinearSystem:
     @property
     def kinetic(self) -> Matrix:
         """M without the zero rows and columns of what follows."""
-        kept = [i for i in range(self.size) if i not in self.following]
-        return tuple(tuple(self.M[i][j] for j in kept) for i in kept)
+        moving = [i for i in range(self.size) if i not in self.following]
+        return tuple(tuple(self.M[i][j] for j in moving) for i in moving)
 
     @property
     def facts(self) -> frozenset[Fact]:
         """What the pattern of zeros shows, and what is presumed: M > 0, as the matrix of a kinetic energy."""
-        told = {Fact.EXACTLY_LINEAR} if self.exact else set()
+        exactness = {Fact.EXACTLY_LINEAR} if self.exact else set()
         if self.nonholonomic is not None:
-            return frozenset({Fact.MASS_POSITIVE, *told})
+            return frozenset({Fact.MASS_POSITIVE, *exactness})
         zero = [
             fact
             for matrix, fact in ((self.D, Fact.UNDAMPED), (self.G, Fact.NOT_GYROSCOPIC), (self.N, Fact.POTENTIAL))
             if is_zero(matrix)
         ]
         known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
-        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *told})
+        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *exactness})
 
     def name(self, i: int) -> str:
         return self.names[i] if self.names else f"coordinate {i + 1}"
@@ -136,49 +137,32 @@ class LinearSystem:
 _MOST_TERMS = 200
 
 
+class _Normal(Operators[Polynomial]):
+    """Polynomials with the normal form that is known of their generators."""
+
+    def __init__(self, zero: Polynomial, one: Polynomial, normal: Callable[[Polynomial], Polynomial]) -> None:
+        super().__init__(zero, one)
+        self._normal = normal
+
+    def reduce(self, x: Polynomial) -> Polynomial:
+        return self._normal(x)
+
+
 def null_rows(matrix: Matrix, normal: Callable[[Polynomial], Polynomial]) -> Matrix:
     """Rows v with matrix v = 0, a basis for all but exceptional parameters; () also where it would be long.
 
     ``normal`` gives the normal form of a polynomial, zero where it vanishes.
     """
-    n = len(matrix)
-    zero, one = matrix[0][0] * 0, matrix[0][0] * 0 + 1
-    rows, pivots = [[normal(x) for x in row] for row in matrix], list[int]()
-    for column in range(n):
-        at = len(pivots)
-        pivot = next((r for r in range(at, n) if rows[r][column] != 0), None)
-        if pivot is None:
-            continue
-        rows[at], rows[pivot] = rows[pivot], rows[at]
-        top = rows[at]
-        for r in range(n):
-            factor = rows[r][column]
-            if r != at and factor != 0:
-                if max(len(x) for x in (*rows[r], *top)) > _MOST_TERMS:
-                    return ()
-                rows[r] = [normal(top[column] * x - factor * y) for x, y in zip(rows[r], top, strict=True)]
-        pivots.append(column)
-    found = []
-    for free in (k for k in range(n) if k not in pivots):
-        scale = one
-        for at, column in enumerate(pivots):
-            if rows[at][free] != 0:
-                scale = normal(scale * rows[at][column])
-        vector = [zero] * n
-        vector[free] = scale
-        for at, column in enumerate(pivots):
-            if rows[at][free] != 0:
-                rest = one
-                for other, leading in enumerate(pivots):
-                    if other != at and rows[other][free] != 0:
-                        rest = normal(rest * rows[other][leading])
-                vector[column] = normal(-rest * rows[at][free])
-        if any(len(x) > _MOST_TERMS for x in vector):
-            return ()
-        found.append(vector)
-    if any(normal(dot(row, v)) != 0 for row in matrix for v in found):
+    zero = matrix[0][0] * 0
+    try:
+        basis = null_space_of_polynomials(_Normal(zero, zero + 1, normal), matrix, len(matrix), most=_MOST_TERMS)
+    except TooLargeError:
         return ()
-    return tuple(map(tuple, found))
+    if any(len(x) > _MOST_TERMS for v in basis for x in v):
+        return ()
+    if any(normal(dot(row, v)) != 0 for row in matrix for v in basis):
+        return ()
+    return tuple(map(tuple, basis))
 
 
 #: The kind of a system with no other forces than those of K.

@@ -1,4 +1,4 @@
-"""The words of problem 6: what may be said of a motion."""
+"""What problem 6 may say: the words for a motion, why they are said, and the theorems that say so."""
 
 from __future__ import annotations
 

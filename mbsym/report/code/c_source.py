@@ -15,6 +15,7 @@ from textwrap import fill, wrap
 from typing import TYPE_CHECKING
 
 from mbsym.algebra.failures import NoClosedForm
+from mbsym.expressions.message import Message
 from mbsym.expressions.table import Tabulated
 from mbsym.expressions.tree import Expression, names, text
 from mbsym.formulas.names import injective
@@ -117,7 +118,11 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         tied, _, _ = tied_code(analysis, writer)
         if n + len(tied.rows if tied else ()) > MOST_UNKNOWNS:
             raise NoClosedForm(
-                f"more than {MOST_UNKNOWNS} accelerations and multipliers: C would need {SPACE} of stack"
+                Message(
+                    "more than [[most]] accelerations and multipliers: C would need [[space]] of stack",
+                    most=MOST_UNKNOWNS,
+                    space=SPACE,
+                )
             )
     functions: dict[str, Function | None] = dict.fromkeys(FUNCTIONS)
     entries: list[tuple[int, int]] = []
@@ -151,7 +156,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         n=n,
         members=[(name, members[name]) for name in system.parameter_names],
         defaults=[(item.name, _default(item.value)) for item in system.parameters],
-        meanings={item.name: comment(told) for item in system.parameters if (told := _told(system, item))},
+        meanings={item.name: comment(meaning) for item in system.parameters if (meaning := _told(system, item))},
         units=wrap(comment(f"Units: {', '.join(told_units(system))}."), 110) if told_units(system) else [],
         relations=[(item.name, text(item.value)) for item in system.relations],
         prescribed=[(item.name, text(prescribed_value(item))) for item in system.prescribed],
@@ -172,7 +177,7 @@ def _rendered(template: str, analysis: Analysis, bodies: bool, whole: bool) -> s
         },
         tied=tied,
         speeds=_speeds(analysis, writer) if functions["accelerations"] or forward else None,
-        quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
+        quaternions=any(isinstance(rotation, Quaternion) for body in system.bodies for rotation in body.orientation),
         functions=functions,
         named=bodies_of(named, writer, comment) if named and bodies else None,
         frames=[comment(frame.name) for frame in named.frames] if named else [],
