@@ -102,12 +102,21 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         if not balance.law.bounded:
             return None
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
-        forces = (analysis.energy.force_function.polynomial, *generalized_forces(analysis.held_scene).values())
-        if balance.conserves and all(map(analysis.ring.vanishes, forces)):
+        if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
             return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
         return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, balance.conserves, values)
     except (Failure, *NOT_THERE):
         return None
+
+
+def _acting(analysis: Analysis) -> Iterator[Polynomial]:
+    """dU/dq, other forces, and the momenta dT/dq' at q' = 0, whose changes are gyroscopic forces."""
+    ring, names, energy = analysis.ring, analysis.system.coordinates, analysis.energy
+    still = {ring.index("velocity", name): ring.zero for name in names}
+    yield from generalized_forces(analysis.held_scene).values()
+    for name in names:
+        yield ring.derivative(energy.force_function.polynomial, name)
+        yield ring.substitute(ring.velocity_derivative(energy.kinetic_energy.polynomial, name), still)
 
 
 def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:

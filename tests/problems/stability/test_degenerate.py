@@ -11,7 +11,7 @@ import mbsym
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Because, Word
 
 BLOCK = """
 mbsym: 1
@@ -184,3 +184,32 @@ motion: {{{coordinates}}}
     found = mbsym.loads(text).stability.numerical
     assert found is not None
     assert found.word is word
+
+
+ROTOR = """
+mbsym: 1
+name: Rotor
+bodies:
+  - {name: rotor, attached to: 0, mass: 1, rotation: {axes: [1, 2], angles: [a, b]}, inertia about: joint,
+     inertia: [1, 1, 1], gyrostatic moment: [0, 0, 5]}
+  - {name: bead, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+constraints: [{relation: x**2 + 4*y**2 = 4}]
+motion: {a: 0, b: 0, x: 2, y: 0}
+"""
+
+
+def test_a_rotor_has_gyroscopic_forces_under_constraints_too() -> None:
+    """They are linear in velocities: at rest nothing is felt of them, and yet no motion is along a geodesic."""
+    found = mbsym.loads(ROTOR).stability.numerical
+    assert found is not None
+    assert "motion along geodesics" not in found.theorems
+    assert not found.because(Because.ALIKE)
+
+
+def test_a_weight_that_does_not_change_its_height_feels_none() -> None:
+    text = ROTOR.replace(", gyrostatic moment: [0, 0, 5]", "").replace(
+        "motion:", "loads: [{uniform gravity: {acceleration: 9, direction: [0, 0, -1]}}]\nmotion:"
+    )
+    found = mbsym.loads(text.replace("[x, y, 0]", "[x, y, 3]")).stability.numerical
+    assert found is not None
+    assert found.because(Because.ALIKE)
