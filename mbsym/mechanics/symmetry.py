@@ -175,8 +175,8 @@ def _same_forces(rest: Rest, length: str, angle: str) -> bool:
     )
 
 
-#: Kinetic energies of more coordinates are not asked for their curvature.
-MOST_CURVED = 3
+#: Kinetic energies of more coordinates, or of more terms, are not asked for their curvature.
+MOST_CURVED, MOST_CURVED_TERMS = 6, 200
 
 
 def constantly_curved(
@@ -196,7 +196,7 @@ def constantly_curved(
     vanishes, size = vanishes or ring.vanishes, range(len(metric))
     if len(size) == 1:
         return True
-    if len(size) > MOST_CURVED:
+    if len(size) > MOST_CURVED or sum(len(x) for row in metric for x in row) > MOST_CURVED_TERMS:
         return False
     slopes = [[[derivative(x, i) for x in row] for row in metric] for i in size]
     bends = [[[[derivative(x, i) for x in row] for row in slope] for slope in slopes] for i in size]

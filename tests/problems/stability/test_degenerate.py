@@ -213,3 +213,17 @@ def test_a_weight_that_does_not_change_its_height_feels_none() -> None:
     found = mbsym.loads(text.replace("[x, y, 0]", "[x, y, 3]")).stability.numerical
     assert found is not None
     assert found.because(Because.ALIKE)
+
+
+def test_two_particles_in_polar_coordinates_are_as_free_as_in_others() -> None:
+    """Straight lines of both: four coordinates of a flat space, (r, a) and (s, b)."""
+    found = mbsym.loads("""
+mbsym: 1
+name: Two
+bodies:
+  - {name: one, attached to: 0, connection point: [r*cos(a), r*sin(a), 0], mass: 1, coordinates: [r, a]}
+  - {name: two, attached to: 0, connection point: [s*cos(b), s*sin(b), 0], mass: 2, coordinates: [s, b]}
+motion: {r: 1, a: 0, s: 1, b: 0}
+""").stability.numerical
+    assert found is not None
+    assert found.word is Word.STABLE_BUT_CYCLIC
