@@ -234,3 +234,22 @@ motion: {{r: 1/3, a: 0, s: 1, b: 0}}
 """).stability.numerical
     assert found is not None
     assert found.word is word
+
+
+@pytest.mark.parametrize("tilt", ["1", "pi/3", "pi/2"])
+@pytest.mark.parametrize("place", ["", "x, y, z"])
+def test_a_free_body_that_rests_is_judged_alike_at_every_angle(tilt: str, place: str) -> None:
+    """All positions are alike: turns about axes of space lead to each.  At 1 rad it was "unstable" at given values."""
+    names = ", ".join(filter(None, [place, "a, b, c"]))
+    at = f"connection point: [{place}], coordinates: [{names}]," if place else ""
+    rest = ", ".join(f"{name}: {tilt if name == 'b' else 0}" for name in names.split(", "))
+    found = mbsym.loads(f"""
+mbsym: 1
+name: Body
+bodies:
+  - {{name: one, attached to: 0, mass: 1, rotation: {{axes: [3, 1, 3], angles: [a, b, c]}}, {at}
+     inertia about: mass centre, inertia: [2, 3, 4]}}
+motion: {{{rest}}}
+""").stability
+    assert found.verdict.word is Word.STABLE_BUT_CYCLIC
+    assert found.numerical is None or found.numerical.word is Word.STABLE_BUT_CYCLIC
