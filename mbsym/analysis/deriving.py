@@ -147,7 +147,11 @@ def _judged(analysis: Analysis) -> Stability:
         return replace(judgement, numerical=undecided(Because.POLE, divisor), spectra=())
     if judgement.numerical is None or values is None:
         return judgement
-    judged = Judge(analysis).decided(judgement.numerical, values)
+    judge, judged = Judge(analysis), judgement.numerical
+    if judged.word.open and higher.decided(judgement.verdict.word) and judge.may_add(judged):
+        judged = judgement.verdict  # for all values, and so for these
+    else:
+        judged = judge.decided(judged, values)
     before = judgement.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
     return replace(judgement, numerical=judged, before_higher_order=before)
 

@@ -14,7 +14,7 @@ from functools import partial
 from itertools import combinations
 
 from mbsym.algebra.failures import NOT_THERE
-from mbsym.algebra.matrices import adjugate, determinant
+from mbsym.algebra.matrices import adjugate, components, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
 from mbsym.expressions.angles import angle_name
@@ -175,8 +175,8 @@ def _same_forces(rest: Rest, length: str, angle: str) -> bool:
     )
 
 
-#: Kinetic energies of more coordinates are not asked for their curvature.
-MOST_CURVED = 3
+#: Kinetic energies of more coordinates, or of more terms, are not asked for their curvature.
+MOST_CURVED, MOST_CURVED_TERMS = 6, 200
 
 
 def constantly_curved(
@@ -185,20 +185,35 @@ def constantly_curved(
     derivative: Callable[[Polynomial, int], Polynomial],
     vanishes: Callable[[Polynomial], bool] | None = None,
 ) -> bool:
-    """Whether T = g_ij q'_i q'_j/2 is the same at every position and in every direction, as of a plane or a sphere:
+    """Whether T = g_ij q'_i q'_j/2 is the same at every position, as of a plane, a sphere, or one beside the other:
 
-        R_ijkl = c (g_ik g_jl - g_il g_jk),    c constant,
+        R_ijkl = c (g_ik g_jl - g_il g_jk),    c constant,    in each part of T that knows no coordinates of others,
 
     R_ijkl of the derivatives of g and of the Christoffel symbols [ij, k].  Then displacements that change no equation
     lead to every position near by.  One coordinate is always such (it is a function of the length of its path).
     ``derivative(x, i)``: by coordinate i, whatever the formulas hold; ``vanishes``: on the positions that are possible.
     """
-    vanishes, size = vanishes or ring.vanishes, range(len(metric))
+    zero, size = vanishes or ring.vanishes, range(len(metric))
     if len(size) == 1:
         return True
-    if len(size) > MOST_CURVED:
+    if len(size) > MOST_CURVED or sum(len(x) for row in metric for x in row) > MOST_CURVED_TERMS:
         return False
     slopes = [[[derivative(x, i) for x in row] for row in metric] for i in size]
+
+    def coupled(i: int, j: int) -> bool:
+        return not all(map(zero, (metric[i][j], *slopes[i][j], *slopes[j][i])))
+
+    parts = components(len(metric), coupled)
+    if len(parts) > 1:
+        return all(
+            constantly_curved(
+                ring,
+                [[metric[i][j] for j in part] for i in part],
+                lambda x, i, part=part: derivative(x, part[i]),  # type: ignore[misc]
+                vanishes,
+            )
+            for part in parts
+        )
     bends = [[[[derivative(x, i) for x in row] for row in slope] for slope in slopes] for i in size]
     symbols = [[[(slopes[i][j][k] + slopes[j][i][k] - slopes[k][i][j]) / 2 for k in size] for j in size] for i in size]
     whole = determinant(ring, metric)
@@ -219,7 +234,7 @@ def constantly_curved(
 
     def same(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> bool:
         """Whether a/b = c/d."""
-        return vanishes(ring.reduce(ring.times(a, d) - ring.times(c, b)))
+        return zero(ring.reduce(ring.times(a, d) - ring.times(c, b)))
 
     top, bottom = curvature(0, 1, 0, 1), area(0, 1, 0, 1)
     pairs = list(combinations(size, 2))

@@ -332,7 +332,8 @@ def basis(ring: Ring, found: Displacements, signs: Signs) -> Basis | None:
         if tried == MOST_CHOICES:
             return None
         regular = determinant(ring, [[c[i] for i in places] for c in found.directions])
-        if signs.sign(regular) in ("positive", "negative"):
+        number = ring.constant_value(regular)  # the ring may hold it, sin(1), since the signs were told
+        if signs.sign(regular) in ("positive", "negative") or (number is not None and not number.contains(0)):
             break
     else:
         return None

@@ -39,7 +39,7 @@ from mbsym.model.system import velocity_name
 from mbsym.problems.checks import D_ALEMBERT, STATES, Check, Pair, compare
 from mbsym.problems.energy import Energy
 from mbsym.problems.equations import Equations
-from mbsym.problems.integrals import ENERGY, Integral, momentum_title, whole_momenta
+from mbsym.problems.integrals import ENERGY, Integral, is_independent, momentum_title, whole_momenta
 
 
 @dataclass(frozen=True, repr=False)
@@ -279,12 +279,10 @@ def _integral(form: SpeedForm, name: str, kind: str, of: str, x: Polynomial) -> 
 
 
 def is_new(form: SpeedForm, x: Polynomial, known: Sequence[Polynomial]) -> bool:
-    """Whether it depends on the state, and is none of the others."""
-    ring = form.ring
+    """Whether it depends on the state, and is no combination of the others."""
+    ring, on = form.ring, form.in_angles(x)
     state = [*form.system.coordinates, *(u.name for u in form.speeds)]
-    if not ring.dependencies(form.in_angles(x), state):
-        return False
-    return not any(form.vanishes(x - sign * other) for other in known for sign in (1, -1))
+    return bool(ring.dependencies(on, state)) and is_independent(ring, on, list(map(form.in_angles, known)))
 
 
 # The self-check of equations in speeds: against d'Alembert's principle, through velocities of the placed bodies.

@@ -12,7 +12,7 @@ Found are
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
   mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted;
-* of systems that consist of parts which do not know each other, the energy of each that is no square of momenta;
+* of systems that consist of parts which do not know each other, the energy of each whose momenta are not all constant;
 * such a momentum less W(q), if the forces that change it are dW/dt: m x' - q B y of a magnetic field, m x' + c x of a
   damper.
 
@@ -124,7 +124,7 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     for item in _energies_of_parts(scene, energy, equations):
         if _is_new(scene.ring, item.formula.polynomial, known):
             known.append(item.formula.polynomial)
-            energies += [] if {*item.of.split()} <= constant else [item]  # else a square of momenta
+            energies += [] if {*item.of.split()} <= constant else [item]  # else by its momenta
     first_integrals = [item for item in (*energies, *momenta) if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
     first_integrals += _momenta(

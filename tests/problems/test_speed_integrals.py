@@ -3,6 +3,7 @@
 import pytest
 from test_speeds import CARRIED, GYROSTAT, PLATE, POISSON, SPEEDS, expected, load
 
+import mbsym
 from mbsym.problems.checks import EXACT
 from mbsym.problems.claims import Outcome
 
@@ -136,3 +137,23 @@ def test_lagranges_top_keeps_its_spin(tmp_path):
     names = [item.name for item in found.integrals]
     assert names == ["generalised energy", "angular momentum about axis 3", "dT/dr", "length of gamma"]
     assert [found.integrals[2].formula] == expected(found, ["C*r"])
+
+
+TILTED = """
+mbsym: 1
+name: ball
+parameters: {m: positive, J: positive, al: real}
+bodies:
+  - {name: frame, attached to: 0, mass: 0, rotation: {axes: [3], angles: [al]}}
+  - {name: ball, attached to: frame, connection point: [x, 2*y, 0], rotation: {axes: [3, 1, 3], angles: [a, b, c]},
+     coordinates: [x, y, a, b, c], orientation: {e: quaternion}, speeds: {p: omega1, q: omega2, s: omega3}, mass: m,
+     inertia about: mass centre, inertia: [J, J, J]}
+"""
+
+
+@pytest.mark.parametrize("angle", ["al", "0", "pi/3"])
+def test_momenta_that_are_combinations_of_others_are_told_once(angle: str) -> None:
+    """m x' cos(al) - 2 m y' sin(al) along an inertial axis follows from m x' and 4 m y'."""
+    found = mbsym.loads(TILTED.replace("[al]", f'["{angle}"]'), (7,)).integrals
+    assert not [one.name for one in found if one.kind == "linear momentum"]
+    assert {"momentum of x", "momentum of y", "angular momentum about axis 1"} <= {one.name for one in found}

@@ -58,7 +58,8 @@ def cases_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         raise NoClosedForm(
-            "special parameters are looked for where there is one unit vector or angle at most, and no root"
+            "special parameters are looked for where there is one unit vector or angle at most, no root, and where no "
+            "constraint ties positions"
         )
     name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
@@ -81,7 +82,10 @@ def along_of(
         return along(usual, low, high)
     larger = _larger(usual, kinds, known)
     if larger is None:
-        raise NoClosedForm("special values are looked for where there is one unit vector or angle at most, and no root")
+        raise NoClosedForm(
+            "special values are looked for where there is one unit vector or angle at most, no root, and where no "
+            "constraint ties positions"
+        )
     listing = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     values = [_new_at_one(larger, value, down) for value in listing.values]

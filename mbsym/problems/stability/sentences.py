@@ -151,7 +151,7 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
         "the coordinates drift away if these are disturbed, so that with them counted the motion is unstable."
     ),
     Because.ALIKE: (
-        "Nothing acts, and for the kinetic energy all positions and directions are alike (constant curvature): "
+        "Nothing acts, and for the kinetic energy all positions are alike (each of its parts has constant curvature): "
         "displacements that change no equation lead to every position near by, as cyclic coordinates do. Velocities, "
         "measured by the kinetic energy, stay near theirs; positions drift away if they are disturbed, so that with "
         "them counted the motion is unstable."

@@ -31,7 +31,8 @@ BUT_FOR_ALGEBRAIC = Message(
 ALMOST = Message(", for almost all values of the parameters")
 NOTHING_KNOWN = "What there is for almost all [[name]] is not known to be all: of other values nothing is proved."
 NOT_LOOKED_FOR = Message(
-    "not looked for: several unit vectors or angles are related, or roots occur, which is not looked at here"
+    "not looked for: several unit vectors or angles are related, constraints tie positions, or roots occur, which is "
+    "not looked at here"
 )
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 #: Why it is not known that there are no other invariant relations.
 UNDECIDED = {
     Obstacle.NOT_HOMOGENEOUS: Message(
-        "relations between variables, of several unit vectors, angles or roots, are not looked at here"
+        "relations between variables, of several unit vectors, angles, roots or constraints, are not looked at here"
     ),
     Obstacle.MIXED: Message("a K of that weight may hold products of variables, which is not looked at"),
     Obstacle.NOT_AT_REST: Message(
