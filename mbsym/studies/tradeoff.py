@@ -119,7 +119,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     stopped = trade.interrupted
     if not trade.rows:
         return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, found, say), _files(asked, request, found.measured, say)
+    lines, files = _lines(request, found, say), _files(asked, request, found.measured)
     after = f", t = 0 .. {request.time:g}"
     if stopped:
         complaints = (*found.notes, say(Message("interrupted; what was measured is kept")))
@@ -127,9 +127,7 @@ def answer(asked: Asked, request: Request, found: Found) -> Answer:
     return Answer(lines, files, found.notes, after=after)
 
 
-def _files(
-    asked: Asked, request: Request, found: trade_study.Study, say: Callable[[str], str]
-) -> dict[str, str | bytes]:
+def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str, str | bytes]:
     from mbsym.model.quantities import time_unit
     from mbsym.report.figures.tradeoff_figure import work_precision
     from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv, tradeoff_json
@@ -139,8 +137,9 @@ def _files(
     files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
     if models:
         files["fidelity.csv"] = fidelity_csv(models)
+    sentence = str(_advised(request, found))  # programs read English
     files[f"tradeoff{mark}.json"] = tradeoff_json(
-        asked.system, found, say(_advised(request, found)), request.time, request.target, request.budget
+        asked.system, found, sentence, request.time, request.target, request.budget
     )
     pictures = work_precision(asked.system, request.time, trade, request.target, models, ("svg", "png"))
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
