@@ -7,8 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-import mbsym_cli
 import pytest
+
+import mbsym_cli
 
 SCRIPT = """
 import atexit, sys, threading, time
