@@ -41,17 +41,19 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
     an expression is made of numbers, pi and parameters.
     """
     expressions: dict[str, Expression] = {}
-    given: dict[str, str] = {}
+    texts_by_name: dict[str, str] = {}
     for text in texts:
         text = " ".join(text.splitlines())
         complaints = Complaints()
-        _read(text, system, complaints, expressions, given)
-        options.complaints += [render_option(one, text, "--set", options.say) for one in complaints.sorted()]
-    return Assigned(expressions, given)
+        _read(text, system, complaints, expressions, texts_by_name)
+        options.complaints += [
+            render_option(complaint, text, "--set", options.say) for complaint in complaints.sorted()
+        ]
+    return Assigned(expressions, texts_by_name)
 
 
 def _read(
-    text: str, system: System, complaints: Complaints, found: dict[str, Expression], given: dict[str, str]
+    text: str, system: System, complaints: Complaints, expressions: dict[str, Expression], texts_by_name: dict[str, str]
 ) -> None:
     left, equals, right = text.partition("=")
     name, blanks = left.strip(), len(left) - len(left.lstrip())
@@ -62,9 +64,9 @@ def _read(
         complaints.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
         return
     known = _check_target(name, span, system, complaints)
-    if name in given:
+    if name in texts_by_name:
         complaints.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
-    given[name] = text
+    texts_by_name[name] = text
     place = _Places(len(left) + 1)
     value = parse_expression(right, complaints, place)
     parts = walk(value) if value is not None else names_apart(right, place, complaints.items)
@@ -75,7 +77,7 @@ def _read(
                 "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
             )
     if known and value is not None and not complaints.errors:
-        found[name] = value
+        expressions[name] = value
 
 
 def given_numbers(
@@ -125,7 +127,9 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
 
     assigned = assignments(settings, system, options)
     values = {}
-    known = {one.name: one.value for one in system.parameters if one.value is not None} | dict(assigned.values)
+    known = {parameter.name: parameter.value for parameter in system.parameters if parameter.value is not None} | dict(
+        assigned.values
+    )
     for name, value in assigned.values.items():
         if name not in system.parameter_names:
             assigned.complain(
@@ -164,21 +168,26 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:
     """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
-    for one in lack.contradictions:
-        if one.name in assigned.texts:
-            assigned.complain(one.name, one.code, one.text, options, one.hint)
+    for contradiction in lack.contradictions:
+        if contradiction.name in assigned.texts:
+            assigned.complain(contradiction.name, contradiction.code, contradiction.text, options, contradiction.hint)
         else:
             options.complaints.append(
-                render_option(Complaint(one.code, one.text, None, one.hint), "", str(file), options.say)
+                render_option(
+                    Complaint(contradiction.code, contradiction.text, None, contradiction.hint),
+                    "",
+                    str(file),
+                    options.say,
+                )
             )
 
 
 def _unread(system: System, assigned: Assigned) -> set[str]:
     """Names whose value was refused, and what follows from them through relations: these do not lack one."""
-    found = assigned.texts.keys() - assigned.values.keys()
+    unread = assigned.texts.keys() - assigned.values.keys()
     for _ in system.relations:
-        found |= {relation.name for relation in system.relations if names(relation.value) & found}
-    return found
+        unread |= {relation.name for relation in system.relations if names(relation.value) & unread}
+    return unread
 
 
 class _Places:
@@ -233,5 +242,5 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
 
 def missing(file: Path, shown: Sequence[str], what: str = "value", say: Callable[[str], str] = str) -> str:
     """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
-    one = unfit(shown, what)
-    return render_option(Complaint(one.code, one.message, None, one.hint), "", str(file), say)
+    unfit_names = unfit(shown, what)
+    return render_option(Complaint(unfit_names.code, unfit_names.message, None, unfit_names.hint), "", str(file), say)

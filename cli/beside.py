@@ -67,8 +67,8 @@ def beside(work: Callable[[], T], sound: Callable[[T], bool]) -> Iterator[Callab
     with copy:
 
         def value() -> T:
-            found, made = copy.value()
-            return made if found else work()
+            available, made = copy.value()
+            return made if available else work()
 
         yield value
 

@@ -53,9 +53,9 @@ def command(files: tuple[Path, ...], output_format: str, skip_others: bool) -> N
         files = tuple(file for file in files if file.is_dir() or not os.access(file, os.R_OK) or is_description(file))
     if not files:
         sys.exit(Exit.OK if output_format == "text" else _for_programs((), output_format))
-    asked = Options()
-    paths = asked.descriptions(files)
-    if asked.refused():
+    options = Options()
+    paths = options.descriptions(files)
+    if options.refused():
         sys.exit(Exit.BAD_INPUT)
     if output_format != "text":
         sys.exit(_for_programs(paths, output_format))
@@ -86,7 +86,7 @@ def _for_programs(paths: Sequence[Path], output_format: str) -> int:
         worst = max(worst, Exit.BAD_INPUT if complaints.errors else Exit.OK)
     written = {
         "github": github_annotations,
-        "sarif": lambda found: sarif(found, mbsym.__version__),
+        "sarif": lambda all_findings: sarif(all_findings, mbsym.__version__),
         "json": json_lines,
     }
     sys.stdout.write(written[output_format](findings))
@@ -112,10 +112,10 @@ def _size(system: System) -> str:
         title = Message("coordinates: [[names]]", names=names)
     else:
         title = Message("coordinates ([[count]]): [[names]]", count=count, names=names)
-    told = [say(title)]
+    sentences = [say(title)]
     if system.linear is not None:
-        given = ", ".join(matrix.key for matrix in system.linear.matrices)
-        return "; ".join([*told, f"{say('given by its matrices')}: {given}"])
+        keys = ", ".join(matrix.key for matrix in system.linear.matrices)
+        return "; ".join([*sentences, f"{say('given by its matrices')}: {keys}"])
     if system.constraints:  # how many of the coordinates are free is another question
-        told.append(say(Message("constraints: [[count]]", count=len(system.constraints))))
-    return "; ".join([*told, say(Message("bodies and frames: [[count]]", count=len(system.bodies)))])
+        sentences.append(say(Message("constraints: [[count]]", count=len(system.constraints))))
+    return "; ".join([*sentences, say(Message("bodies and frames: [[count]]", count=len(system.bodies)))])

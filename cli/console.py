@@ -127,9 +127,9 @@ def asked_width(stderr: bool = False) -> int | None:
 
     None in a file or pipe of which nothing is said: there a statement is one line, so that nothing is cut from a log.
     """
-    asked = os.environ.get("COLUMNS", "")
-    if asked.isdecimal() and int(asked) > 0:
-        return max(int(asked), 30)
+    columns = os.environ.get("COLUMNS", "")
+    if columns.isdecimal() and int(columns) > 0:
+        return max(int(columns), 30)
     stream = sys.stderr if stderr else sys.stdout
     return shutil.get_terminal_size().columns if stream.isatty() else None
 
@@ -315,7 +315,7 @@ def read_held(file: Path, command: str, constrained: bool = False, moving: bool 
         return system
     from mbsym.report.language import Language
 
-    values = ", ".join(f"{one.name} = {text(one.held)}" for one in system.inputs)
+    values = ", ".join(f"{quantity.name} = {text(quantity.held)}" for quantity in system.inputs)
     words = "note: for '[[command]]' the inputs are constant, as on the unperturbed motion: [[values]]"
     complain(file, Language(system.language).say(Message(words, command=command, values=values)))
     return held(system)
@@ -428,7 +428,7 @@ def watching(quiet: bool, name: str) -> Iterator[Watch]:
             now = time.monotonic()
             if text != said or now - shown > 0.05:
                 said, shown = text, now
-                told = f"{printable(name)}: {printable(text)}" if text else printable(name)
-                bar.update(task, description=told, completed=done, total=whole or None)
+                description = f"{printable(name)}: {printable(text)}" if text else printable(name)
+                bar.update(task, description=description, completed=done, total=whole or None)
 
         yield watch

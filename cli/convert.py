@@ -72,18 +72,18 @@ def command(
       mbsym convert robot.urdf --symbols --out robot.yaml
       mbsym convert systems/simple-pendulum.yaml --to yaml --scale "t=tau/w,J=j*m*l**2,g=l*(1+j)*w**2,b=m*l**2*w*d"
     """
-    asked = Options()
-    asked.say = speaking(file)
+    command_options = Options()
+    command_options.say = speaking(file)
     if out is not None and _same(out, file):
-        asked.complain(
+        command_options.complain(
             "--out",
             "same-file",
             Message("[[file]] would replace what it is made of", file=printable(out)),
             "comments would be lost",
         )
     else:
-        asked.unwritten("--out", out)
-    if asked.refused(file):
+        command_options.unwritten("--out", out)
+    if command_options.refused(file):
         sys.exit(Exit.BAD_INPUT)
     robot = robot_text(file)
     if robot is not None:
@@ -98,8 +98,8 @@ def command(
             sys.exit(Exit.BAD_INPUT)
         written, system = None, read_description(file)
     if system is not None and scale is not None:
-        written, system = None, in_scale(system, scale, asked)
-        if asked.refused(file):
+        written, system = None, in_scale(system, scale, command_options)
+        if command_options.refused(file):
             sys.exit(Exit.BAD_INPUT)
     if system is None:
         sys.exit(Exit.BAD_INPUT)
@@ -117,9 +117,9 @@ def command(
         sys.exit(Exit.FAILED)
 
 
-def _same(one: Path, other: Path) -> bool:
+def _same(first: Path, other: Path) -> bool:
     with suppress(OSError, ValueError):
-        return one.samefile(other)
+        return first.samefile(other)
     return False
 
 
@@ -208,8 +208,8 @@ def described(file: Path, text: str, choices: Choices) -> str | None:
         many = "[[count]] errors; nothing was written." if errors > 1 else "[[count]] error; nothing was written."
         complain(file, Message(many, count=errors))
         return None
-    for told in made.left_out:
-        complain(file, Message("left out: [[what]]", what=printable(told)))
+    for omitted in made.left_out:
+        complain(file, Message("left out: [[what]]", what=printable(omitted)))
     if made.snapped:
         angles = ", ".join(map(printable, made.snapped[:SHOWN])) + (", ..." if len(made.snapped) > SHOWN else "")
         text = "angles read as parts of pi ([[count]]): [[angles]]; --angles exact leaves them as they are"

@@ -54,9 +54,9 @@ def command(a: Path, b: Path, check: bool, as_json: bool, everything: bool, lang
       mbsym diff old/results.json new/results.json
       mbsym diff systems build --check --json
     """
-    asked = Options()
-    tongue = None if language is None else asked.word("--language", language, tuple(LANGUAGES), "language")
-    if asked.refused():
+    options = Options()
+    tongue = None if language is None else options.word("--language", language, tuple(LANGUAGES), "language")
+    if options.refused():
         sys.exit(Exit.BAD_INPUT)
     sides = _side(a), _side(b)
     if not all(sides):
@@ -84,7 +84,7 @@ def _compare(
     worst, systems = Exit.OK, list[doc.SystemDiff]()
     for name, first, second in common:
         try:
-            found = diff(first.content(second), second.content(first))
+            difference = diff(first.content(second), second.content(first))
         except Unreadable:
             worst = Exit.BAD_INPUT
             continue
@@ -92,13 +92,13 @@ def _compare(
             defect(error, name)
             worst = max(worst, Exit.FAILED)
             continue
-        if not found.same and check:
+        if not difference.same and check:
             worst = max(worst, Exit.FAILED)
-        systems.append(system_data(name, found))
+        systems.append(system_data(name, difference))
         if not as_json:
-            say = speaking(*(one.path for one in (first, second) if one.description))
+            say = speaking(*(source.path for source in (first, second) if source.description))
             say = say if language is None else Language(language).say
-            show(name, first.title, second.title, found, everything, say)
+            show(name, first.title, second.title, difference, everything, say)
     for name, first_only, source in lacking:
         worst = max(worst, Exit.FAILED if check else Exit.OK)
         if not as_json:
@@ -137,19 +137,23 @@ class Source:
     @cached_property
     def read(self) -> Mapping[str, Any]:
         try:
-            found = json.loads(self.path.read_text(encoding="utf-8"))
+            results = json.loads(self.path.read_text(encoding="utf-8"))
         except OSError as error:
             complain(self.path, Message("it cannot be read: [[why]]", why=reason_of(error)))
             raise Unreadable from error
         except (ValueError, RecursionError) as error:
             complain(self.path, Message("error[not-json]: this is no JSON: [[why]]", why=ascii_safe(str(error)[:200])))
             raise Unreadable from error
-        if not isinstance(found, dict) or found.get("format") != 1 or not isinstance(found.get("coordinates"), list):
+        if (
+            not isinstance(results, dict)
+            or results.get("format") != 1
+            or not isinstance(results.get("coordinates"), list)
+        ):
             complain(self.path, "error[not-results]: this is no results.json of format 1")
             hint = Message("mbsym run writes one; those of earlier versions have to be written again")
             print(f"  {speaking(self.path)(Message('hint: [[hint]]', hint=hint))}", file=sys.stderr)
             raise Unreadable
-        return found
+        return results
 
     def _derived(self, like: Mapping[str, Any] | None) -> Mapping[str, Any]:
         system = read_description(self.path)
@@ -163,8 +167,8 @@ class Source:
         listed = isinstance(problems, (list, tuple)) and all(number in ALL_PROBLEMS for number in problems)
         chosen = tuple(problems) if listed and problems else USUAL_PROBLEMS
         budget = terms if isinstance(terms, int) and 0 < terms <= 10**12 else TERM_BUDGET
-        found: dict[str, Any] = json.loads(render(Analysis(system, chosen, budget), chosen))
-        return found
+        results: dict[str, Any] = json.loads(render(Analysis(system, chosen, budget), chosen))
+        return results
 
 
 def _side(path: Path) -> dict[str, Source]:
@@ -310,49 +314,52 @@ def _cut(text: str) -> str:
     return Message("[[beginning]]... ([[count]] characters)", beginning=text[:LONGEST], count=len(text))
 
 
-def show(name: str, first: str, second: str, found: Diff, everything: bool, say: Callable[[str], str]) -> None:
+def show(name: str, first: str, second: str, difference: Diff, everything: bool, say: Callable[[str], str]) -> None:
     """One system on the terminal."""
     from rich.text import Text
 
     def told(text: str, indent: int = 4) -> None:
         out.print(printable(" " * indent + say(text)))
 
-    out, restated = console(), len(found.restated)
+    out, restated = console(), len(difference.restated)
     equal = Message("formulas that are equal and printed otherwise: [[count]]", count=restated)
-    if found.same:
+    if difference.same:
         summary = Message("no change")
         if restated:
             summary = Message("no change ([[restated]])", restated=equal)
         out.print(Text.assemble((printable(name), "bold"), f": {say(summary)}"))
     else:
-        counts = Counted(len(found.changes), "change") if found.changes else Message("only names are others")
+        counts = Counted(len(difference.changes), "change") if difference.changes else Message("only names are others")
         sides = (printable(f"{first} -> {second}"), "dim")
         out.print(Text.assemble((printable(name), "bold"), f": {say(counts)}   ", sides))
-        for renaming in found.renamed:
+        for renaming in difference.renamed:
             text = "[[kind]] [[before]] is called [[after]]"
             renamed = Message(text, kind=worded(renaming.kind), before=renaming.before, after=renaming.after)
             out.print(Text.assemble(("  ~ ", "cyan"), printable(say(renamed))))
-        shown = found.changes if everything else found.changes[:MOST_CHANGES]
+        shown = difference.changes if everything else difference.changes[:MOST_CHANGES]
         for change in shown:
             sign, colour = _SIGN.get(change.kind, ("*", "magenta"))
             for k, line in enumerate(lines(change)):
                 out.print(Text.assemble((f"  {sign if not k else ' '} ", colour), printable(say(line))))
-        if len(shown) < len(found.changes):
-            told(Message("and [[count]] more: --all prints them", count=len(found.changes) - len(shown)))
+        if len(shown) < len(difference.changes):
+            told(Message("and [[count]] more: --all prints them", count=len(difference.changes) - len(shown)))
         if restated:
             told(equal)
-    if found.versions[0] != found.versions[1]:
+    if difference.versions[0] != difference.versions[1]:
         text = "written by mbsym [[before]] -> [[after]]"
-        told(Message(text, before=found.versions[0], after=found.versions[1]))
+        told(Message(text, before=difference.versions[0], after=difference.versions[1]))
 
 
-def system_data(name: str, found: Diff) -> doc.SystemDiff:
+def system_data(name: str, difference: Diff) -> doc.SystemDiff:
     """One system, for ``--json``."""
     return doc.SystemDiff(
         system=name,
-        same=found.same,
-        versions=list(found.versions),
-        renamed=[doc.RenamedRow(kind=one.kind, before=one.before, after=one.after) for one in found.renamed],
+        same=difference.same,
+        versions=list(difference.versions),
+        renamed=[
+            doc.RenamedRow(kind=renaming.kind, before=renaming.before, after=renaming.after)
+            for renaming in difference.renamed
+        ],
         changes=[
             doc.ChangeRow(
                 path=list(change.path),
@@ -364,7 +371,7 @@ def system_data(name: str, found: Diff) -> doc.SystemDiff:
                 first=change.first or None,
                 points=change.points,
             )
-            for change in found.changes
+            for change in difference.changes
         ],
-        restated=[list(path) for path in found.restated],
+        restated=[list(path) for path in difference.restated],
     )

@@ -41,9 +41,9 @@ def command(file: Path | None, port: str, no_browser: bool) -> None:
             raise
         print("the editor needs Starlette and Uvicorn: pip install 'mbsym[edit]'", file=sys.stderr)
         sys.exit(Exit.BAD_INPUT)
-    asked = Options()
-    number = asked.whole("--port", port, 0, 65535)
-    if asked.refused() or number is None:
+    options = Options()
+    number = options.whole("--port", port, 0, 65535)
+    if options.refused() or number is None:
         sys.exit(Exit.BAD_INPUT)
     path = file or _unused()
     reason = _unfit(path)
@@ -77,11 +77,11 @@ def command(file: Path | None, port: str, no_browser: bool) -> None:
 
 def _unused() -> Path:
     """mechanism.yaml, or the first of its numbered siblings that is not there."""
-    found, count = Path("mechanism.yaml"), 1
-    while found.exists():
+    path, count = Path("mechanism.yaml"), 1
+    while path.exists():
         count += 1
-        found = Path(f"mechanism-{count}.yaml")
-    return found
+        path = Path(f"mechanism-{count}.yaml")
+    return path
 
 
 def _unfit(path: Path) -> str:

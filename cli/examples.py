@@ -34,12 +34,12 @@ def command(names: tuple[str, ...], every: bool, out: Path) -> None:
     if not names and not every:
         _list(known)
         return
-    asked = Options()
-    chosen = known if every else tuple(asked.word("NAME", name, known, "example") for name in names)
+    options = Options()
+    chosen = known if every else tuple(options.word("NAME", name, known, "example") for name in names)
     targets = {name: out / f"{name}.yaml" for name in chosen if name is not None}
     for path in targets.values():
-        asked.unwritten("NAME", path)
-    if asked.refused():
+        options.unwritten("NAME", path)
+    if options.refused():
         sys.exit(Exit.BAD_INPUT)
     sys.exit(max([Exit.OK, *(_copy(name, path) for name, path in targets.items())]))
 

@@ -79,7 +79,9 @@ def _as_known(word: str) -> str:
 
 def _near(word: str) -> list[str]:
     """Names that hold the word, or the one that resembles it."""
-    holding = [one for one in known_words() if word.casefold() in one.casefold().replace("-", " ").split()]
+    holding = [
+        candidate for candidate in known_words() if word.casefold() in candidate.casefold().replace("-", " ").split()
+    ]
     return holding[:3] or get_close_matches(word, known_words(), 1)
 
 
@@ -99,9 +101,9 @@ def _command(word: str) -> Iterator[str]:
 
     if word in COMMANDS:
         context = click.Context(main, info_name="mbsym")
-        found = main.get_command(context, word)
-        assert found is not None
-        yield found.get_help(click.Context(found, context, word, max_content_width=100))
+        subcommand = main.get_command(context, word)
+        assert subcommand is not None
+        yield subcommand.get_help(click.Context(subcommand, context, word, max_content_width=100))
 
 
 def _verdict(word: str) -> Iterator[str]:
@@ -204,5 +206,5 @@ def _topic(name: str) -> str:
         from mbsym.problems import claims
 
         return f"{str(claims.__doc__).strip()}\n\n{topics.claim_kinds()}"
-    found: str = getattr(topics, name)()
-    return found
+    text: str = getattr(topics, name)()
+    return text

@@ -134,8 +134,8 @@ def deliver(
                 _written(staged[-1], manifest)
                 _at_once(lambda stream: os.fsync(stream.fileno()), staged)
             folders = [*(inner for inner in stage.iterdir() if inner.is_dir()), stage]
-            for one in folders:
-                os.chmod(one, 0o777 & ~_umask())
+            for directory in folders:
+                os.chmod(directory, 0o777 & ~_umask())
             _at_once(_flush_folder, folders)
             os.rename(stage, folder / _READY)
         except BaseException:
@@ -191,9 +191,9 @@ def _merged(old: Sets, command: str, digests: dict[str, str], gone: Collection[s
     merged: Sets = []
     for owner, files in old:
         leaving = set(digests) | ((set(files) if gone is None else set(gone)) if owner == command else set())
-        kept = {name: digest for name, digest in files.items() if name not in leaving}
-        if kept:
-            merged.append((owner, kept))
+        remaining = {name: digest for name, digest in files.items() if name not in leaving}
+        if remaining:
+            merged.append((owner, remaining))
     return [*merged, (command, digests)] if digests else merged
 
 
@@ -206,10 +206,10 @@ def _read_sets(file: Path) -> Sets:
     """Its names are somebody's word, which nobody follows out of the folder."""
     try:
         content = json.loads(file.read_bytes())
-        found = [(str(one["command"]), dict(one["files"])) for one in content["sets"]]
+        sets = [(str(entry["command"]), dict(entry["files"])) for entry in content["sets"]]
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return []
-    return [(command, {str(k): str(v) for k, v in files.items() if _is_plain(str(k))}) for command, files in found]
+    return [(command, {str(k): str(v) for k, v in files.items() if _is_plain(str(k))}) for command, files in sets]
 
 
 def _is_plain(name: str) -> bool:

@@ -35,14 +35,16 @@ LAWS = Kind("--input", "input", "law", "u=sin(3*t)", "this description has no in
 MOTIONS = Kind("--motion", "coordinate", "motion", "theta=sin(t)", "")
 
 
-def read_formula(text: str, system: System, what: Kind, found: dict[str, Expression], options: Options) -> None:
-    """Puts a sound formula into ``found``; whatever is wrong with it joins the complaints of ``asked``."""
+def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expression], options: Options) -> None:
+    """Puts a sound formula into ``formulas``; whatever is wrong with it joins the complaints of ``asked``."""
     text, complaints = " ".join(text.splitlines()), Complaints()
-    _read(text, system, what, complaints, found)
-    options.complaints += [render_option(one, text, what.option, options.say) for one in complaints.sorted()]
+    _read(text, system, what, complaints, formulas)
+    options.complaints += [
+        render_option(complaint, text, what.option, options.say) for complaint in complaints.sorted()
+    ]
 
 
-def _read(text: str, system: System, what: Kind, complaints: Complaints, found: dict[str, Expression]) -> None:
+def _read(text: str, system: System, what: Kind, complaints: Complaints, formulas: dict[str, Expression]) -> None:
     from mbsym.source.laws import LAW, MOTION, read_law
     from mbsym.source.scope import did_you_mean, listed
 
@@ -61,7 +63,7 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, found: 
         near = did_you_mean(name, known) or listed(there, known) or what.none
         words = "there is no [[kind]] called [[name]]"
         complaints.error("unknown-name", Message(words, kind=worded(what.kind), name=ascii_safe(name)), span, near)
-    elif name in found:
+    elif name in formulas:
         complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
     offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
 
@@ -70,7 +72,7 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, found: 
 
     law = read_law(right, system, complaints, place, allowed)
     if law is not None and not complaints.errors:
-        found[name] = law
+        formulas[name] = law
 
 
 def read_quantity(option: str, text: str, kind: Formula, system: System | None, options: Options) -> Quantity:

@@ -49,15 +49,15 @@ class Server(LanguageServer):
         text = document.source
         parts = urlsplit(uri)
         path = Path(unquote(parts.path))
-        found: list[types.Diagnostic] = []
+        diagnostics: list[types.Diagnostic] = []
         if says_so(text):
             system, complaints = read(text, path.name, path.parent if parts.scheme == "file" else None)
             if system is not None and (uri not in self.seen or self.seen[uri].system != system):
                 self.seen[uri] = Seen(system, Analysis(system))
             lines = text.splitlines()
-            found = [_diagnostic(complaint, lines) for complaint in complaints.sorted()]
+            diagnostics = [_diagnostic(complaint, lines) for complaint in complaints.sorted()]
         self.text_document_publish_diagnostics(
-            types.PublishDiagnosticsParams(uri=uri, diagnostics=found, version=document.version)
+            types.PublishDiagnosticsParams(uri=uri, diagnostics=diagnostics, version=document.version)
         )
 
 
@@ -140,8 +140,8 @@ def server() -> Server:
         text = made.workspace.get_text_document(uri).source
         line, column = placed(text, position)
         seen = made.seen.get(uri)
-        told = explanation(text, line, column, seen.analysis if seen else None)
-        return None if told is None else types.Hover(types.MarkupContent(types.MarkupKind.Markdown, told))
+        markdown = explanation(text, line, column, seen.analysis if seen else None)
+        return None if markdown is None else types.Hover(types.MarkupContent(types.MarkupKind.Markdown, markdown))
 
     return made
 

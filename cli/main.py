@@ -6,9 +6,11 @@ Sub-commands are imported when they are called, so that ``mbsym --help`` does no
 from __future__ import annotations
 
 import importlib
+import inspect
 import os
 import sys
 from collections.abc import Callable, Sequence
+from copy import copy
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -73,6 +75,31 @@ GROUPS = {
 }
 
 
+#: ``--help`` of a command fills no more lines, as far as its options leave room.
+SCREEN = 50
+
+
+#: A block of examples is left with so many lines: its heading, and three of them.
+FEWEST = 5
+
+
+class Helped(click.Context):
+    """``--help`` tells as much of a command as a screen holds; all of it stands in ``mbsym explain``."""
+
+    def get_help(self) -> str:
+        told = super().get_help()
+        own = copy(self.command)
+        paragraphs = inspect.cleandoc(own.help or "").split("\n\n")
+        at = next((k for k, one in enumerate(paragraphs) if "Example" in one.partition(":")[0]), len(paragraphs))
+        prose, examples = paragraphs[:at], "\n\n".join(paragraphs[at:]).splitlines()
+        more = f"All that there is to say: mbsym explain {self.info_name}"
+        while told.count("\n") >= SCREEN and (len(prose) > 1 or len(examples) > FEWEST):
+            (prose if len(prose) > 1 else examples).pop()
+            own.help = "\n\n".join([*prose, more, "\n".join(examples)])
+            told = own.get_help(self)
+        return told
+
+
 #: Where a context has the words of its command line.
 WORDS = "mbsym.words"
 
@@ -87,7 +114,7 @@ class LazyGroup(click.Group):
         if name not in COMMANDS:
             return None
         command = _command(COMMANDS[name].module)
-        command.short_help = COMMANDS[name].does
+        command.short_help, command.context_class = COMMANDS[name].does, Helped
         if not any(option.name == "debug" for option in command.params):
             if name == "new" or any(option.name == "out" for option in command.params):
                 command.params.append(_force())
@@ -211,8 +238,8 @@ def _force() -> click.Option:
 
         Force.wanted = Force.wanted or value
 
-    told = "Replace files that mbsym did not write, too."
-    return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=told)
+    help_text = "Replace files that mbsym did not write, too."
+    return click.Option(["--force"], is_flag=True, expose_value=False, callback=want, help=help_text)
 
 
 def _debug() -> click.Option:

@@ -47,20 +47,20 @@ def command(name: str, like: str | None, language: str | None) -> None:
     from mbsym.source.examples import example_like, example_names
     from mbsym_cli.files import write_whole
 
-    asked = Options()
-    tongue = "" if language is None else asked.word("--language", language, tuple(LANGUAGES), "language") or ""
-    say = asked.say = Language(tongue).say
+    options = Options()
+    tongue = "" if language is None else options.word("--language", language, tuple(LANGUAGES), "language") or ""
+    say = options.say = Language(tongue).say
     path = Path(name if name.endswith((".yaml", ".yml")) else f"{name}.yaml")
     if not path.stem.strip() or path.is_dir():
-        asked.complain("NAME", "bad-name", Message("no file can be called [[name]]", name=printable(name)))
+        options.complain("NAME", "bad-name", Message("no file can be called [[name]]", name=printable(name)))
     else:
-        asked.unwritten("NAME", path)
+        options.unwritten("NAME", path)
     if like is None and not _answers():
         like = "pendulum"
     example = None if like is None else example_like(like)
     if like is not None and example is None:
-        asked.word("--like", like, example_names(), "example")
-    if asked.refused():
+        options.word("--like", like, example_names(), "example")
+    if options.refused():
         sys.exit(Exit.BAD_INPUT)
     title = path.stem.replace("-", " ").replace("_", " ").capitalize()
     text = _interview(title, say) if example is None else _renamed(example, title)
@@ -74,12 +74,12 @@ def command(name: str, like: str | None, language: str | None) -> None:
     quoted = shlex.quote(shown)
     begun = Message("[[file]], begun with the example [[name]]", file=shown, name=example)
     click.echo(shown if example is None else say(begun))
-    told = (
+    next_steps = (
         ("run", Message("derives it")),
         ("watch", Message("derives it whenever you save")),
         ("edit", Message("draws it in the browser")),
     )
-    for name, what in told:
+    for name, what in next_steps:
         click.echo(f"  mbsym {name} {quoted}{' ' * (5 - len(name))}  {say(what)}")
 
 
@@ -113,8 +113,8 @@ def _interview(title: str, say: Callable[[str], str]) -> str:
     title = click.prompt(say(Message("What is the system called")), default=title)
     count = click.prompt(say(Message("How many bodies")), type=click.IntRange(1, 20), default=1)
     click.echo(say(Message("Joints:")))
-    for joint, (_, _, told) in JOINTS.items():
-        click.echo(f"    {joint:<7} {say(told)}")
+    for joint, (_, _, description) in JOINTS.items():
+        click.echo(f"    {joint:<7} {say(description)}")
     bodies: list[NewBody] = []
     for number in range(1, count + 1):
         bodies.append(_body(number, bodies, say))

@@ -88,7 +88,7 @@ class Options:
         """
         from mbsym.source.text_lines import is_description
 
-        found: dict[str, Path] = {}
+        paths: dict[str, Path] = {}
         others = 0
         for path in files:
             inside = [path]
@@ -103,11 +103,11 @@ class Options:
                 inside = [child for child in named if is_description(child)]
                 inside.sort(key=lambda child: (child.stem, SUFFIXES.index(child.suffix)))
                 others += len(named) - len(inside)
-            for one in inside:
-                found.setdefault(identity_of(one), one)
-        if not found and not self.complaints:
+            for description in inside:
+                paths.setdefault(identity_of(description), description)
+        if not paths and not self.complaints:
             self.complain(", ".join(map(str, files)), "no-descriptions", nothing_here(others), DESCRIPTIONS_HAVE)
-        return list(found.values())
+        return list(paths.values())
 
     def unwritten(self, option: str, path: Path | None) -> None:
         """Complains of a file to be written that is there already."""
@@ -120,7 +120,7 @@ class Options:
 
     def problems(self, text: str) -> tuple[int, ...]:
         """``--problems``: ``1-5``, ``1,3,5`` or ``6``."""
-        found: set[int] = set()
+        numbers: set[int] = set()
         for part in (part.strip() for part in text.split(",")):
             first, dash, last = (piece.strip() for piece in part.partition("-"))
             ends = (first, last) if dash else (first, first)
@@ -142,8 +142,8 @@ class Options:
                 hint = Message("problems are numbered [[numbers]]", numbers=ranges())
                 self.complain("--problems", "unknown-problem", message, hint)
                 continue
-            found.update(number for number in NUMBERS if low <= number <= high)
-        return tuple(sorted(found))
+            numbers.update(number for number in NUMBERS if low <= number <= high)
+        return tuple(sorted(numbers))
 
     def number(self, option: str, text: str | None, least: float = 0.0, most: float | None = None) -> float | None:
         """A positive number made of numbers and pi (``2*pi``, ``1e-3``), between bounds."""
@@ -169,10 +169,10 @@ class Options:
                         Message("a number is wanted here, not [[name]]", name=ascii_safe(node.name)),
                         node.span,
                     )
-        found = None
+        evaluated = None
         if value is not None and not complaints.errors:
             try:
-                found = float(exact(value, {}))
+                evaluated = float(exact(value, {}))
             except Failure as reason:
                 complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
             else:
@@ -181,14 +181,14 @@ class Options:
                     within = Message("it is at most [[most]]", most=f"{most:g}")
                 if most is not None and least:
                     within = Message("choose between [[least]] and [[most]]", least=f"{least:g}", most=f"{most:g}")
-                if not found > 0:
+                if not evaluated > 0:
                     complaints.error("bad-number", "it must be positive", whole, within if least else None)
-                elif found < least or (most is not None and found > most):
+                elif evaluated < least or (most is not None and evaluated > most):
                     complaints.error(
                         "bad-number", within or Message("it is at least [[least]]", least=f"{least:g}"), whole
                     )
         self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints.sorted()]
-        return None if complaints.errors else found
+        return None if complaints.errors else evaluated
 
     def whole(self, option: str, text: str | None, least: int, most: int, why: str = "") -> int | None:
         """A whole number between bounds; ``why`` says what the lower one is for."""

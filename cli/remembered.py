@@ -29,16 +29,16 @@ def remembered(
 ) -> tuple[T, bool]:
     """(the answer, whether it is an earlier one); only ``sound`` ones are kept, and ``anew`` none is looked for."""
     key = stored.key_of([derivation(), *_surroundings(), *question])
-    kept = None if anew else stored.load(key, stored.MEASURED)
-    if kept is not None:
+    pickled = None if anew else stored.load(key, stored.MEASURED)
+    if pickled is not None:
         with suppress(Exception):  # written by ourselves, but by another Python
-            found: T = pickle.loads(kept)
-            return found, True
-    found = measure()
-    if sound(found):
+            answer: T = pickle.loads(pickled)
+            return answer, True
+    answer = measure()
+    if sound(answer):
         with suppress(pickle.PicklingError, TypeError):
-            stored.keep(key, pickle.dumps(found, pickle.HIGHEST_PROTOCOL), stored.MEASURED)
-    return found, False
+            stored.keep(key, pickle.dumps(answer, pickle.HIGHEST_PROTOCOL), stored.MEASURED)
+    return answer, False
 
 
 def _surroundings() -> list[str]:

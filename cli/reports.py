@@ -87,14 +87,14 @@ def report_on(path: Path, folder: Path, base: Path | None, request: Request) -> 
         system = read_description(path)
         if system is None:
             return Exit.BAD_INPUT
-        asked = Options()
-        asked.say = say
+        options = Options()
+        options.say = say
         if request.settings:
-            system = with_settings(path, system, request.settings, asked)
-        if request.scale is not None and not asked.complaints:
-            system = in_scale(system, request.scale, asked) if system is not None else None
-        letters = None if request.letters is None or system is None else read_letters(request.letters, system, asked)
-        if asked.refused(path) or system is None:
+            system = with_settings(path, system, request.settings, options)
+        if request.scale is not None and not options.complaints:
+            system = in_scale(system, request.scale, options) if system is not None else None
+        letters = None if request.letters is None or system is None else read_letters(request.letters, system, options)
+        if options.refused(path) or system is None:
             return Exit.BAD_INPUT
         reason = obstacle(folder, base)
         if reason:
@@ -158,22 +158,22 @@ def _figures(folder: Path, system: System) -> tuple[MadeFigure, ...]:
     return made_figures(text, meaning(system), unchanged)
 
 
-def _ledger(analysis: Analysis, texts: dict[str, str | bytes], wanted: AccuracyGoal | bool) -> Ledger:
+def _ledger(analysis: Analysis, texts: dict[str, str | bytes], goal: AccuracyGoal | bool) -> Ledger:
     """The ledger of a finished run, put into its files."""
     from mbsym.numerics.ledger.table import ledger
     from mbsym.report.runs.ledger import ledger_csv, with_ledger
     from mbsym.report.targets import TARGETS
 
-    found = ledger(analysis, wanted=None if isinstance(wanted, bool) else wanted)
+    run_ledger = ledger(analysis, wanted=None if isinstance(goal, bool) else goal)
     results = TARGETS["json"].filename
     if results in texts:
-        texts[results] = with_ledger(str(texts[results]), found)
-    texts["ledger.csv"] = ledger_csv(found)
-    return found
+        texts[results] = with_ledger(str(texts[results]), run_ledger)
+    texts["ledger.csv"] = ledger_csv(run_ledger)
+    return run_ledger
 
 
 def _show(
-    analysis: Analysis, path: Path, written: list[Path], request: Request, seconds: float, found: Ledger | None
+    analysis: Analysis, path: Path, written: list[Path], request: Request, seconds: float, run_ledger: Ledger | None
 ) -> None:
     """The run on the terminal."""
     if request.quiet:
@@ -202,10 +202,10 @@ def _show(
             facts = finding(known)
             show_finding(facts, analysis.system.name, path, seconds, written, writer, lines, not request.verbose)
         show(writer.document(with_meanings((), analysis.system, used)))
-    if found is not None:
+    if run_ledger is not None:
         from mbsym.report.runs.ledger import ledger_blocks
 
-        show(writer.document(ledger_blocks(found)))
+        show(writer.document(ledger_blocks(run_ledger)))
 
 
 def _documents(known: Results, writer: Writer, request: Request) -> Iterator[Line]:
@@ -262,7 +262,7 @@ def _complaints(analysis: Analysis, path: Path, files: list[Rendered], request: 
 
 
 def show_finding(
-    found: Facts,
+    facts: Facts,
     title: str,
     path: Path,
     seconds: float,
@@ -273,7 +273,7 @@ def show_finding(
 ) -> None:
     """What was found, each with its name; ``further`` lines; where all of it is, and how ``more`` of it is told."""
     tell((title, "bold"), (f"  {printable(path)}, {seconds:.2f} s", "dim"))
-    show((*writer.document([found]), *further))
+    show((*writer.document([facts]), *further))
     if files:
         page = next((x for x in files if x.name == "report.html"), files[0])
         texts = ("[[file]]", "[[file]] (files there: [[count]])")
@@ -282,17 +282,17 @@ def show_finding(
         tell(writer.said(content.say(texts[len(files) > 1], file=printable(page), count=str(len(files)))), indent=2)
 
 
-def show_brief(found: Brief, name: str, width: int) -> None:
+def show_brief(brief: Brief, name: str, width: int) -> None:
     """A run in one line; columns are as wide as they mostly are."""
     from mbsym.report.plain_writer import STYLES
     from mbsym.report.words.claims import grade
 
-    colour = STYLES[grade(found.worst)] if found.worst else ""
+    colour = STYLES[grade(brief.worst)] if brief.worst else ""
     tell(
         (f"{printable(name):<{width}}", "bold"),
-        f"  {found.problems:<8}",
-        (f"  {found.self_check:<32}", colour),
-        f"  {found.claims:<30}",
-        (f"{found.seconds:7.2f} s", "dim"),
-        (f"  {found.missing}" if found.missing else "", "yellow"),
+        f"  {brief.problems:<8}",
+        (f"  {brief.self_check:<32}", colour),
+        f"  {brief.claims:<30}",
+        (f"{brief.seconds:7.2f} s", "dim"),
+        (f"  {brief.missing}" if brief.missing else "", "yellow"),
     )

@@ -50,24 +50,24 @@ def option_of(field: Field) -> click.Parameter:
     names = [name for name in (field.option, kind.short) if name]
     needed = field.required and isinstance(kind, Number)
     beside = f"  [{f'default: {kind.usual}' if kind.usual else 'required'}]" if kind.usual or needed else ""
-    told = kind.help + beside or None
+    help_text = kind.help + beside or None
     if isinstance(kind, Flag):
         if kind.both:
             words = f"{field.option}/--no-{field.option.removeprefix('--')}"
             shown = field.default is not None
-            return click.Option([words, field.name], default=field.default, show_default=shown, help=told)
-        return click.Option([*names, field.name], is_flag=True, help=told)
+            return click.Option([words, field.name], default=field.default, show_default=shown, help=help_text)
+        return click.Option([*names, field.name], is_flag=True, help=help_text)
     if isinstance(kind, Place):
-        return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=told)
+        return click.Option([*names, field.name], metavar=kind.metavar, type=click.Path(path_type=Path), help=help_text)
     repeated = isinstance(kind, (Settings, ExactSettings, Assignments, Named, Names, Formulas, Ranges, Substitutions))
     repeated = repeated and not getattr(kind, "separated", False)
     usual = None if repeated or field.default in (None, (), "") else _text(field.default)
     if isinstance(kind, Number) and kind.alone:
         alone = {"is_flag": False, "flag_value": kind.alone}
-        return click.Option([*names, field.name], metavar=kind.metavar, help=told, **alone)  # type: ignore[arg-type]
+        return click.Option([*names, field.name], metavar=kind.metavar, help=help_text, **alone)  # type: ignore[arg-type]
     return click.Option(
         [*names, field.name], metavar=kind.metavar, multiple=repeated, default=usual,
-        show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=told,
+        show_default=usual is not None and not kind.usual and getattr(kind, "shown", True), help=help_text,
     )  # fmt: skip
 
 
@@ -126,7 +126,7 @@ def _motion(
 
 def _read(
     field: Field,
-    given: Any,
+    typed: Any,
     system: System | None,
     texts: Mapping[str, Any],
     options: Options,
@@ -134,73 +134,73 @@ def _read(
 ) -> Any:
     match field.kind:
         case Number() as kind:
-            if given is None and field.required:
+            if typed is None and field.required:
                 options.complain(field.option, "missing-option", *kind.absent)
-            return options.number(field.option, given, kind.least, kind.most)
+            return options.number(field.option, typed, kind.least, kind.most)
         case Whole() as kind:
-            return options.whole(field.option, given, kind.least, kind.most, kind.why)
+            return options.whole(field.option, typed, kind.least, kind.most, kind.why)
         case Word() as kind:
-            word = given if given is None or given in kind.known else given.lower()
+            word = typed if typed is None or typed in kind.known else typed.lower()
             return None if word is None else options.word(field.option, word, kind.known, kind.what)
         case Words() as kind:
-            return options.words(field.option, given, kind.known, kind.what, kind.every) if given is not None else ()
+            return options.words(field.option, typed, kind.known, kind.what, kind.every) if typed is not None else ()
         case Substitutions():
-            return dict.fromkeys(text.partition("=")[0].strip() for text in given)
+            return dict.fromkeys(text.partition("=")[0].strip() for text in typed)
         case Parsed() as kind:
-            return None if given is None or system is None else _parsed(field.option, kind, given, system, options)
+            return None if typed is None or system is None else _parsed(field.option, kind, typed, system, options)
         case Range():
             from mbsym_cli.variations import read_axis
 
-            wanted = system is not None and (field.required or given is not None)
-            return read_axis(given, field.option, system, options) if wanted else None
+            required = system is not None and (field.required or typed is not None)
+            return read_axis(typed, field.option, system, options) if required else None
         case ExactSettings() if system is not None:
             from mbsym_cli.variations import read_settings
 
-            return read_settings(given, system, options, field.kind.more(system))
+            return read_settings(typed, system, options, field.kind.more(system))
         case ExactSettings():
             return {}
         case Named() as kind:
-            return _whole_numbers(field.option, kind, given, options)
+            return _whole_numbers(field.option, kind, typed, options)
         case Assignments() if system is not None:
             from mbsym_cli.assignments import assignments
 
-            assigned = assignments(given, system, options)
+            assigned = assignments(typed, system, options)
             return dict.fromkeys(assigned.texts) | dict(assigned.values)
         case Assignments():
             return {}
         case Names() as kind:
-            return _names(field.option, kind, given, system, options)
+            return _names(field.option, kind, typed, system, options)
         case Errors() as kind:
             known = () if system is None else kind.names(system, texts)
-            return None if given is None else _errors(field.option, kind, given, known, options)
+            return None if typed is None else _errors(field.option, kind, typed, known, options)
         case Ranges() as kind:
             from mbsym_cli.variations import read_variations
 
-            if not given and not field.required:
+            if not typed and not field.required:
                 return ()
-            return read_variations(field.option, given, kind, system, motion, options)
+            return read_variations(field.option, typed, kind, system, motion, options)
         case Formula() as kind:
             from mbsym_cli.formulas import read_quantity
 
-            return read_quantity(field.option, given.strip(), kind, system, options)
-        case Share() if given is not None:
-            return _share(field.option, given, options)
+            return read_quantity(field.option, typed.strip(), kind, system, options)
+        case Share() if typed is not None:
+            return _share(field.option, typed, options)
         case Formulas():
             from mbsym_cli.formulas import LAWS, MOTIONS, read_formula
 
-            found: dict[str, Any] = {}
-            for text in given if system is not None else ():
-                read_formula(text, system, LAWS if field.kind.laws else MOTIONS, found, options)
-            return dict.fromkeys(text.partition("=")[0].strip() for text in given) | found
+            formulas: dict[str, Any] = {}
+            for text in typed if system is not None else ():
+                read_formula(text, system, LAWS if field.kind.laws else MOTIONS, formulas, options)
+            return dict.fromkeys(text.partition("=")[0].strip() for text in typed) | formulas
         case _:
-            return given
+            return typed
 
 
-def _names(option: str, kind: Names, given: Any, system: System | None, options: Options) -> tuple[str, ...]:
+def _names(option: str, kind: Names, typed: Any, system: System | None, options: Options) -> tuple[str, ...]:
     """As they are written; separated by commas, each once."""
-    names: tuple[str, ...] = given or ()
+    names: tuple[str, ...] = typed or ()
     if kind.separated:
-        names = tuple(dict.fromkeys(part.strip() for part in (given or "").split(",") if part.strip()))
+        names = tuple(dict.fromkeys(part.strip() for part in (typed or "").split(",") if part.strip()))
     if kind.known is not None and system is not None:
         names = tuple(name for name in names if options.word(option, name, kind.known(system), kind.what) is not None)
     return names

@@ -143,24 +143,24 @@ def command(
     from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES, FORMATS, TARGETS, shown_by
 
-    asked = Options()
-    paths = asked.descriptions(files)
-    chosen = None if problems is None else asked.problems(problems)
-    kinds = asked.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
-    form = None if angles is None else cast("Angles | None", asked.word("--angles", angles, ANGLES, "form"))
-    shown = asked.words("--form", forms, ("lagrange", *FORMS), "form")
-    wanted = asked.word("--detail", detail, DETAILS, "detail")
-    tongue = "" if language is None else asked.word("--language", language, LANGUAGES, "language") or ""
-    budget = asked.whole("--terms", terms, 1, 10**12)
-    shown_until = asked.number("--animate", animate)
-    told = _ledger(ledger, accuracy, until, asked)
+    options = Options()
+    paths = options.descriptions(files)
+    chosen = None if problems is None else options.problems(problems)
+    kinds = options.words("--format", formats, tuple(FORMATS), "format", every="all", of_them=tuple(TARGETS))
+    form = None if angles is None else cast("Angles | None", options.word("--angles", angles, ANGLES, "form"))
+    shown = options.words("--form", forms, ("lagrange", *FORMS), "form")
+    detail_word = options.word("--detail", detail, DETAILS, "detail")
+    tongue = "" if language is None else options.word("--language", language, LANGUAGES, "language") or ""
+    budget = options.whole("--terms", terms, 1, 10**12)
+    shown_until = options.number("--animate", animate)
+    goal = _ledger(ledger, accuracy, until, options)
     if animate is not None and "html" not in kinds:
         hint = "add html to --format, or use 'mbsym simulate --animate'"
-        asked.complain("--animate", "conflicting-options", "the motion is shown in report.html", hint)
-    if asked.complaints or budget is None:
+        options.complain("--animate", "conflicting-options", "the motion is shown in report.html", hint)
+    if options.complaints or budget is None:
         for path in paths:
             read_description(path)
-        asked.refused()
+        options.refused()
         sys.exit(Exit.BAD_INPUT)
     width = max(len(path.name) for path in paths)
     request = Request(
@@ -169,7 +169,7 @@ def command(
         budget,
         quiet,
         strict_claims,
-        told,
+        goal,
         brief,
         width,
         form,
@@ -178,7 +178,7 @@ def command(
         tuple(name for name in FORMS if name in shown),
         chosen is not None,
         verbose,
-        wanted or detail,
+        detail_word or detail,
         settings,
         scale,
         letters,

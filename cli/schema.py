@@ -32,9 +32,9 @@ def command(which: str) -> None:
       mbsym schema > mbsym.schema.json
       mbsym schema results > results.schema.json
     """
-    asked = Options()
-    kinds = asked.words("WHICH", which, _kinds(), "schema")
-    if asked.refused() or len(kinds) != 1:
+    options = Options()
+    kinds = options.words("WHICH", which, _kinds(), "schema")
+    if options.refused() or len(kinds) != 1:
         sys.exit(Exit.BAD_INPUT)
     click.echo(json.dumps(_schema(kinds[0]), indent=2, ensure_ascii=False))
 

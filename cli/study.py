@@ -67,7 +67,7 @@ def command_of(study: Study[Any, Any]) -> click.Command:
         context = click.get_current_context()
         typed = {name for name in texts if context.get_parameter_source(name) is ParameterSource.COMMANDLINE}
         files = file if isinstance(file, tuple) else (file,)
-        runs = [_Run(study, one, texts, typed, len(files) > 1) for one in files]
+        runs = [_Run(study, path, texts, typed, len(files) > 1) for path in files]
         command = runs[0].code if len(runs) == 1 else lambda: _together(study, runs)
         leave(files[0], command, lambda: any(run.delivered for run in runs))
 
@@ -143,23 +143,23 @@ class _Run:
         study, file = self.study, self.file
         system = self._described()
         self.say = self.options.say = Language("" if system is None else system.language).say
-        values, given, system = read_fields(file, system, study.request, self.texts, self.options)
+        values, scenario, system = read_fields(file, system, study.request, self.texts, self.options)
         if study.letters and system is not None:
             self.letters = read_letters(self.texts.get("letters"), system, self.options)
         request, folder = study.request(**values), self.folder
         self.writes = isinstance(study.out, Folder) and study.writes(self.typed)
         with ExitStack() as stack:
-            asked = None
+            context = None
             if system is not None:
                 store = partial(stack.enter_context, room_beside(folder))
                 known = (self.typed, store, _memory(), self.letters)
-                asked = Asked(system, given, printable(file), folder, write_whole, *known)
-            self._complain(request, asked)
-            kept = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
-            code = prevented(file, folder if kept else None, system is not None, self.options)
-            if code or asked is None:
+                context = Asked(system, scenario, printable(file), folder, write_whole, *known)
+            self._complain(request, context)
+            has_folder = self.writes or (isinstance(study.out, Single) and study.out.usual and self.out is None)
+            code = prevented(file, folder if has_folder else None, system is not None, self.options)
+            if code or context is None:
                 return code or Exit.BAD_INPUT
-            return self._answered(asked, request)
+            return self._answered(context, request)
 
     @contextmanager
     def _in_letters(self, system: System) -> Iterator[set[str]]:
@@ -176,18 +176,18 @@ class _Run:
             return read_held(self.file, study.name, study.constraints, not matrices)
         return read_description(self.file, "" if study.constraints else study.name, "" if matrices else study.name)
 
-    def _complain(self, request: Any, asked: Asked | None) -> None:
+    def _complain(self, request: Any, context: Asked | None) -> None:
         """About what does not go together."""
         there = options_typed(self.study.request, self.typed)
-        for one in (unfit for pair in self.study.pairs for unfit in pair.unfit(there)):
-            self._unfit(one)
-        for one in self.study.unfit(asked, request) if asked is not None else ():
-            self._unfit(one)
+        for reason in (unfit for pair in self.study.pairs for unfit in pair.unfit(there)):
+            self._unfit(reason)
+        for reason in self.study.unfit(context, request) if context is not None else ():
+            self._unfit(reason)
         if isinstance(self.study.out, Single):
             self.options.unwritten("--out", self.out)
         elif isinstance(self.study.out, Folder):
             options = {"--out": self.out is not None, "--quiet": self.quiet}
-            for option in (name for name, given in options.items() if given and not self.writes):
+            for option in (name for name, present in options.items() if present and not self.writes):
                 if self.study.out.unwritten is not None:
                     self.options.complain(option, *self.study.out.unwritten)
             if self.writes and self.as_json and self.study.out.alone is not None:
@@ -195,31 +195,33 @@ class _Run:
         order = [field.option for field in fields_of(self.study.request)]
         self.options.sort(order)
 
-    def _unfit(self, one: Unfit) -> None:
-        if one.name:
-            self.options.complain_whole(one.option, self._text(one), one.code, one.message, one.hint)
+    def _unfit(self, reason: Unfit) -> None:
+        if reason.name:
+            self.options.complain_whole(reason.option, self._text(reason), reason.code, reason.message, reason.hint)
         else:
             self.options.add(
-                one.option or str(self.file), Complaint(one.code, one.message, one.span, one.hint), one.text
+                reason.option or str(self.file),
+                Complaint(reason.code, reason.message, reason.span, reason.hint),
+                reason.text,
             )
 
-    def _text(self, one: Unfit) -> str:
+    def _text(self, reason: Unfit) -> str:
         """What was typed for that name."""
-        field = next(field for field in fields_of(self.study.request) if field.option == one.option)
-        name, *typed = (" ".join(text.splitlines()) for text in (one.name, *self.texts[field.name]))
+        field = next(field for field in fields_of(self.study.request) if field.option == reason.option)
+        name, *typed = (" ".join(text.splitlines()) for text in (reason.name, *self.texts[field.name]))
         return next(text for text in typed if name in (text, text.partition("=")[0].strip()))
 
-    def _answered(self, asked: Asked, request: Any) -> int:
+    def _answered(self, context: Asked, request: Any) -> int:
         """Derives, writes the files of a folder, then tells."""
         study, file = self.study, self.file
         try:
             with watching(self.quiet or self.as_json, file.name) as watch:
-                found = study.derive(asked, request, watch)
-                with self._in_letters(asked.system):
-                    answer = study.answer(asked, request, found)
+                derived = study.derive(context, request, watch)
+                with self._in_letters(context.system):
+                    answer = study.answer(context, request, derived)
                     answer = replace(answer, lines=list(answer.lines))
                 if answer.files:
-                    deliver(asked.folder, answer.files, answer.owner or study.name)
+                    deliver(context.folder, answer.files, answer.owner or study.name)
                 if answer.stopped is not None:
                     self.delivered = bool(answer.files)
                     raise answer.stopped
@@ -232,26 +234,28 @@ class _Run:
             self.options.refused(file)
             return Exit.BAD_INPUT
         except Exception as error:
-            refusal = study.refusal(error, asked, request)
+            refusal = study.refusal(error, context, request)
             if refusal is None:
                 raise
             self._complaints((refusal.text, *refusal.more))
             return refusal.code
         if self.as_json:
-            click.echo(_json(asked, answer) if study.json is None else study.json(asked, request, found), nl=False)
+            click.echo(
+                _json(context, answer) if study.json is None else study.json(context, request, derived), nl=False
+            )
         elif self.among:
-            self.told = asked, request, found
+            self.told = context, request, derived
         else:
-            with self._in_letters(asked.system) as used:
-                self._tell(asked, answer, used)
+            with self._in_letters(context.system) as used:
+                self._tell(context, answer, used)
         self._complaints(answer.complaints)
         usual = study.out.usual if isinstance(study.out, Single) else ""
         place = self.out or (folder_for(file, None) / usual if usual else None)
         if answer.code or place is None or study.document is None:
             return answer.code
-        return self._written(place, study.document(asked, request, found))
+        return self._written(place, study.document(context, request, derived))
 
-    def _tell(self, asked: Asked, answer: Answer, used: set[str]) -> None:
+    def _tell(self, context: Asked, answer: Answer, used: set[str]) -> None:
         if answer.text is not None:
             if answer.breaks and sys.stdout.isatty():
                 for line in answer.text.splitlines():
@@ -262,19 +266,19 @@ class _Run:
         loud = not self.quiet
         if loud:
             seconds = f", {time.perf_counter() - self.started:.2f} s" if self.study.timed else ""
-            tell((asked.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
-        for one in answer.lines if loud or not answer.brief else answer.brief:
-            if isinstance(one, Line) and (loud or one.always):
-                parts = (self.say(x) if isinstance(x, str) else (self.say(x[0]), x[1]) for x in one.parts)
-                tell(*parts, whole=one.whole)
-            elif not isinstance(one, Line) and (loud or answer.brief):
-                show([one], asked.system.language)
+            tell((context.system.name, "bold"), (f"  {printable(self.file)}{answer.after}{seconds}", "dim"))
+        for block in answer.lines if loud or not answer.brief else answer.brief:
+            if isinstance(block, Line) and (loud or block.always):
+                parts = (self.say(x) if isinstance(x, str) else (self.say(x[0]), x[1]) for x in block.parts)
+                tell(*parts, whole=block.whole)
+            elif not isinstance(block, Line) and (loud or answer.brief):
+                show([block], context.system.language)
         if loud:
-            show(with_meanings((), asked.system, self.used | used), asked.system.language)
+            show(with_meanings((), context.system, self.used | used), context.system.language)
         if answer.files and loud:
-            show_files(asked.folder, answer.files, asked.system.language, answer.more)
-        for one in answer.last if loud else ():
-            tell(*one.parts, whole=one.whole)
+            show_files(context.folder, answer.files, context.system.language, answer.more)
+        for closing in answer.last if loud else ():
+            tell(*closing.parts, whole=closing.whole)
 
     def _complaints(self, texts: Iterable[str]) -> None:
         """On standard error; what goes on, indented, without the name of the file."""
@@ -311,10 +315,10 @@ def _memory() -> Remember:
     return remembered
 
 
-def _json(asked: Asked, answer: Answer) -> str:
+def _json(context: Asked, answer: Answer) -> str:
     """What the file says that is JSON, which has been written; nothing where what ended early has none."""
     name = next((name for name in answer.files if name.endswith(".json")), None)
-    return "" if name is None else (asked.folder / name).read_text(encoding="utf-8")
+    return "" if name is None else (context.folder / name).read_text(encoding="utf-8")
 
 
 def leave(file: Path, command: Callable[[], int], written: Callable[[], bool] = lambda: False) -> NoReturn:

@@ -109,7 +109,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
     complaints, whole = Complaints(), Span(1, 1, max(1, len(text)))
     value = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
     known = dict(motion.parameters) if motion is not None else {}
-    found = None
+    evaluated = None
     if value is not None and not complaints.errors:
         unknown = sorted(names(value) - {*known, "pi"})
         if unknown and motion is not None:
@@ -118,11 +118,11 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
             )
         elif not unknown:
             try:
-                found = float(exact(value, known))
+                evaluated = float(exact(value, known))
             except Failure as reason:
                 complaints.error("bad-number", Message("it has no value: [[why]]", why=message_of(reason)), whole)
     options.complaints += [render_option(complaint, text, option, options.say) for complaint in complaints.sorted()]
-    return found
+    return evaluated
 
 
 # Options that name parameters of a section: ``--set p1=2/5``, ranges of axes, and what is wrong with them.
@@ -136,7 +136,7 @@ def read_settings(
     """``--set name=number``, each name once, also of ``more``; every complaint joins those of ``options``."""
     from mbsym.maps.section import usable
 
-    found: dict[str, Fraction] = {}
+    values: dict[str, Fraction] = {}
     names = (*usable(system), *more)
     for text in texts:
         name, equals, right = (part.strip() for part in " ".join(text.splitlines()).partition("="))
@@ -146,11 +146,11 @@ def read_settings(
             continue
         value = read_rational(right, f"--set {name if name.isidentifier() else ascii_safe(name)}", options)
         known(name, "--set", names, options)
-        if name in found:
+        if name in values:
             options.complain("--set", "repeated-name", Message("[[name]] is set twice", name=ascii_safe(name)))
         if value is not None:
-            found[name] = value
-    return found
+            values[name] = value
+    return values
 
 
 def read_axis(text: str | None, option: str, system: System, options: Options) -> Axis | None:

@@ -84,10 +84,10 @@ def _ran(file: Path, stamp: Stamp, command: list[str]) -> bool:
 def _stamp(file: Path) -> Stamp | None:
     """When a file was written and how long it is; None while an editor exchanges it."""
     try:
-        found = file.stat()
+        status = file.stat()
     except OSError:
         return None
-    return found.st_mtime_ns, found.st_size
+    return status.st_mtime_ns, status.st_size
 
 
 def _settled(file: Path) -> Stamp:

@@ -79,8 +79,8 @@ def __getattr__(name: str) -> Any:
 
     for module, names in _PLACES.items():
         if name in names:
-            found = globals()[name] = getattr(import_module(f"mbsym.studies.{module}"), name)
-            return found
+            attribute = globals()[name] = getattr(import_module(f"mbsym.studies.{module}"), name)
+            return attribute
     raise AttributeError(f"module 'mbsym' has no attribute '{name}'")
 
 

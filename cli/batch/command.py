@@ -104,22 +104,22 @@ def command(
     from mbsym.report.detail import DETAILS
     from mbsym.report.targets import ANGLES
 
-    asked = Options()
+    options = Options()
     for path in folders:
         if not path.exists():
-            asked.complain(str(path), "missing", "there is no such file or folder")
-    kinds = _formats(asked, formats)
-    numbers = None if problems is None else asked.problems(problems)
-    bound = asked.whole("--terms", terms, 1, 10**12)
-    form = None if angles is None else asked.word("--angles", angles, ANGLES, "form")
-    wanted = asked.word("--detail", detail, DETAILS, "detail") or detail
-    width = asked.whole("--jobs", jobs, 1, 1024)
-    seconds = _seconds(asked, timeout)
-    megabytes = asked.whole("--memory", memory, 0, 10**9)
-    part = _part(asked, shard)
+            options.complain(str(path), "missing", "there is no such file or folder")
+    kinds = _formats(options, formats)
+    numbers = None if problems is None else options.problems(problems)
+    bound = options.whole("--terms", terms, 1, 10**12)
+    form = None if angles is None else options.word("--angles", angles, ANGLES, "form")
+    detail_word = options.word("--detail", detail, DETAILS, "detail") or detail
+    width = options.whole("--jobs", jobs, 1, 1024)
+    seconds = _seconds(options, timeout)
+    megabytes = options.whole("--memory", memory, 0, 10**9)
+    part = _part(options, shard)
     if appendix and "latex" not in kinds:
-        asked.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
-    if asked.refused() or bound is None:
+        options.complain("--appendix", "conflicting-options", "it joins LaTeX files", "add latex to --format")
+    if options.refused() or bound is None:
         sys.exit(Exit.BAD_INPUT)
     from mbsym_cli.batch.machine import processors, shared_memory
     from mbsym_cli.batch.run import Request, run
@@ -129,7 +129,7 @@ def command(
     request = Request(
         folders=folders,
         out=out,
-        asked=BatchOptions(kinds, numbers, bound, form, wanted),
+        asked=BatchOptions(kinds, numbers, bound, form, detail_word),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,
@@ -182,7 +182,7 @@ def _part(options: Options, text: str | None) -> tuple[int, int] | None:
     if text is None:
         return None
     first, slash, second = text.partition("/")
-    if slash and all(one.isascii() and one.isdigit() and len(one) < 7 for one in (first, second)):
+    if slash and all(number.isascii() and number.isdigit() and len(number) < 7 for number in (first, second)):
         part, parts = int(first), int(second)
         if 1 <= part <= parts:
             return part, parts

@@ -49,7 +49,7 @@ class Request:
 
     folders: tuple[Path, ...]
     out: Path
-    asked: BatchOptions
+    options: BatchOptions
     budget: Budget
     jobs: int
     patterns: tuple[str, ...] = ()
@@ -70,20 +70,20 @@ def run(request: Request) -> int:
     if reason:
         print(say(Message("the results cannot be written: [[why]]", why=reason)), file=sys.stderr)
         return Exit.BAD_INPUT
-    found = found_in(request.folders, request.out)
-    places = chosen(found.places, request.patterns)
-    language = language_of_files(*(place.file for place in places or found.places))
+    descriptions = found_in(request.folders, request.out)
+    places = chosen(descriptions.places, request.patterns)
+    language = language_of_files(*(place.file for place in places or descriptions.places))
     say = language.say
-    if not places and not found.unreadable:
-        print("\n".join(map(say, _nothing(request, found))), file=sys.stderr)
+    if not places and not descriptions.unreadable:
+        print("\n".join(map(say, _nothing(request, descriptions))), file=sys.stderr)
         return Exit.BAD_INPUT
     if request.shard is not None:
         places = share(places, *request.shard)
     if request.budget.memory and not memory_is_bounded():
         print(say(Message("--memory has no effect here: this system has no such bound")), file=sys.stderr)
-    summary, stopped = _summed_up(request, places, found, started, say)
-    wanted = {place.folder for place in found.places}
-    gone = forget_gone(request.out, summary_name(request), request.folders, wanted)
+    summary, stopped = _summed_up(request, places, descriptions, started, say)
+    folders = {place.folder for place in descriptions.places}
+    gone = forget_gone(request.out, summary_name(request), request.folders, folders)
     whole = write_files(request, summary, language)
     if request.output_format != "text":
         sys.stdout.write(_for_programs(request, summary))
@@ -100,27 +100,27 @@ def run(request: Request) -> int:
 
 
 def _summed_up(
-    request: Request, places: list[Place], found: Descriptions, started: float, say: Callable[[str], str]
+    request: Request, places: list[Place], descriptions: Descriptions, started: float, say: Callable[[str], str]
 ) -> tuple[Summary, bool]:
     """Every row, and whether the batch was stopped."""
     version = derivation()
-    refused = [_unreadable(folder, reason) for folder, reason in found.unreadable]
+    refused = [_unreadable(folder, reason) for folder, reason in descriptions.unreadable]
     width = max((len(printable(place.file)) for place in places), default=0)
-    told = watcher(len(places), width, request.quiet or request.output_format != "text", request.changed, say)
-    store = FolderStore(request.out, request.asked, version)
-    batch = Batch(places, store, told, request.budget, request.fail_fast, request.strict_claims)
+    progress = watcher(len(places), width, request.quiet or request.output_format != "text", request.changed, say)
+    store = FolderStore(request.out, request.options, version)
+    batch = Batch(places, store, progress, request.budget, request.fail_fast, request.strict_claims)
     stopped = False
     for row in refused:
         for text in complaints(row):
-            told.complain(text)
+            progress.complain(text)
     try:
         batch.run(lambda tasks: _executor(request, tasks))
     except KeyboardInterrupt:
         stopped = True
     finally:
-        told.close()
+        progress.close()
     rows = [*(batch.rows[place.file] for place in places), *refused]
-    options = request.asked
+    options = request.options
     summary = Summary(
         rows=tuple(sorted(rows, key=lambda row: row.file)),
         version=mbsym.__version__,
@@ -145,7 +145,7 @@ def _executor(request: Request, tasks: int) -> Executor:
         return Cluster(request.cluster, request.jobs)
     from mbsym.batch.coordinator import Local
 
-    return Local(request.jobs, tasks, request.asked.formats)
+    return Local(request.jobs, tasks, request.options.formats)
 
 
 def summary_name(request: Request) -> str:
@@ -173,12 +173,12 @@ def summary_files(request: Request, summary: Summary, language: Language) -> Map
 
 def _for_programs(request: Request, summary: Summary) -> str:
     """Standard output for a program that reads it."""
-    found = findings(summary)
+    reported = findings(summary)
     if request.output_format == "junit":
         return junit.junit(summary)
     if request.output_format == "sarif":
-        return sarif(found, summary.version)
-    return github_annotations(found) if request.output_format == "github" else json_lines(found)
+        return sarif(reported, summary.version)
+    return github_annotations(reported) if request.output_format == "github" else json_lines(reported)
 
 
 def write_files(request: Request, summary: Summary, language: Language) -> bool:
@@ -251,15 +251,15 @@ def _unreadable(folder: str, reason: str) -> Row:
     return Row(folder, "", Outcome.ERRORS, complaints=(complaint,))
 
 
-def _nothing(request: Request, found: Descriptions) -> Iterator[Message]:
+def _nothing(request: Request, descriptions: Descriptions) -> Iterator[Message]:
     """What to say where there is nothing to do, line by line."""
     where = ", ".join(map(printable, request.folders))
-    if found.places:
-        asked = ", ".join(map(printable, request.patterns))
+    if descriptions.places:
+        patterns = ", ".join(map(printable, request.patterns))
         text = "[[where]]: no description fits --filter [[patterns]] (descriptions there: [[count]])"
-        yield Message(text, where=where, patterns=asked, count=len(found.places))
+        yield Message(text, where=where, patterns=patterns, count=len(descriptions.places))
         return
-    yield joined((where, nothing_here(found.others)), ": ")
+    yield joined((where, nothing_here(descriptions.others)), ": ")
     yield joined(("  ", Message("hint: [[hint]]", hint=DESCRIPTIONS_HAVE)), "")
 
 
@@ -267,17 +267,18 @@ def _nothing(request: Request, found: Descriptions) -> Iterator[Message]:
 _MOST_BYTES = 256 * 1024 * 1024
 
 
-def forget_gone(out: Path, summary: str, folders: Sequence[Path], wanted: Collection[str]) -> list[str]:
+def forget_gone(out: Path, summary: str, folders: Sequence[Path], current: Collection[str]) -> list[str]:
     """Removes the results of descriptions that were deleted; the folders that they were in, below ``out``.
 
     ``summary`` is the file of the last batch into ``out``.  What it lists goes if its description lay in one of the
-    ``folders`` that are asked for now and is not there any more, and no description of now has its folder (``wanted``).
+    ``folders`` that are asked for now and is not there any more, and no description of now has its folder
+    (``current``).
     Files that somebody has changed, or put there, stay, and their folder with them.
     """
     locks, forgotten = Locks(out), []
     for file, folder in _listed(out / summary):
         place = out / folder
-        if folder in wanted or not any(Path(file).is_relative_to(one) for one in folders) or not _is_gone(file):
+        if folder in current or not any(Path(file).is_relative_to(root) for root in folders) or not _is_gone(file):
             continue
         if obstacle(place, out) or not delivered(place, COMMAND) or not locks.take(folder):
             continue
@@ -297,14 +298,14 @@ def forget_gone(out: Path, summary: str, folders: Sequence[Path], wanted: Collec
 
 def _listed(summary: Path) -> Iterator[tuple[str, str]]:
     """(description, folder of its results) as a summary says; its folders are somebody's word, and stay inside."""
-    found: Any = None
+    content: Any = None
     with suppress(OSError, ValueError, RecursionError):
         if summary.stat().st_size <= _MOST_BYTES:
-            found = json.loads(summary.read_bytes())
-    if not isinstance(found, dict) or found.get("format") != FORMAT or not isinstance(found.get("systems"), list):
+            content = json.loads(summary.read_bytes())
+    if not isinstance(content, dict) or content.get("format") != FORMAT or not isinstance(content.get("systems"), list):
         return
-    for one in found["systems"]:
-        file, folder = (one.get("file"), one.get("folder")) if isinstance(one, dict) else (None, None)
+    for row in content["systems"]:
+        file, folder = (row.get("file"), row.get("folder")) if isinstance(row, dict) else (None, None)
         if isinstance(file, str) and isinstance(folder, str) and "\0" not in file + folder:
             parts = PurePosixPath(folder).parts
             if parts and not PurePosixPath(folder).is_absolute() and ".." not in parts:

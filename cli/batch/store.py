@@ -36,7 +36,7 @@ class FolderStore:
     """The ``Store`` of a batch in the folder ``out``."""
 
     def __init__(self, out: Path, asked: BatchOptions, derivation: str) -> None:
-        self.out, self.asked = out, asked
+        self.out, self.options = out, asked
         problems = None if asked.problems is None else list(asked.problems)
         #: What results follow from besides the description.
         self._from = {
@@ -61,16 +61,16 @@ class FolderStore:
         reason = obstacle(folder, self.out)
         if reason:
             return Row(place.file, place.folder, Outcome.NOT_WRITTEN, message=reason)
-        kept = self._kept(folder)
-        if kept is None:
-            return Task(place.file, place.folder, data, self.asked)
-        if kept["bytes"] == digests.of_bytes(data, place.file):
+        outcome = self._kept(folder)
+        if outcome is None:
+            return Task(place.file, place.folder, data, self.options)
+        if outcome["bytes"] == digests.of_bytes(data, place.file):
             try:
-                row = read_row(kept["row"])
+                row = read_row(outcome["row"])
             except MALFORMED:
-                return Task(place.file, place.folder, data, self.asked)
+                return Task(place.file, place.folder, data, self.options)
             return replace(row, file=place.file, folder=place.folder, cached=True)
-        return Task(place.file, place.folder, data, self.asked, known=str(kept["meaning"]))
+        return Task(place.file, place.folder, data, self.options, known=str(outcome["meaning"]))
 
     def take(self, place: Place) -> bool:
         return self._locks.take(place.folder)
@@ -82,12 +82,12 @@ class FolderStore:
         row = finished.row
         folder = self.out / task.folder
         if finished.same:
-            kept = self._kept(folder)
-            if kept is None:  # somebody has been there since
+            outcome = self._kept(folder)
+            if outcome is None:  # somebody has been there since
                 return replace(
                     row, outcome=Outcome.NOT_WRITTEN, message=Message("its files were changed in the meantime")
                 )
-            row = replace(read_row(kept["row"]), complaints=row.complaints, cached=True, seconds=row.seconds)
+            row = replace(read_row(outcome["row"]), complaints=row.complaints, cached=True, seconds=row.seconds)
             row = replace(row, file=task.file, folder=task.folder)
         elif not finished.files:
             return row
@@ -105,13 +105,13 @@ class FolderStore:
     def _text(self, task: Task, meaning: str, row: Row) -> str:
         """``outcome.json``; what would not be taken for finished has no description that it is up to date with."""
         bytes_ = digests.of_bytes(task.data, task.file) if row.outcome.finished else ""
-        found = {
+        outcome = {
             **self._from,
             "bytes": bytes_,
             "meaning": meaning if bytes_ else "",
             "row": row_data(replace(row, file="", folder="")),
         }
-        return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+        return json.dumps(outcome, indent=2, ensure_ascii=False) + "\n"
 
     def _kept(self, folder: Path) -> dict[str, Any] | None:
         """What ``outcome.json`` says, if it is about these options and every file is as it was written."""
@@ -120,15 +120,15 @@ class FolderStore:
         if OUTCOME not in written:
             return None
         try:
-            found: dict[str, Any] = json.loads((folder / OUTCOME).read_bytes())
-            if any(found[key] != value for key, value in self._from.items()) or not found["bytes"]:
+            outcome: dict[str, Any] = json.loads((folder / OUTCOME).read_bytes())
+            if any(outcome[key] != value for key, value in self._from.items()) or not outcome["bytes"]:
                 return None
-            files = {file["name"]: file["sha256"] for file in found["row"]["files"]}
+            files = {file["name"]: file["sha256"] for file in outcome["row"]["files"]}
         except (OSError, *MALFORMED):
             return None
         if files != {name: sha for name, sha in written.items() if name != OUTCOME}:
             return None
-        return found if all(digest_of(folder / name) == sha for name, sha in written.items()) else None
+        return outcome if all(digest_of(folder / name) == sha for name, sha in written.items()) else None
 
 
 def _content(path: Path) -> tuple[bytes, str]:

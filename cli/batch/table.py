@@ -189,7 +189,7 @@ def _said(row: Row, say: Callable[[str], str]) -> str:
 def complaints(row: Row) -> list[str]:
     """What is complained about, for standard error, each with its place."""
     name, say = printable(row.file), speaking(row.file)
-    return [_complaint(name, one, say) for one in row.complaints] + [
+    return [_complaint(name, complaint, say) for complaint in row.complaints] + [
         f"{name}: {printable(say(note))}" for note in row.notes
     ]
 
@@ -206,9 +206,9 @@ def totals(summary: Summary) -> Message:
     for outcome, count in summary.totals.items():
         word = outcome.value
         if outcome is Outcome.DERIVED:
-            kept = sum(row.cached for row in summary.rows if row.outcome is outcome)
-            parts += [Message(NUMBER_OF, count=count - kept, outcome=worded(word))] if count > kept else []
-            parts += [Message(NUMBER_OF, count=kept, outcome=UP_TO_DATE)] if kept else []
+            cached = sum(row.cached for row in summary.rows if row.outcome is outcome)
+            parts += [Message(NUMBER_OF, count=count - cached, outcome=worded(word))] if count > cached else []
+            parts += [Message(NUMBER_OF, count=cached, outcome=UP_TO_DATE)] if cached else []
         else:
             parts.append(Message(NUMBER_OF, count=count, outcome=worded(word)))
     what = joined(parts, ", ") if parts else Message("nothing to do")

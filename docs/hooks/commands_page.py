@@ -10,7 +10,7 @@ from mbsym_cli.main import COMMANDS, main
 _HEAD = """\
 ## Every option
 
-Each command's help, as `mbsym COMMAND --help` prints it.
+All that there is to say of each, as `mbsym explain COMMAND` prints it; `--help` tells what a screen holds.
 [Completion of commands and options](../howto/editor.md#shell-completion) can be had for bash, zsh and fish.
 """
 

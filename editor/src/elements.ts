@@ -2,7 +2,7 @@
 
 type Child = Node | string | null | undefined;
 type Handler = (event: never) => void;
-export type Attributes = Record<string, string | number | boolean | null | undefined | Handler>;
+type Attributes = Record<string, string | number | boolean | null | undefined | Handler>;
 
 function filled<Kind extends Element>(element: Kind, attributes: Attributes, children: Child[]): Kind {
   for (const [name, value] of Object.entries(attributes)) {

@@ -24,7 +24,7 @@ export function record(pairs: [key: string, value: string][]): string {
 }
 
 /** One field as inputs, and what was filled in as it will be written; "" if nothing was. */
-export interface Filled {
+interface Filled {
   element: HTMLElement;
   inputs: Input[];
   source: () => string;

@@ -17,7 +17,7 @@ const LOOK_AFTER = 15;
 const JOURNAL_AFTER = 1000;
 
 /** In which of its two spellings the text is; undone and redone with the conversion that changed it. */
-export const formatIs = StateEffect.define<Format>();
+const formatIs = StateEffect.define<Format>();
 const spelling = StateField.define<Format>({
   create: () => "yaml",
   update: (format, transaction) =>
@@ -81,7 +81,7 @@ export interface Events {
   theme: "light" | "dark";
 }
 
-export interface Outcome {
+interface Outcome {
   done: boolean;
   complaints: Complaint[];
   select?: Path;

@@ -19,7 +19,7 @@ function mode(): Mode {
   return queries.wide.matches ? "wide" : queries.medium.matches ? "medium" : "narrow";
 }
 
-export interface Arranged {
+interface Arranged {
   main: HTMLElement;
   skips: HTMLElement;
   /** Makes a panel seen and gives it the focus. */

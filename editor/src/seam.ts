@@ -70,7 +70,7 @@ export interface View {
   [section: string]: unknown;
 }
 
-export type NamedKind = "parameter" | "coordinate" | "constraint" | "load" | "input";
+type NamedKind = "parameter" | "coordinate" | "constraint" | "load" | "input";
 
 export type Operation =
   | { op: "set"; path: Path; source: string }
@@ -127,7 +127,7 @@ export interface Joint {
   axis: boolean;
 }
 
-export interface CompletionItem {
+interface CompletionItem {
   label: string;
   kind: string;
   detail: string;

@@ -1,7 +1,7 @@
 // Principal moments of inertia of homogeneous bodies about their mass centre, as formulas to be put into the form.
 // The formulas are those of every table (L. D. Landau, E. M. Lifshitz, Mechanics, section 32, problem 2).
 
-export interface Solid {
+interface Solid {
   name: string;
   /** The names of its sizes, with what they are. */
   sizes: [name: string, words: string][];
@@ -10,7 +10,7 @@ export interface Solid {
 }
 
 /** A sum as a factor needs brackets; a name or a number does not. */
-export function bracketed(formula: string): string {
+function bracketed(formula: string): string {
   const text = formula.trim();
   return /^[\p{L}\d_.]+$/u.test(text) ? text : `(${text})`;
 }

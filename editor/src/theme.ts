@@ -18,7 +18,7 @@ function kept(): Choice {
   }
 }
 
-export function currentTheme(): "light" | "dark" {
+function currentTheme(): "light" | "dark" {
   const chosen = document.documentElement.dataset["theme"];
   return chosen === "light" || chosen === "dark" ? chosen : dark.matches ? "dark" : "light";
 }

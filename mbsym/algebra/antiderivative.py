@@ -30,10 +30,10 @@ def potential(ring: Ring, field: Sequence[Polynomial], names: Sequence[str]) -> 
     total = ring.zero
     for name, component in zip(names, field, strict=True):
         rest = ring.reduce(component - ring.derivative(total, name))
-        found = antiderivative(ring, rest, name)
-        if found is None:
+        integral = antiderivative(ring, rest, name)
+        if integral is None:
             return None
-        total = ring.reduce(total + found)
+        total = ring.reduce(total + integral)
     exact = (
         ring.is_zero(component - ring.derivative(total, name)) for name, component in zip(names, field, strict=True)
     )
@@ -80,8 +80,8 @@ def _found(ring: Ring, x: Polynomial, name: str, rate: Polynomial) -> Polynomial
         new = {neighbour for monomial in frontier for neighbour in _neighbours(monomial, {place} | moving)} - {*tried}
         if not new or len(tried) + len(new) > MOST_TRIED:
             return None
-        for one in new:
-            tried[one] = ring.derivative(ring.reduce(ring.context.from_dict({one: 1})), name)
+        for monomial in new:
+            tried[monomial] = ring.derivative(ring.reduce(ring.context.from_dict({monomial: 1})), name)
         solved = _solved(ring, ring.reduce(ring.times(x, rate)), tried)
         if solved is not None:
             return solved
@@ -90,16 +90,16 @@ def _found(ring: Ring, x: Polynomial, name: str, rate: Polynomial) -> Polynomial
 
 
 def _used(ring: Ring, formulas: Iterable[Polynomial]) -> list[int]:
-    found = set(occurring(formulas))
-    for k in tuple(found):  # a sine with its cosine
+    positions = set(occurring(formulas))
+    for k in tuple(positions):  # a sine with its cosine
         g = ring.generators[k]
         if g.kind not in ("sine", "cosine"):
             continue
         if g.argument is None:
-            found |= {ring.index(kind, g.name) for kind in ("sine", "cosine")}
+            positions |= {ring.index(kind, g.name) for kind in ("sine", "cosine")}
         else:  # adjoined in pairs, the sine first
-            found.add(k + 1 if g.kind == "sine" else k - 1)
-    return sorted(found)
+            positions.add(k + 1 if g.kind == "sine" else k - 1)
+    return sorted(positions)
 
 
 def _exponents(x: Polynomial) -> set[Exponents]:
@@ -121,16 +121,16 @@ def _neighbours(monomial: Exponents, moving: set[int]) -> Iterable[Exponents]:
 
 def _solved(ring: Ring, x: Polynomial, tried: dict[Exponents, Polynomial]) -> Polynomial | None:
     """The combination of monomials whose derivative is x; None where there is none among them."""
-    columns = [(one, slope.to_dict()) for one, slope in tried.items() if not slope.is_zero()]
-    wanted = x.to_dict()
-    rows = sorted({key for _, column in columns for key in column} | {*wanted})
-    if not {*wanted} <= {key for _, column in columns for key in column}:
+    columns = [(monomial, slope.to_dict()) for monomial, slope in tried.items() if not slope.is_zero()]
+    target = x.to_dict()
+    rows = sorted({key for _, column in columns for key in column} | {*target})
+    if not {*target} <= {key for _, column in columns for key in column}:
         return None
-    table: list[list[Any]] = [[column.get(key, 0) for _, column in columns] + [wanted.get(key, 0)] for key in rows]
-    found = ring.zero
+    table: list[list[Any]] = [[column.get(key, 0) for _, column in columns] + [target.get(key, 0)] for key in rows]
+    combination = ring.zero
     for pivot, line in reduced_rows(fmpq_mat(table)).items():
         if pivot == len(columns):
             return None
         if line[-1] != 0:
-            found = found + ring.context.from_dict({columns[pivot][0]: line[-1]})
-    return ring.reduce(found)
+            combination = combination + ring.context.from_dict({columns[pivot][0]: line[-1]})
+    return ring.reduce(combination)

@@ -258,16 +258,16 @@ class Lowering(Generic[S]):
         algebra, name = self.algebra, curve_name(table, order)
         polynomial = name.curve.polynomial
         if polynomial is None:
-            found = algebra.function(name, x)
+            value = algebra.function(name, x)
         else:
-            found, u = algebra.zero, x - algebra.number(name.curve.bases[0])
+            value, u = algebra.zero, x - algebra.number(name.curve.bases[0])
             for coefficient in reversed(polynomial):
-                found = algebra.times(found, u) + algebra.number(coefficient)
+                value = algebra.times(value, u) + algebra.number(coefficient)
         if order == 0 and table.jumps:
             (first, start), (last, end) = table.points[0], table.points[-1]
-            found = found - algebra.times(algebra.number(start), self._step(algebra.number(first) - x))
-            found = found - algebra.times(algebra.number(end), self._step(x - algebra.number(last)))
-        return found
+            value = value - algebra.times(algebra.number(start), self._step(algebra.number(first) - x))
+            value = value - algebra.times(algebra.number(end), self._step(x - algebra.number(last)))
+        return value
 
     def _step(self, x: S) -> S:
         """(1 + sign x)/2."""

@@ -65,11 +65,11 @@ def _is_irreducible(p: Polynomial) -> bool:
 def content(p: Polynomial) -> Any:
     """The number by which p has to be divided to be primitive, with whole coefficients and a positive leading one."""
     coefficients = p.coeffs()
-    found = coefficients[0]
+    divisor = coefficients[0]
     for coefficient in coefficients[1:]:
-        found = found.gcd(coefficient)
-    found = abs(found)
-    return found if coefficients[0] > 0 else -found
+        divisor = divisor.gcd(coefficient)
+    divisor = abs(divisor)
+    return divisor if coefficients[0] > 0 else -divisor
 
 
 def _factored(p: Polynomial) -> tuple[Any, list[tuple[Polynomial, int]]]:
@@ -122,8 +122,8 @@ def occurring(polynomials: Iterable[Polynomial]) -> list[int]:
 
     What an adjoined generator is made of (the argument of a root or a function) is not looked into.
     """
-    found: set[int] = set()
+    positions: set[int] = set()
     for x in polynomials:
         if x:  # else all degrees are -1
-            found.update(compress(count(), x.degrees()))
-    return sorted(found)
+            positions.update(compress(count(), x.degrees()))
+    return sorted(positions)

@@ -99,7 +99,7 @@ def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:
     common: list[tuple[Polynomial, int]] = []
     for _, factors in fractions:
         for factor, power in factors:
-            place = next((k for k, (one, _) in enumerate(common) if one == factor), None)
+            place = next((k for k, (present, _) in enumerate(common) if present == factor), None)
             if place is None:
                 common.append((factor, power))
             else:
@@ -107,7 +107,7 @@ def _cleared(ring: Ring, columns: Sequence[Polynomial]) -> list[Polynomial]:
     polynomials = []
     for top, factors in fractions:
         for factor, power in common:
-            own = next((e for one, e in factors if one == factor), 0)
+            own = next((e for present, e in factors if present == factor), 0)
             for _ in range(power - own):
                 top = ring.times(top, factor)
         polynomials.append(ring.reduce(top))
@@ -120,11 +120,11 @@ def _vector(ring: Ring, pivots: dict[int, dict[int, Polynomial]], free: int) -> 
     common = ring.one
     for k, row in involved.items():
         common = common * (row[k] / row[k].gcd(common))
-    found = {k: ring.reduce(-row[free] * (common / row[k])) for k, row in involved.items()} | {
+    solution = {k: ring.reduce(-row[free] * (common / row[k])) for k, row in involved.items()} | {
         free: ring.reduce(common)
     }
-    shared = found[free]
-    for c in found.values():
+    shared = solution[free]
+    for c in solution.values():
         shared = shared.gcd(c)
-    scale = shared * (found[free] / shared).leading_coefficient()
-    return {k: c / scale for k, c in found.items()}
+    scale = shared * (solution[free] / shared).leading_coefficient()
+    return {k: c / scale for k, c in solution.items()}

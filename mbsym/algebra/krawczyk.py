@@ -56,8 +56,8 @@ def _image(function: Function, jacobian: Jacobian, box: Box, middle: Box, invers
     spread = arb_mat(n, n, [arb(int(i == j)) for i in range(n) for j in range(n)])
     spread = spread - inverse * arb_mat(n, n, [x for row in jacobian(box) for x in row])
     offset = spread * arb_mat(n, 1, [x - m for x, m in zip(box, middle, strict=True)])
-    found = tuple(m - value[i, 0] + offset[i, 0] for i, m in enumerate(middle))
-    return found if all(x.is_finite() for x in found) else None
+    image = tuple(m - value[i, 0] + offset[i, 0] for i, m in enumerate(middle))
+    return image if all(x.is_finite() for x in image) else None
 
 
 def certified(function: Function, jacobian: Jacobian, start: Sequence[float], bits: int = 200) -> Box | None:
@@ -186,11 +186,11 @@ def _linear_part(function: Function, jacobian: Jacobian, box: Box, linear: int) 
     if not all(x.is_finite() for x in matrix.entries()):
         return anything
     try:
-        found = matrix.solve(arb_mat(linear, 1, [-values[i] for i in chosen]), algorithm="precond").entries()
+        solution = matrix.solve(arb_mat(linear, 1, [-values[i] for i in chosen]), algorithm="precond").entries()
     except ZeroDivisionError:
         return anything
     # Wider than it has to be, or no image would lie in its interior.
-    return tuple(arb(x.mid(), 2 * x.rad()) for x in found) if all(x.is_finite() for x in found) else anything
+    return tuple(arb(x.mid(), 2 * x.rad()) for x in solution) if all(x.is_finite() for x in solution) else anything
 
 
 def _nearer(function: Function, jacobian: Jacobian, box: Box) -> Box | None:

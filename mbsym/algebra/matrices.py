@@ -161,7 +161,7 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
     Zeros cost nothing; of a full matrix up to 2^n sets of columns are looked at.
     """
     known: dict[int, S] = {0: algebra.one}  # minors of the rows so far, by their columns as a bit mask
-    found = []
+    minors = []
     for size, row in enumerate(rows, start=1):
         entries = [(j, x) for j, x in enumerate(row) if not algebra.vanishes(x)]
         following: dict[int, S] = {}
@@ -177,8 +177,8 @@ def leading_minors(algebra: Algebra[S], rows: Table[S]) -> list[S]:
                 previous = following.get(key, algebra.zero)
                 following[key] = previous - term if beyond % 2 else previous + term
         known = {key: minor for key, x in following.items() if not algebra.vanishes(minor := algebra.reduce(x))}
-        found.append(known.get((1 << size) - 1, algebra.zero))
-    return found
+        minors.append(known.get((1 << size) - 1, algebra.zero))
+    return minors
 
 
 def determinant(algebra: Algebra[S], rows: Table[S]) -> S:
@@ -231,7 +231,7 @@ def faddeev(rows: Table[Any], zero: Any, one: Any) -> tuple[list[list[list[Any]]
     """
     m = len(rows)
     now = [[one if i == j else zero for j in range(m)] for i in range(m)]
-    found, coefficients = [now], [one]
+    adjugates, coefficients = [now], [one]
     for k in range(1, m + 1):
         columns = list(zip(*now, strict=True))
         product = [[dot(row, column) for column in columns] for row in rows]
@@ -239,8 +239,8 @@ def faddeev(rows: Table[Any], zero: Any, one: Any) -> tuple[list[list[list[Any]]
         coefficients.append(c)
         now = [[x + c if i == j else x for j, x in enumerate(row)] for i, row in enumerate(product)]
         if k < m:
-            found.append(now)
-    return found, coefficients[::-1]
+            adjugates.append(now)
+    return adjugates, coefficients[::-1]
 
 
 def determinant_by_traces(rows: Table[Any], zero: Any, one: Any) -> Any:
@@ -419,7 +419,7 @@ class PrimitiveRows(Generic[S]):
     def _without(self, row: dict[int, Any], pivot: dict[int, Any], k: int) -> dict[int, Any]:
         common = pivot[k].gcd(row[k])
         a, b, zero = pivot[k] / common, row[k] / common, self.algebra.zero
-        found: dict[int, Any] = {}
+        remaining: dict[int, Any] = {}
         for j in {*row, *pivot}:
             if j == k:
                 continue
@@ -428,9 +428,9 @@ class PrimitiveRows(Generic[S]):
             if value != 0:
                 if len(value) > self._most:
                     raise NoClosedForm(self._too_long, limit=Limit.TERMS, remedy=self._remedy)
-                found[j] = value
-        if not found:
-            return found
-        shared = reduce(lambda x, y: x.gcd(y), found.values())
-        shared = shared * next(iter(found.values())).leading_coefficient()
-        return {j: value / shared for j, value in found.items()}
+                remaining[j] = value
+        if not remaining:
+            return remaining
+        shared = reduce(lambda x, y: x.gcd(y), remaining.values())
+        shared = shared * next(iter(remaining.values())).leading_coefficient()
+        return {j: value / shared for j, value in remaining.items()}

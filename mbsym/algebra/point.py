@@ -128,8 +128,8 @@ def enclosed(name: str, x: arb) -> arb:
     """A ball that holds f(x) for every x of a ball; [-1, 1] for the sign of what may be 0."""
     if isinstance(name, Tabulated):
         return _tabulated(name.curve, x)
-    found: arb = getattr(x, {"abs": "__abs__", "sign": "sgn"}.get(name, name))()
-    return found
+    enclosure: arb = getattr(x, {"abs": "__abs__", "sign": "sgn"}.get(name, name))()
+    return enclosure
 
 
 def _tabulated(curve: Curve, x: arb) -> arb:
@@ -137,18 +137,18 @@ def _tabulated(curve: Curve, x: arb) -> arb:
     if not x.is_finite():
         return arb("nan")
     lower, upper = (rationals.fraction(rationals.middle(end)) for end in (x.lower(), x.upper()))
-    found = arb("nan")
+    union = arb("nan")
     for piece in range(curve.pieces_at(lower)[0], curve.pieces_at(upper)[-1] + 1):
         u = x if lower == upper else _part(curve, piece, x, lower, upper)
         u = u - rationals.ball(curve.bases[piece])
         value = arb(0)
         for coefficient in reversed(curve.polynomials[piece]):
             value = value * u + rationals.ball(coefficient)
-        found = found.union(value) if found.is_finite() else value
+        union = union.union(value) if union.is_finite() else value
     if lower == upper and len(curve.pieces_at(lower)) == 2:  # at a knot it is the mean
         mean = curve(lower)
         return rationals.ball(mean)
-    return found
+    return union
 
 
 def _part(curve: Curve, piece: int, x: arb, lower: Fraction, upper: Fraction) -> arb:

@@ -115,12 +115,12 @@ class PolynomialField:
         unknown = [name for name in values if name not in self.parameters]
         if unknown:
             raise KeyError(unknown[0])
-        kept = [name for name in self.parameters if name not in values]
-        context = fmpq_mpoly_ctx.get([*kept, *self.variables], self.context.ordering())
+        remaining = [name for name in self.parameters if name not in values]
+        context = fmpq_mpoly_ctx.get([*remaining, *self.variables], self.context.ordering())
         images = [
             context.constant(fmpq(values[name]) if isinstance(values[name], int) else values[name])
             if name in values
-            else context.gen((*kept, *self.variables).index(name))
+            else context.gen((*remaining, *self.variables).index(name))
             for name in (*self.parameters, *self.variables)
         ]
 
@@ -133,7 +133,7 @@ class PolynomialField:
         return replace(
             self,
             context=context,
-            parameters=tuple(kept),
+            parameters=tuple(remaining),
             numerators=tuple(map(moved, self.numerators)),
             denominator=denominator,
             relations=tuple(r for r in map(moved, self.relations) if r != 0),

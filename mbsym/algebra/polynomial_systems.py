@@ -359,11 +359,11 @@ class _Solver:
         for k, table in enumerate(tables):
             minimal = table.minpoly()
             factors = [_in_variable(p, k, self.context) for p, _ in irreducible_factors(minimal)[1]]
-            kept = [x for x in factors if self._can_vanish(x)]
-            if not kept:
+            vanishing = [x for x in factors if self._can_vanish(x)]
+            if not vanishing:
                 return
-            if len(kept) < len(factors) or len(factors) > 1 or not _squarefree(minimal):
-                self._split(basis, kept, branch)
+            if len(vanishing) < len(factors) or len(factors) > 1 or not _squarefree(minimal):
+                self._split(basis, vanishing, branch)
                 return
         for modulus, values in _representation(tables, size):
             for index in range(len(real_roots(modulus))):
@@ -432,11 +432,11 @@ class _Solver:
 
     def _bounded_basis(self, generators: list[Polynomial], where: Any) -> list[Polynomial]:
         limits = (self.limits.elements, self.limits.terms, self.limits.bits)
-        found, finished = _vector(generators, where).buchberger_naive(limits=limits)
+        basis, finished = _vector(generators, where).buchberger_naive(limits=limits)
         if not finished:
             raise _TooLarge("an elimination beyond the limits of a Groebner basis")
-        self.spend(sum(map(len, found)) * len(found))
-        return list(found.autoreduction(groebner=True))
+        self.spend(sum(map(len, basis)) * len(basis))
+        return list(basis.autoreduction(groebner=True))
 
     def _sample(self, basis: list[Polynomial], free: tuple[int, ...], branch: _Branch) -> AlgebraicPoint | None:
         """A real point of the family at which its equations have the full rank, so that it goes on around there."""

@@ -299,11 +299,11 @@ class Program(Algebra[Node]):
 
     def live(self, outputs: Iterable[Node]) -> list[int]:
         """The numbers of the instructions that the outputs need, in order."""
-        asked = tuple(node.number for node in outputs)
-        known = self._live.get(asked)
+        targets = tuple(node.number for node in outputs)
+        known = self._live.get(targets)
         if known is None:  # instructions never change: what is known of them stays true
             needed: set[int] = set()
-            pending = list(asked)
+            pending = list(targets)
             while pending:
                 number = pending.pop()
                 if number not in needed:
@@ -311,11 +311,11 @@ class Program(Algebra[Node]):
                     pending.extend(self.instructions[number].operands)
             if len(self._live) >= MOST_REMEMBERED:
                 del self._live[next(iter(self._live))]
-            known = self._live[asked] = sorted(needed)
+            known = self._live[targets] = sorted(needed)
         return known.copy()
 
-    def operations(self, outputs: Iterable[Node], given: Collection[str] = ()) -> int:
-        """How many arithmetic operations the outputs cost; what depends only on the inputs ``given`` is free.
+    def operations(self, outputs: Iterable[Node], known_inputs: Collection[str] = ()) -> int:
+        """How many arithmetic operations the outputs cost; what depends only on the inputs ``known_inputs`` is free.
 
         With the constants of a system given, this is what one more state costs: the rest is computed once.
         """
@@ -323,10 +323,10 @@ class Program(Algebra[Node]):
         steady: set[int] = set()
         for number in self.live(outputs):
             operation, operands, payload = self.instructions[number]
-            if operation == "constant" or (operation == "input" and payload in given):
+            if operation == "constant" or (operation == "input" and payload in known_inputs):
                 steady.add(number)
             elif operation != "input":
-                if given and all(operand in steady for operand in operands):
+                if known_inputs and all(operand in steady for operand in operands):
                     steady.add(number)
                 else:
                     counted += 1

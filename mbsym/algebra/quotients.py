@@ -241,9 +241,9 @@ class Composition:
         for k, q in p.items():
             for exponents, part in apart(q, self.places).items():
                 parts.setdefault(exponents, {})[k] = Quotient.of(part)
-        found = {exponents: Series(self.context, graded) for exponents, graded in parts.items()}
-        self._sorted[id(p)] = p, found  # held: its identity is not used again
-        return found
+        series_by_exponents = {exponents: Series(self.context, graded) for exponents, graded in parts.items()}
+        self._sorted[id(p)] = p, series_by_exponents  # held: its identity is not used again
+        return series_by_exponents
 
 
 def _least(a: int | None, b: int | None) -> int | None:

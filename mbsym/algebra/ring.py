@@ -778,7 +778,7 @@ class Ring(Algebra[Polynomial]):
                 for monomial, coefficient in x.terms()
             )
             and any(all(k in self._positive for k, e in enumerate(monomial) if e) for monomial in x.monoms())
-        ) or any((ratio := rational_ratio(x, one)) is not None and ratio > 0 for one in self.assumed)
+        ) or any((ratio := rational_ratio(x, assumption)) is not None and ratio > 0 for assumption in self.assumed)
 
     # --- derivation --------------------------------------------------------------------------------------------------
 
@@ -805,14 +805,14 @@ class Ring(Algebra[Polynomial]):
 
     def held(self, polynomials: Iterable[Polynomial]) -> set[int]:
         """The generators of polynomials, and those in what the adjoined ones among them hold."""
-        pending, found = list(occurring(polynomials)), set[int]()
+        pending, generators = list(occurring(polynomials)), set[int]()
         while pending:
             index = pending.pop()
-            if index not in found:
-                found.add(index)
+            if index not in generators:
+                generators.add(index)
                 argument = self.generators[index].argument
                 pending += [] if argument is None else occurring([argument])
-        return found
+        return generators
 
     def depends_on(self, x: Polynomial, name: str) -> bool:
         """Whether a coordinate, a prescribed quantity or t occurs (plainly, under sin and cos, or adjoined)."""
@@ -914,10 +914,12 @@ class Ring(Algebra[Polynomial]):
 
     # --- zero test ---------------------------------------------------------------------------------------------------
 
-    def fraction(self, x: Polynomial, kept: Collection[int] = ()) -> tuple[Polynomial, list[tuple[Polynomial, int]]]:
+    def fraction(
+        self, x: Polynomial, retained: Collection[int] = ()
+    ) -> tuple[Polynomial, list[tuple[Polynomial, int]]]:
         """(numerator, [(factor, exponent), ...]) with x = numerator / product: reciprocals cleared, gcds removed.
 
-        Reciprocals that are ``kept`` stay in the numerator.
+        Reciprocals that are ``retained`` stay in the numerator.
         """
         denominators: list[tuple[Polynomial, int]] = []
         x = self.reduce(x)
@@ -925,7 +927,7 @@ class Ring(Algebra[Polynomial]):
         for index in range(self._free + 1, self.spare):
             known = self.generators[index]
             degree = int(degrees[index])
-            if known.kind != "reciprocal" or degree <= 0 or index in kept:
+            if known.kind != "reciprocal" or degree <= 0 or index in retained:
                 continue
             x = self.reduce(self._cleared(x, index, degree, known.argument))
             while degree and x and (quotient := self.quotient(x, known.argument)) is not None:

@@ -151,9 +151,9 @@ class RunningErrors(Algebra[Approximate]):
         raise NoClosedForm("[[name]] has no bound of its rounding here", name=name)
 
 
-def outputs(found: Mapping[str, Approximate]) -> dict[str, tuple[Node, Node]]:
+def outputs(approximations: Mapping[str, Approximate]) -> dict[str, tuple[Node, Node]]:
     """(value, error) of every name, as nodes."""
-    return {name: (x.value, x.program.zero if x.error is None else x.error) for name, x in found.items()}
+    return {name: (x.value, x.program.zero if x.error is None else x.error) for name, x in approximations.items()}
 
 
 def certain_sign(value: Any, error: Any) -> Any:

@@ -97,7 +97,7 @@ class ParameterSet:
     def complement(self) -> ParameterSet:
         parameter_set = EVERYTHING
         for piece in self.pieces:
-            parameter_set = parameter_set & ParameterSet(tuple((one.negated(),) for one in piece))
+            parameter_set = parameter_set & ParameterSet(tuple((condition.negated(),) for condition in piece))
         return parameter_set
 
     def inner(self) -> ParameterSet:
@@ -105,10 +105,13 @@ class ParameterSet:
         return ParameterSet(
             tuple(
                 tuple(
-                    Atom(one.polynomial, ">") if one.relation == ">=" and one.polynomial != 0 else one for one in piece
+                    Atom(condition.polynomial, ">")
+                    if condition.relation == ">=" and condition.polynomial != 0
+                    else condition
+                    for condition in piece
                 )
                 for piece in self.pieces
-                if not any(one.relation == "=" and one.polynomial != 0 for one in piece)
+                if not any(condition.relation == "=" and condition.polynomial != 0 for condition in piece)
             )
         )
 
@@ -136,17 +139,20 @@ class ParameterSet:
 
     def holds(self, point: Sequence[Any]) -> bool:
         """Whether a point, with a value for each generator, is in it."""
-        return any(all(_holds(one.polynomial(*point), one.relation) for one in piece) for piece in self.pieces)
+        return any(
+            all(_holds(condition.polynomial(*point), condition.relation) for condition in piece)
+            for piece in self.pieces
+        )
 
 
 def _of(pieces: Iterable[Piece]) -> ParameterSet:
     kept_pieces: dict[frozenset[tuple[str, str]], Piece] = {}
     for piece in pieces:
         plain: dict[tuple[str, str], Atom] = {}
-        for one in piece:
-            if not one.polynomial.is_constant():
-                plain[str(one.polynomial), one.relation] = one
-            elif not _holds(_number(one.polynomial), one.relation):
+        for condition in piece:
+            if not condition.polynomial.is_constant():
+                plain[str(condition.polynomial), condition.relation] = condition
+            elif not _holds(_number(condition.polynomial), condition.relation):
                 break
         else:
             kept_pieces.setdefault(frozenset(plain), tuple(plain.values()))
@@ -181,7 +187,7 @@ def _holds(value: Any, relation: str) -> bool:
 
 def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
     """Each piece is decided once for the same knowledge, whatever the order of its conditions."""
-    named = {(str(one.polynomial), one.relation): one for one in piece}
+    named = {(str(condition.polynomial), condition.relation): condition for condition in piece}
     key = tuple(sorted(named))
     known = signs.emptiness
     if key not in known:
@@ -190,40 +196,40 @@ def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] |
 
 
 def _decide(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
-    piece = tuple(Atom(signs.normalised(one.polynomial), one.relation) for one in piece)
+    piece = tuple(Atom(signs.normalised(condition.polynomial), condition.relation) for condition in piece)
     if _excluded(piece, signs):
         return Emptiness.EMPTY, None
-    used = set(occurring(one.polynomial for one in piece))
+    used = set(occurring(condition.polynomial for condition in piece))
     if signs.numbers or signs.normal is not None:
         return Emptiness.OPEN, None
     related = list(_related(signs, used))
     whole = [*piece, *related, *_words(signs, used)]
-    if sum(len(one.polynomial) for one in piece) > MOST_TERMS_SEARCHED or len(piece) > MOST_SEARCHED:
+    if sum(len(condition.polynomial) for condition in piece) > MOST_TERMS_SEARCHED or len(piece) > MOST_SEARCHED:
         return Emptiness.OPEN, None
     for chosen, complete in (
         (whole, True),
         ([*piece, *_words(signs, set(occurring(x.polynomial for x in piece)))], False),
     ):
         try:
-            found = _Search(signs).solve(chosen)
+            point = _Search(signs).solve(chosen)
         except (Failure, _OutOfBudget):
             continue
-        if found is None:
+        if point is None:
             return Emptiness.EMPTY, None
         if complete:
-            return Emptiness.INHABITED, found
+            return Emptiness.INHABITED, point
     return Emptiness.OPEN, None
 
 
 def _excluded(piece: Piece, signs: Signs) -> bool:
     """Whether the opposite of a condition follows from the others."""
-    short = sorted(piece, key=lambda one: len(one.polynomial))[:MOST_COMPARED]
-    short = [one for one in short if len(one.polynomial) <= MOST_TERMS_COMPARED]
+    short = sorted(piece, key=lambda condition: len(condition.polynomial))[:MOST_COMPARED]
+    short = [condition for condition in short if len(condition.polynomial) <= MOST_TERMS_COMPARED]
     try:
-        for k, one in enumerate(short):
+        for k, condition in enumerate(short):
             others = [x for j, other in enumerate(short) if j != k for x in _assumed(other)]
-            word = signs.assuming(others).sign(one.polynomial)
-            if not _SETS[word] & _ALLOWED[one.relation]:
+            word = signs.assuming(others).sign(condition.polynomial)
+            if not _SETS[word] & _ALLOWED[condition.relation]:
                 return True
     except ContradictionError:
         return True
@@ -241,23 +247,23 @@ _SETS: dict[str, frozenset[int]] = {
 }
 
 
-def _assumed(one: Atom) -> Iterator[tuple[Polynomial, str]]:
-    if one.relation == "=":
-        yield one.polynomial, ">="
-        yield -one.polynomial, ">="
+def _assumed(condition: Atom) -> Iterator[tuple[Polynomial, str]]:
+    if condition.relation == "=":
+        yield condition.polynomial, ">="
+        yield -condition.polynomial, ">="
     else:
-        yield one.polynomial, one.relation
+        yield condition.polynomial, condition.relation
 
 
 def _related(signs: Signs, used: set[int]) -> Iterator[Atom]:
     """The assumptions about the parameters that occur, and those about what these bring in; they join ``used``."""
     left = list(signs.assumptions)
     while True:
-        found = [x for x in left if used & set(occurring([x[0]]))]
-        if not found:
+        related = [x for x in left if used & set(occurring([x[0]]))]
+        if not related:
             return
-        left = [x for x in left if not any(x is y for y in found)]
-        for polynomial, relation in found:
+        left = [x for x in left if not any(x is y for y in related)]
+        for polynomial, relation in related:
             used.update(occurring([polynomial]))
             yield Atom(polynomial, relation)
 
@@ -292,13 +298,13 @@ class _Search:
         if self.branches < 0:
             raise _OutOfBudget
         kept_atoms: dict[tuple[str, str], Atom] = {}
-        for one in atoms:
-            if one.polynomial.is_constant():
-                if not _holds(_number(one.polynomial), one.relation):
+        for condition in atoms:
+            if condition.polynomial.is_constant():
+                if not _holds(_number(condition.polynomial), condition.relation):
                     return None
             else:
-                kept_atoms[str(one.polynomial), one.relation] = one
-        found: dict[int, Any] = {}
+                kept_atoms[str(condition.polynomial), condition.relation] = condition
+        point: dict[int, Any] = {}
         open_ones = False
         for part in sorted(_components(list(kept_atoms.values())), key=lambda part: len(_variables(part))):
             try:
@@ -308,10 +314,10 @@ class _Search:
                 continue
             if there is None:
                 return None
-            found |= there
+            point |= there
         if open_ones:
             raise _OutOfBudget
-        return found
+        return point
 
     def _component(self, atoms: list[Atom]) -> dict[int, Any] | None:
         variables = _variables(atoms)
@@ -331,12 +337,12 @@ class _Search:
         left_open = False
         for search in searches:
             try:
-                found = search()
+                point = search()
             except _OutOfBudget:
                 left_open = True
                 continue
-            if found is not None:
-                return found
+            if point is not None:
+                return point
         if left_open:
             raise _OutOfBudget
         return None
@@ -344,18 +350,18 @@ class _Search:
     # --- one parameter ---
 
     def _on_line(self, atoms: list[Atom], x: int) -> dict[int, Any] | None:
-        polynomials = [univariate(one.polynomial, x) for one in atoms]
+        polynomials = [univariate(condition.polynomial, x) for condition in atoms]
         zeros = _zeros(polynomials)
         for value in (*_between(zeros), *zeros):
             self._cell()
-            if all(_holds_there(p, value, one.relation) for p, one in zip(polynomials, atoms, strict=True)):
+            if all(_holds_there(p, value, condition.relation) for p, condition in zip(polynomials, atoms, strict=True)):
                 return {x: value}
         return None
 
     # --- equations ---
 
-    def _with_equation(self, one: Atom, rest: list[Atom]) -> dict[int, Any] | None:
-        return self._first(partial(self._on_zeros, f, rest) for f, _ in irreducible_factors(one.polynomial)[1])
+    def _with_equation(self, equation: Atom, rest: list[Atom]) -> dict[int, Any] | None:
+        return self._first(partial(self._on_zeros, f, rest) for f, _ in irreducible_factors(equation.polynomial)[1])
 
     def _on_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
         """Where an irreducible factor vanishes: a parameter that it is linear in is eliminated."""
@@ -365,7 +371,7 @@ class _Search:
             return self._on_irrational_zeros(factor, rest)
         x = min(linear, key=lambda k: len(coefficients_in(factor, k)[1]))
         c, b = coefficients_in(factor, x)
-        there = [Atom(_substituted(one.polynomial, x, -c, b), one.relation) for one in rest]
+        there = [Atom(_substituted(condition.polynomial, x, -c, b), condition.relation) for condition in rest]
         if not b.is_constant():
             there.append(Atom(b, "!="))
         left_open = False
@@ -386,7 +392,7 @@ class _Search:
     def _on_irrational_zeros(self, factor: Polynomial, rest: list[Atom]) -> dict[int, Any] | None:
         """Nowhere, where no parameters keep the rest, or the factor has one parameter and no zeros; else left open."""
         used = occurring([factor])
-        alone = [one for one in rest if occurring([one.polynomial]) == used]
+        alone = [condition for condition in rest if occurring([condition.polynomial]) == used]
         if len(used) == 1 and self._on_line([Atom(factor, "="), *alone], used[0]) is None:
             return None
         if self.solve(rest) is None:
@@ -399,26 +405,26 @@ class _Search:
         """Open conditions: f != 0 takes nothing away from an open set that is not empty."""
         if len(variables) > MOST_PARAMETERS:
             raise _OutOfBudget
-        strict = [one for one in atoms if one.relation == ">"]
+        strict = [condition for condition in atoms if condition.relation == ">"]
         in_cells = self._cells(strict, _ordered(strict, variables))
         if in_cells is None:
             return None
-        apart = [one.polynomial for one in atoms if one.relation == "!="]
+        apart = [condition.polynomial for condition in atoms if condition.relation == "!="]
         if any(_value(p, in_cells, self.context) == 0 for p in apart):
             return self._moved(in_cells, strict, apart)
         return in_cells
 
-    def _moved(self, found: dict[int, Any], strict: Sequence[Atom], apart: Sequence[Polynomial]) -> dict[int, Any]:
+    def _moved(self, point: dict[int, Any], strict: Sequence[Atom], apart: Sequence[Polynomial]) -> dict[int, Any]:
         """A point near by that is on no surface f = 0."""
         for power in range(4, 40):
-            moved = {k: v + fmpq(2 * j + 1, 1 << power) for j, (k, v) in enumerate(sorted(found.items()))}
-            inside = all(_value(one.polynomial, moved, self.context) > 0 for one in strict)
+            moved = {k: v + fmpq(2 * j + 1, 1 << power) for j, (k, v) in enumerate(sorted(point.items()))}
+            inside = all(_value(condition.polynomial, moved, self.context) > 0 for condition in strict)
             if inside and all(_value(p, moved, self.context) != 0 for p in apart):
                 return moved
         raise _OutOfBudget
 
     def _cells(self, strict: Sequence[Atom], order: Sequence[int]) -> dict[int, Any] | None:
-        levels = [_irreducible([one.polynomial for one in strict])]
+        levels = [_irreducible([condition.polynomial for condition in strict])]
         for x in order[:-1]:
             levels.append(_projected(levels[-1], x))
         stages = list(zip(reversed(order), reversed(levels), strict=True))
@@ -431,10 +437,10 @@ class _Search:
             for value in _between(zeros):
                 self._cell()
                 there = values | {x: value}
-                if all(_not_broken(one.polynomial, there, self.context) for one in strict):
-                    found = lifted(at + 1, there)
-                    if found is not None:
-                        return found
+                if all(_not_broken(condition.polynomial, there, self.context) for condition in strict):
+                    point = lifted(at + 1, there)
+                    if point is not None:
+                        return point
             return None
 
         return lifted(0, {})
@@ -446,14 +452,14 @@ class _Search:
 
 
 def _variables(atoms: Sequence[Atom]) -> list[int]:
-    return occurring(one.polynomial for one in atoms)
+    return occurring(condition.polynomial for condition in atoms)
 
 
 def _components(atoms: list[Atom]) -> list[list[Atom]]:
     """Conditions that share parameters, together."""
     parts: list[tuple[set[int], list[Atom]]] = []
-    for one in atoms:
-        used, joined = set(occurring([one.polynomial])), [one]
+    for condition in atoms:
+        used, joined = set(occurring([condition.polynomial])), [condition]
         apart = []
         for other, held in parts:
             if other & used:
@@ -467,15 +473,15 @@ def _components(atoms: list[Atom]) -> list[list[Atom]]:
 
 def _zeros(polynomials: Sequence[fmpq_poly]) -> list[Number]:
     """All real zeros, in their order."""
-    found: dict[str, Any] = {}
+    factors: dict[str, Any] = {}
     for p in polynomials:
         if p.degree() > 0:
             if p.degree() > MOST_DEGREE:
                 raise _OutOfBudget
             for factor, _ in primitive(p).factor()[1]:
-                found[str(factor)] = factor
+                factors[str(factor)] = factor
     numbers: list[Number] = []
-    for factor in found.values():
+    for factor in factors.values():
         if factor.degree() == 1:
             numbers.append(fmpq(-factor[0], factor[1]))
         elif factor.degree() > 1:
@@ -539,13 +545,13 @@ def _not_broken(p: Polynomial, values: Mapping[int, Any], context: Any) -> bool:
 
 
 def _irreducible(polynomials: Iterable[Polynomial]) -> list[Polynomial]:
-    found: dict[str, Polynomial] = {}
+    factors: dict[str, Polynomial] = {}
     for p in polynomials:
         if p.is_constant():
             continue
         for factor, _ in irreducible_factors(p)[1]:
-            found[str(factor)] = factor
-    return list(found.values())
+            factors[str(factor)] = factor
+    return list(factors.values())
 
 
 def _projected(factors: Sequence[Polynomial], x: int) -> list[Polynomial]:
@@ -574,7 +580,7 @@ def _affordable(f: Polynomial, g: Polynomial, x: int) -> None:
 
 def _ordered(strict: Sequence[Atom], variables: list[int]) -> list[int]:
     """The parameters in the order in which they are projected away: of low degree first."""
-    polynomials = [one.polynomial for one in strict]
+    polynomials = [condition.polynomial for condition in strict]
 
     def weight(x: int) -> tuple[int, int]:
         degrees = [p.degrees()[x] for p in polynomials]

@@ -509,8 +509,8 @@ class Signs:
 
         Every term that may have the wrong sign must be taken up by some assumption, so it is enough to look at one.
         """
-        wanted = frozenset({0, target})
-        wrong = next((term for term in p.terms() if not self._term(*term) <= wanted), None)
+        permitted = frozenset({0, target})
+        wrong = next((term for term in p.terms() if not self._term(*term) <= permitted), None)
         if wrong is None:
             return self._by_terms(p)
         if depth == 0:
@@ -522,14 +522,14 @@ class Signs:
                     continue
                 ratio = wrong[1] / coefficient
                 part = _product(_product(self._monomial(quotient), frozenset({_sign(ratio)})), allowed)
-                if not part <= wanted:
+                if not part <= permitted:
                     continue
                 if next(steps, None) is None:
                     return ANY  # out of steps
                 rest = p - polynomial * self.context.from_dict({quotient: ratio})
-                found = self._combination(rest, target, depth - 1, steps)
-                if found != ANY:
-                    return _sum(part, found)
+                rest_signs = self._combination(rest, target, depth - 1, steps)
+                if rest_signs != ANY:
+                    return _sum(part, rest_signs)
         return ANY
 
     def _by_square(self, p: Polynomial, points: tuple[tuple[Any, ...], ...], depth: int = SQUARES) -> SignSet:
@@ -577,7 +577,7 @@ class Signs:
 
         They mean nothing where generators are no free parameters.
         """
-        random, found = Random(1), []
+        random, points = Random(1), []
         bounds = [self._bounds(generator) for generator in range(self.context.nvars())]
         places = [[_between(lower, upper, share) for share in SHARES] for lower, upper in bounds]
         # What bounds one generator holds at all these points, where there is something between its bounds.
@@ -590,10 +590,10 @@ class Signs:
         for _ in range(ATTEMPTS):
             point = tuple(random.choice(values) for values in places)
             if all(_sign(p(*point)) in allowed for p, allowed in others):
-                found.append(point)
-                if len(found) == WITNESSES:
+                points.append(point)
+                if len(points) == WITNESSES:
                     break
-        return tuple(found)
+        return tuple(points)
 
     # -- changes of variables -----------------------------------------------------------------------------------
 

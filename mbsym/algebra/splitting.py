@@ -141,8 +141,8 @@ def split(
     ``nonzero`` lists polynomials that are not to vanish.
     """
     work = _Work(unknowns, never_zero, limits)
-    told = tuple(f for p in nonzero for f, _ in irreducible_factors(p)[1])
-    stack: list[tuple[Branch, tuple[Polynomial, ...]]] = [(Branch((), (), told), tuple(equations))]
+    nonzero_factors = tuple(f for p in nonzero for f, _ in irreducible_factors(p)[1])
+    stack: list[tuple[Branch, tuple[Polynomial, ...]]] = [(Branch((), (), nonzero_factors), tuple(equations))]
     while stack:
         work.begun += 1
         if work.begun > limits.branches:
@@ -170,13 +170,15 @@ def vanishes_with(ring: Ring, x: Polynomial, equations: Sequence[Polynomial]) ->
     present = [(k, ring.generators[k]) for k in occurring((numerator, *equations))]
     hidden = {k for _, g in present if g.argument is not None for k in occurring([g.argument])}
     unknowns = [k for k, g in present if g.kind == "parameter" and k not in hidden and g.name not in ring.angles]
-    found = split(equations, unknowns)
-    if found.unfinished or not all(ring.is_number(p) and ring.is_zero(p) is False for p in found.generic):
+    solutions = split(equations, unknowns)
+    if solutions.unfinished or not all(ring.is_number(p) and ring.is_zero(p) is False for p in solutions.generic):
         return None
-    left = [bool(ring.reduce(branch.numerator(numerator))) for branch in found.branches]
+    left = [bool(ring.reduce(branch.numerator(numerator))) for branch in solutions.branches]
     if not any(left):
         return True
-    solved = [one for one, branch in zip(left, found.branches, strict=True) if not branch.remaining]
+    solved = [
+        nonvanishing for nonvanishing, branch in zip(left, solutions.branches, strict=True) if not branch.remaining
+    ]
     return False if any(solved) else None
 
 
@@ -206,17 +208,17 @@ def _step(work: _Work, branch: Branch, equations: Sequence[Polynomial]) -> list[
     rest = p - slope * p.context().gen(unknown)
     others = [*open_equations[:place], *open_equations[place + 1 :]]
     slope_factors = [f for f in work.factors(slope) if not work.known(f, branch.nonzero)]
-    found = []
+    branches = []
     # Where a factor of the slope vanishes, so does the rest.
     passed: tuple[Polynomial, ...] = ()
     for f in slope_factors:
-        found.append((replace(branch, nonzero=(*branch.nonzero, *passed)), (f, rest, *others)))
+        branches.append((replace(branch, nonzero=(*branch.nonzero, *passed)), (f, rest, *others)))
         passed = (*passed, f)
     solution = Solved(unknown, -rest, slope)
     taken = _substituted(replace(branch, nonzero=(*branch.nonzero, *passed)), solution)
     if taken is not None:
-        found.insert(0, (taken, tuple(_cleared(q, (solution,)) for q in others)))
-    return found
+        branches.insert(0, (taken, tuple(_cleared(q, (solution,)) for q in others)))
+    return branches
 
 
 def _by_factors(
@@ -242,7 +244,7 @@ def _by_resultants(
                 degrees = p.degrees()[unknown], q.degrees()[unknown]
                 if min(degrees) > 0 and max(degrees) <= work.limits.degree:
                     pairs.append((sum(degrees), len(p) + len(q), len(pairs), p, q, unknown))
-    for _, _, _, p, q, unknown in sorted(pairs, key=lambda one: one[:3])[: work.limits.pairs]:
+    for _, _, _, p, q, unknown in sorted(pairs, key=lambda pair: pair[:3])[: work.limits.pairs]:
         eliminated = p.resultant(q, p.context().name(unknown))
         if eliminated == 0:
             continue

@@ -159,10 +159,10 @@ class _Rewriting:
 
     def _term(self, node: Node) -> tuple[Fraction, Key]:
         """node = coefficient * product of the key's factors."""
-        found = self.known.get(node.number)
-        if found is None:
-            found = self.known[node.number] = self._taken_apart(node)
-        return found
+        term = self.known.get(node.number)
+        if term is None:
+            term = self.known[node.number] = self._taken_apart(node)
+        return term
 
     def _taken_apart(self, node: Node) -> tuple[Fraction, Key]:
         coefficient, factors = Fraction(1), []
@@ -277,7 +277,7 @@ class _Rewriting:
     def _cosines(self, whole: _Sum, key: Key) -> None:
         """a + b1 cos x1 + b2 cos x2 + ..., where a + b1 + b2 + ... is about 0; or a + b cos x with a - b about 0."""
         a = whole.coefficients[key]
-        found = [
+        cosine_terms = [
             (other, factor, b)
             for other, b in whole.coefficients.items()
             if len(other) == len(key) + 1
@@ -285,12 +285,12 @@ class _Rewriting:
             if self._operation(factor)[0] == "cos" and (self.thorough or self.uses[factor] <= 1)
             if _without(other, factor) == key
         ]
-        against = [(other, factor, b) for other, factor, b in found if (b > 0) != (a > 0)]
+        against = [(other, factor, b) for other, factor, b in cosine_terms if (b > 0) != (a > 0)]
         if against and _cancel(a, sum((b for _, _, b in against), Fraction(0))):
             for other, factor, b in against:
                 self._half_angle(whole, key, other, factor, b, 0)
             return
-        for other, factor, b in found:
+        for other, factor, b in cosine_terms:
             if (b > 0) == (a > 0) and _cancel(a, -b):
                 self._half_angle(whole, key, other, factor, b, 1)
                 return

@@ -44,8 +44,8 @@ class Element:
         if self.bottom == other.bottom:
             return self.tower.made(self.top + other.top, self.bottom)
         common = self.bottom.gcd(other.bottom)
-        one, two = divmod(self.bottom, common)[0], divmod(other.bottom, common)[0]
-        return self.tower.made(self.top * two + other.top * one, self.bottom * two)
+        own_cofactor, other_cofactor = divmod(self.bottom, common)[0], divmod(other.bottom, common)[0]
+        return self.tower.made(self.top * other_cofactor + other.top * own_cofactor, self.bottom * other_cofactor)
 
     __radd__ = __add__
 

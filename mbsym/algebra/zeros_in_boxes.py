@@ -142,7 +142,7 @@ class Several:
         return where.from_dict(terms)
 
     def _placed(self, balls: Sequence[Any], chart: Mapping[str, int]) -> dict[str, Any]:
-        found = {}
+        coordinates = {}
         with ctx.workprec(PRECISION):
             for name, ball in zip(self.names, balls, strict=True):
                 if name in chart:
@@ -150,8 +150,8 @@ class Several:
                     if half.mid() > (arb.pi() / 2).mid():
                         half = half - arb.pi()
                     ball = 2 * self.half.angles[name] * half
-                found[name] = ball
-        return found
+                coordinates[name] = ball
+        return coordinates
 
 
 def _gcd(a: int, b: int) -> int:
@@ -162,11 +162,11 @@ def _gcd(a: int, b: int) -> int:
 
 def _distinct(points: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Points that are told apart by their balls; one that two charts show is taken once."""
-    kept: list[Mapping[str, Any]] = []
+    distinct: list[Mapping[str, Any]] = []
     for point in points:
-        if not any(all(point[name].overlaps(other[name]) for name in point) for other in kept):
-            kept.append(point)
-    return kept
+        if not any(all(point[name].overlaps(other[name]) for name in point) for other in distinct):
+            distinct.append(point)
+    return distinct
 
 
 # What is known of the zeros of a polynomial: sets, values, and how each is known.
@@ -256,7 +256,7 @@ def zero_sets(ring: Ring, polynomials: Sequence[Polynomial], ranges: Mapping[str
             if at_zero:
                 turned = zero_sets(ring, [straightened], ranges)
                 nowhere += [plain] if not turned.sets else []
-                sets += [_turned_back(ring, plain, one, at_zero) for one in turned.sets]
+                sets += [_turned_back(ring, plain, turned_set, at_zero) for turned_set in turned.sets]
                 bounded.update(turned.bounded)
                 continue
             half = HalfAngles(ring, plain)
@@ -387,8 +387,8 @@ class HalfAngles:
         """None where it is proved that there are none."""
         names = self.names_of(factor)
         if len(names) == 1:
-            found = self._in_angle(factor, names[0]) if names[0] in self.angles else self._in_coordinate(factor, names)
-            return ZeroSet(plain, names, EXACT, tuple(found)) if found else None
+            roots = self._in_angle(factor, names[0]) if names[0] in self.angles else self._in_coordinate(factor, names)
+            return ZeroSet(plain, names, EXACT, tuple(roots)) if roots else None
         return Several(self, factor, plain, names, ranges).found()
 
     # --- one variable ------------------------------------------------------------------------------------------------

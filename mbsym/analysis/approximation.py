@@ -55,17 +55,17 @@ def reduced(analysis: Analysis) -> Reduced:
 
     _demand_motion(analysis)
     scene, names = analysis.parameters_scene, analysis.system.coordinates
-    found = expansion(scene, analysis.signs, analysis.system)
-    equations = projected(scene, found)
-    leaf = 0 if len(found.coordinates) == len(found.speeds) else kept_by_velocities(analysis)
+    first_order = expansion(scene, analysis.signs, analysis.system)
+    equations = projected(scene, first_order)
+    leaf = 0 if len(first_order.coordinates) == len(first_order.speeds) else kept_by_velocities(analysis)
     if leaf:
-        there, own = on_leaf(scene, found, equations)
+        there, own = on_leaf(scene, first_order, equations)
         unfelt = len(there.speeds) - len(felt(there, own))
         if not unfelt or unfelt <= _displacements(analysis, [names[i] for i in there.speeds]):
-            found, equations = there, own
+            first_order, equations = there, own
         else:  # coordinates that drop out, and their families, are judged by the roots of the whole
             leaf = 0
-    return Reduced(found, equations, reduction(scene, found, equations, leaf))
+    return Reduced(first_order, equations, reduction(scene, first_order, equations, leaf))
 
 
 def _displacements(analysis: Analysis, speeds: Sequence[str]) -> int:
@@ -137,10 +137,10 @@ def _rests_at_zero(analysis: Analysis) -> bool | None:
     try:
         scene = linearisation.quadratised(resting.parameters_scene, resting.system, order=0)  # nothing deviates here
         values = [-x.value for x in newton_euler.residuals(scene).values()]
-        found = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
-        if found.satisfied and equilibrium.singular_displacements(resting.expanded):
+        rest_state = equilibrium.equilibrium(resting.parameters_scene, values, resting.signs)
+        if rest_state.satisfied and equilibrium.singular_displacements(resting.expanded):
             return resting.equilibrium.satisfied  # more is demanded there
-        return found.satisfied
+        return rest_state.satisfied
     except (Failure, Unavailable):
         return None
 
@@ -176,22 +176,22 @@ def autonomous(analysis: Analysis) -> Linearisation:
 
     Raises Unavailable where they vary with time.
     """
-    found = analysis.first_approximation
-    if found.varying:
+    linear = analysis.first_approximation
+    if linear.varying:
         hint = steady_order(analysis)
         if not hint:
             hint = Message("choose coordinates in which the motion is steady, if there are any")
-            if not _drifting(analysis, found):
+            if not _drifting(analysis, linear):
                 hint = Message("[[hint]]; where it is periodic in time: mbsym floquet [[file]]", hint=hint, file=FILE)
-        why = NoResult(found.time_dependence, hint, "time-dependent", "time-dependent")
+        why = NoResult(linear.time_dependence, hint, "time-dependent", "time-dependent")
         raise Unavailable("linearisation", why)
-    return found
+    return linear
 
 
-def _drifting(analysis: Analysis, found: Linearisation) -> bool:
+def _drifting(analysis: Analysis, linear: Linearisation) -> bool:
     """Whether coefficients vary with time other than through sines and cosines, so that they are not periodic."""
     return any(
-        _unbounded(analysis.ring, entry.value.polynomial, name) for entry in found.varying for name in entry.among
+        _unbounded(analysis.ring, entry.value.polynomial, name) for entry in linear.varying for name in entry.among
     )
 
 
@@ -203,9 +203,9 @@ def judgeable(analysis: Analysis) -> Linearisation:
     where time occurs in the nonlinear equations other than under sines and cosines, or w is not known to be positive
     and the spectrum is not symmetric (it is where D = N = 0 or D = G = 0).
     """
-    found = analysis.linearisation
-    scale = found.time_scale
-    symmetric = _vanish(found.D, found.N) or _vanish(found.D, found.G)
+    linear = analysis.linearisation
+    scale = linear.time_scale
+    symmetric = _vanish(linear.D, linear.N) or _vanish(linear.D, linear.G)
     if scale is not None and not symmetric and analysis.signs.sign(scale.polynomial) != "positive":
         reason = Message(
             "the rate of dimensionless time, [[scale]], is not known to be positive: tau may run backwards", scale=scale
@@ -220,7 +220,7 @@ def judgeable(analysis: Analysis) -> Linearisation:
             names=", ".join(growing),
         )
         raise Unavailable("stability", NoResult(reason, "", "time-dependent", "time-dependent"))
-    return found
+    return linear
 
 
 def judgeable_with_zeros(system: System, vanishing: Sequence[str]) -> tuple[str, ...]:
@@ -242,7 +242,7 @@ def judgeable_with_zeros(system: System, vanishing: Sequence[str]) -> tuple[str,
     if judged([]) or not judged(needed):
         return ()
     for name in vanishing:
-        if judged([one for one in needed if one != name]):
+        if judged([other for other in needed if other != name]):
             needed.remove(name)
     return tuple(needed)
 
@@ -258,29 +258,29 @@ def _growing(analysis: Analysis) -> tuple[str, ...]:
     """
     system = analysis.system
     names = (*turning(analysis.parameters_scene), *(item.name for item in system.prescribed), "t")
-    given = True
+    rates_declared = True
     if system.constraints:
         from mbsym.mechanics.constraints.rows import said_rows  # most systems have none
 
         running = analysis.reduced.expansion.base.turning
-        given = running <= {*names}  # the rates of all that runs are the description's
+        rates_declared = running <= {*names}  # the rates of all that runs are the description's
         names = tuple(dict.fromkeys((*names, *sorted(running))))
         held = {name for x in expressions(system.constraints) for name in _outside(x)}
         if held & set(names):
             rows = [y for row in said_rows(analysis.scene) for y in (row.position, row.velocity, *row.partials) if y]
-            if not given or not all(is_steady(analysis.scene, x) for x in rows):
+            if not rates_declared or not all(is_steady(analysis.scene, x) for x in rows):
                 return tuple(name for name in names if name in held)
     angles = [angle for body in system.bodies for angle in body.rotation.angles]
     plain = [x for body in system.bodies for x in (*body.connection_point, *body.mass_centre)]
-    told = {name for x in (*plain, *expressions(system.loads)) for name in _outside(x)}
-    told |= {name for x in angles if linear_form(x) is None for name in _outside(x)}
-    suspects = tuple(name for name in names if name in told)
+    outside = {name for x in (*plain, *expressions(system.loads)) for name in _outside(x)}
+    outside |= {name for x in angles if linear_form(x) is None for name in _outside(x)}
+    suspects = tuple(name for name in names if name in outside)
     equations = analysis.optional("equations") if suspects else None
     if equations is None:
         return suspects
     entries = [x.polynomial for x in equations.forcing]
     entries += [x for row in equations.mass_matrix.polynomials for x in row]
-    if given and all(is_steady(analysis.scene, x) for x in entries):
+    if rates_declared and all(is_steady(analysis.scene, x) for x in entries):
         return ()  # they know q - v t alone: deviations do not know the time
     return tuple(name for name in suspects if any(_unbounded(analysis.ring, x, name) for x in entries))
 

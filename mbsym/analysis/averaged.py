@@ -45,12 +45,12 @@ def averaging_of(
     chosen = (phases,) if isinstance(phases, str) else tuple(phases)
     expressions = {item.name: item.rate for item in system.prescribed}
     rates = {phase: rate.name for phase in chosen if isinstance(rate := expressions[phase], Name)}
-    told = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
+    amplitude_orders = amplitudes if isinstance(amplitudes, Mapping) else dict.fromkeys(amplitudes, 1)
     for phase, speed in rates.items():
         _refuse_company(system, phase, speed)
-        if speed in told:
+        if speed in amplitude_orders:
             raise NoClosedForm("[[rate]] is the rate of [[phase]], and of order eps^-1", rate=speed, phase=phase)
-    orders = dict(told) or averaging.orders_of(analysis.scene, analysis.energy, rates)
+    orders = dict(amplitude_orders) or averaging.orders_of(analysis.scene, analysis.energy, rates)
     _refuse_ties(system, chosen, (*rates.values(), *orders))
     averaged = averaging.averaged(analysis.scene, analysis.energy, rates, orders)
     values = {parameter.name: parameter.value for parameter in system.parameters}
@@ -99,20 +99,20 @@ def _refuse_ties(system: System, phases: Sequence[str], scaled: Sequence[str]) -
             )
 
 
-def averaged_system(system: System, found: Averaged) -> System:
+def averaged_system(system: System, averaged: Averaged) -> System:
     """The description without the amplitudes and with the vibrational potential as a load; claims are left out."""
-    at_rest = {name: number(0) for name, _ in found.orders}
+    at_rest = {name: number(0) for name, _ in averaged.orders}
     base = replace(system, parameters=(), initial=(), claims=(), abbreviations=(), prescribed=())
     still: System = put(base, at_rest, folded)
-    prescribeds = tuple(item for item in system.prescribed if item.name not in found.phases)
-    loads, fast = still.loads, ", ".join(found.phases)
-    if not found.vibrational.is_zero:
-        loads = (*loads, ForceFunction(_expression(str(found.vibrational)), "potential"))
+    prescribeds = tuple(item for item in system.prescribed if item.name not in averaged.phases)
+    loads, fast = still.loads, ", ".join(averaged.phases)
+    if not averaged.vibrational.is_zero:
+        loads = (*loads, ForceFunction(_expression(str(averaged.vibrational)), "potential"))
     return replace(
         still,
         name=f"{system.name}, averaged over {fast}",
         description=f"Its effective potential holds what the fast {fast} does on average "
-        f"({found.scaling}).  {system.description}",
+        f"({averaged.scaling}).  {system.description}",
         parameters=system.parameters,
         initial=system.initial,
         prescribed=prescribeds,

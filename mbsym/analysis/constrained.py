@@ -92,18 +92,18 @@ def programs_of(analysis: Analysis) -> ConstrainedPrograms:
     from mbsym.mechanics.constraints.programs import constrained_programs
 
     tied = analysis.tied_in_coordinates if analysis.system.speeds else analysis.constraints
-    kept = [(name.constraint, name.component) for name in tied.names]
-    return constrained_programs(analysis.system.without_speeds, analysis.ring, kept)
+    components = [(name.constraint, name.component) for name in tied.names]
+    return constrained_programs(analysis.system.without_speeds, analysis.ring, components)
 
 
 def rows_check(analysis: Analysis) -> Check | None:
     """The rows against places in inertial axes."""
-    found = analysis.optional("constraints") if analysis.system.constraints else None
-    if found is None:
+    constraints = analysis.optional("constraints") if analysis.system.constraints else None
+    if constraints is None:
         return None
     from mbsym.problems.constraints.checks import check_rows
 
-    return check_rows(analysis.form, found, programs_of(analysis))
+    return check_rows(analysis.form, constraints, programs_of(analysis))
 
 
 def motion_check(analysis: Analysis) -> Check | None:
@@ -123,11 +123,11 @@ def integrals_of(analysis: Analysis) -> tuple[Integral, ...]:
     return integrals(analysis.form, analysis.scene, analysis.energy, analysis.equations, programs_of(analysis))
 
 
-def integrals_check(analysis: Analysis, found: tuple[Integral, ...]) -> Check:
+def integrals_check(analysis: Analysis, integrals: tuple[Integral, ...]) -> Check:
     """Their rates along the motion with multipliers."""
     from mbsym.problems.constraints.checks import check_integrals
 
-    return check_integrals(analysis.form, found, analysis.constraints, programs_of(analysis))
+    return check_integrals(analysis.form, integrals, analysis.constraints, programs_of(analysis))
 
 
 def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
@@ -143,11 +143,11 @@ def reactions_of(analysis: Analysis) -> tuple[Reaction, ...]:
 
 def reactions_check(analysis: Analysis) -> Check | None:
     """Against what the released joints would have to be held with."""
-    found = analysis.optional("reactions") if analysis.system.reactions else None
-    if not found:
+    reactions = analysis.optional("reactions") if analysis.system.reactions else None
+    if not reactions:
         return None
     from mbsym.problems.reactions import check_reactions
 
     if analysis.system.constraints:
-        return check_reactions(analysis.oracles, found, analysis.constraints, programs_of(analysis))
-    return check_reactions(analysis.oracles, found, None, None)
+        return check_reactions(analysis.oracles, reactions, analysis.constraints, programs_of(analysis))
+    return check_reactions(analysis.oracles, reactions, None, None)

@@ -63,13 +63,13 @@ def equations_of(analysis: Analysis) -> Equations:
 def stability_of(analysis: Analysis) -> Stability:
     """The verdicts of problem 6; open ones are looked at further, in other angles where those given do not serve."""
     try:
-        found = _judged(analysis)
+        judgement = _judged(analysis)
     except Unavailable as failure:
         other = in_other_angles(analysis) if failure.failure.code in ("time-dependent", "not-steady") else None
         if other is None:
             raise
         return other
-    return (in_other_angles(analysis) if found.verdict.coordinates_singular else None) or found
+    return (in_other_angles(analysis) if judgement.verdict.coordinates_singular else None) or judgement
 
 
 def in_other_angles(analysis: Analysis) -> Stability | None:
@@ -77,9 +77,9 @@ def in_other_angles(analysis: Analysis) -> Stability | None:
 
     The unperturbed motion is the same: stability is a property of it, not of angles.
     """
-    for other, found in _in_other_angles(analysis):
+    for other, judgement in _in_other_angles(analysis):
         axes = ", ".join(map(str, other.axes))
-        return stability.because(found, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
+        return stability.because(judgement, Because.OTHER_ANGLES, other.body, axes, ", ".join(other.angles))
     return None
 
 
@@ -89,11 +89,11 @@ def _in_other_angles(analysis: Analysis) -> Iterator[tuple[Reordered, Stability]
         there.__dict__["ring"] = analysis.ring
         try:
             with there.strictly():
-                found = there.stability
+                judgement = there.stability
         except Failure:
             continue
-        if not found.verdict.coordinates_singular:
-            yield other, found
+        if not judgement.verdict.coordinates_singular:
+            yield other, judgement
 
 
 def _leading(part: Subsystem) -> list[list[Polynomial]]:
@@ -132,33 +132,37 @@ def _demand_regular(analysis: Analysis) -> None:
 
 def _judged(analysis: Analysis) -> Stability:
     scene, linear = analysis.parameters_scene, analysis.judgeable
-    found = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
-    if found.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(found.verdict):
-        found = stability.with_verdict(found, higher.of_one_coordinate(analysis, found.verdict))
-        if found.verdict.word.open and not found.verdict.because(Because.ORDER_DECIDES) and found.numerical is None:
-            found = stability.because(found, Because.VALUES_DECIDE)
-    values = None if found.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
+    judgement = stability.stability(scene, analysis.balance, linear, analysis.equilibrium, analysis.signs)
+    if judgement.verdict.word in (Word.UNDECIDED, Word.CRITICAL) and Judge(analysis).may_add(judgement.verdict):
+        judgement = stability.with_verdict(judgement, higher.of_one_coordinate(analysis, judgement.verdict))
+        if (
+            judgement.verdict.word.open
+            and not judgement.verdict.because(Because.ORDER_DECIDES)
+            and judgement.numerical is None
+        ):
+            judgement = stability.because(judgement, Because.VALUES_DECIDE)
+    values = None if judgement.numerical is None else stability.parameter_values(scene, analysis.equilibrium)
     divisor = None if values is None or analysis.system.linear is not None else pole(analysis, values)
     if divisor is not None:
-        return replace(found, numerical=undecided(Because.POLE, divisor), spectra=())
-    if found.numerical is None or values is None:
-        return found
-    judged = Judge(analysis).decided(found.numerical, values)
-    before = found.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
-    return replace(found, numerical=judged, before_higher_order=before)
+        return replace(judgement, numerical=undecided(Because.POLE, divisor), spectra=())
+    if judgement.numerical is None or values is None:
+        return judgement
+    judged = Judge(analysis).decided(judgement.numerical, values)
+    before = judgement.numerical if judged.because(Because.TERMS_OF_HIGHER_ORDER) else None
+    return replace(judgement, numerical=judged, before_higher_order=before)
 
 
 def stabilisation_of(analysis: Analysis) -> Stabilisation:
     """Problem 8, with numbers where the description gives all of them."""
     from mbsym.problems.stabilisation import problem  # few ask for it
 
-    found, linear = analysis.equilibrium, analysis.judgeable  # raises first where there is no such motion
-    if len(found.conditions) > len(found.solved):
+    steady_state, linear = analysis.equilibrium, analysis.judgeable  # raises first where there is no such motion
+    if len(steady_state.conditions) > len(steady_state.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
     _demand_regular(analysis)
-    values = stability.parameter_values(analysis.parameters_scene, found)
-    if values is not None and not problem.on_motion(analysis.parameters_scene, found, values):
+    values = stability.parameter_values(analysis.parameters_scene, steady_state)
+    if values is not None and not problem.on_motion(analysis.parameters_scene, steady_state, values):
         values = None
     return problem.stabilisation(analysis.parameters_scene, linear, analysis.signs, values)
 
@@ -241,9 +245,9 @@ def _in_other_velocities(analysis: Analysis, embedded: Embedded) -> str:
     for name in [name for name in system.coordinates if name not in embedded.free][:MOST_CHOICES]:
         chosen = replace(system, dependent=(*replaced, name))
         other = type(analysis)(chosen, (), analysis.terms, suggests=False)
-        found = other.optional("equations")
-        if found is not None and found.embedded is not None:
-            position = oscillating_position(other.ring, found.embedded, system.coordinates)
+        other_equations = other.optional("equations")
+        if other_equations is not None and other_equations.embedded is not None:
+            position = oscillating_position(other.ring, other_equations.embedded, system.coordinates)
             if position:
                 return position
     return ""
@@ -358,10 +362,10 @@ def result_in_coordinates(source: Analysis, name: str) -> Any:
         return getattr(source.in_coordinates, name)
     except Unavailable as failure:
         singular = name == "stability" and failure.failure.code == "singular-angles"
-        found = in_other_angles(_same(source, source.system.without_speeds)) if singular else None
-        if found is None or found.presumed:  # conditions that no problem 4 tells would be presumed
+        judgement = in_other_angles(_same(source, source.system.without_speeds)) if singular else None
+        if judgement is None or judgement.presumed:  # conditions that no problem 4 tells would be presumed
             raise
-        return found
+        return judgement
 
 
 def _same(source: Analysis, system: System) -> Analysis:

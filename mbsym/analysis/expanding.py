@@ -89,10 +89,10 @@ def _rationalised(c: Quotient, root: Adjoined) -> tuple[Any, Any, Any]:
     context = root.square.context()
 
     def parts(p: Any) -> list[Any]:
-        found = [context.constant(0), context.constant(0)]
+        halves = [context.constant(0), context.constant(0)]
         for power, c in enumerate(coefficients_in(p, root.place)):
-            found[power % 2] += context.from_dict(c.to_dict()) * root.square ** (power // 2)
-        return found
+            halves[power % 2] += context.from_dict(c.to_dict()) * root.square ** (power // 2)
+        return halves
 
     (a, b), (e, f) = parts(c.top), parts(c.bottom)
     below = e**2 - f**2 * root.square
@@ -135,7 +135,7 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
     there, known, root = _with_root(analysis, there, fast, (*fast, small.name, *dict(small.powers)))
     velocities = () if analysis.system.speeds else analysis.system.velocities
     names = tuple(there.field.context.names())
-    found: list[tuple[Expansion, Root]] = []
+    candidates: list[tuple[Expansion, Root]] = []
     reasons: list[Failure] = []
     for start in known.known:
         manifold = _expanded(analysis, there, fast, order, start, root)
@@ -149,18 +149,18 @@ def expansion(analysis: Analysis, order: int, values: Mapping[str, Fraction] | N
                 plain = replace(plain, real=sharpest([_unscaled(analysis).condition(square)]))
         plain = replace(plain, provided=tuple(provided.values()))
         try:
-            found.append((_about(analysis, plain, motion, numbers), start))
+            candidates.append((_about(analysis, plain, motion, numbers), start))
         except NoClosedForm as reason:
             reasons.append(reason)
-    if not found:
+    if not candidates:
         raise reasons[0]
-    return _chosen(analysis, found, known)
+    return _chosen(analysis, candidates, known)
 
 
-def _holds(found: SlowManifold, root: Adjoined) -> bool:
+def _holds(manifold: SlowManifold, root: Adjoined) -> bool:
     """Whether the square root stands in the expansion."""
-    flow = [series for name, series in zip(found.slow, found.flow, strict=True) if name != root.label]
-    quotients = [c for series in (*found.functions, *flow) for c in series.coefficients.values()]
+    flow = [series for name, series in zip(manifold.slow, manifold.flow, strict=True) if name != root.label]
+    quotients = [c for series in (*manifold.functions, *flow) for c in series.coefficients.values()]
     return any(not _rationalised(c, root)[1].is_zero() for c in quotients)
 
 
@@ -196,15 +196,15 @@ def _with_root(
     if not known.squares:
         return there, known, None
     square = known.squares[0]
-    given = adjoined(there.field, square, held)
-    if given is None or not {there.field.context.names()[k] for k in occurring([square])}.isdisjoint(held):
+    adjunction = adjoined(there.field, square, held)
+    if adjunction is None or not {there.field.context.names()[k] for k in occurring([square])}.isdisjoint(held):
         if known.known:
             return there, known, None
         raise NoClosedForm(
             "the fast variables hold a square root of something in which no slow variable or parameter is linear",
             remedy="" if square.is_constant() else "put in numbers with --set that make it a square",
         )
-    field, root = given
+    field, root = adjunction
     there = scaled(field, there.small, dict(there.powers))
     return there, _real_roots(analysis, there, fast), root
 
@@ -234,8 +234,10 @@ def _about(
     manifold = plain.manifold
     flow = dict(zip(manifold.slow, manifold.flow, strict=True))
     if manifold.root is not None:
-        told = slow.without_root(flow, manifold.root, plain.names)
-        plain = replace(plain, manifold=replace(manifold, slow=tuple(told), flow=tuple(told.values())))
+        rational_flow = slow.without_root(flow, manifold.root, plain.names)
+        plain = replace(
+            plain, manifold=replace(manifold, slow=tuple(rational_flow), flow=tuple(rational_flow.values()))
+        )
     if isinstance(motion, str):
         return replace(plain, missing=motion)
     try:
@@ -260,13 +262,18 @@ def _about(
     return replace(plain, fast=_judged(analysis, plain, steady.fast), slow=_judged(analysis, plain, steady.slow))
 
 
-def _chosen(analysis: Analysis, found: Sequence[tuple[Expansion, Root]], known: Roots) -> Expansion:
+def _chosen(analysis: Analysis, candidates: Sequence[tuple[Expansion, Root]], known: Roots) -> Expansion:
     """The expansion that begins at the root on which the motion lies; else at the one that attracts; else the first."""
     unknown = known.others + 2 * len(known.squares)
     if len(known.known) + unknown == 1:
-        return found[0][0]
-    on, drawn = ([x for x in found if x[0].manifold.steady is not None], [x for x in found if _attracts(analysis, *x)])
-    listed, choice = (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (found, Choice.FIRST)
+        return candidates[0][0]
+    on, drawn = (
+        [x for x in candidates if x[0].manifold.steady is not None],
+        [x for x in candidates if _attracts(analysis, *x)],
+    )
+    listed, choice = (
+        (on, Choice.ON_MOTION) if on else (drawn, Choice.ATTRACTING) if drawn else (candidates, Choice.FIRST)
+    )
     taken, start = listed[0]
     others = [tuple(map(taken.formula, root.values)) for root in known.known if root is not start]
     return replace(taken, choice=choice, others=tuple(others), unknown=unknown)
@@ -410,16 +417,16 @@ def _quotient(transfer: Transfer, context: Any, numbers: Mapping[str, Any], p: A
     return Quotient.of(top.compose(*images, ctx=context), bottom.compose(*images, ctx=context))
 
 
-def _judged(analysis: Analysis, told: Expansion, hurwitz: Hurwitz) -> tuple[Outcome, tuple[Condition, ...]]:
+def _judged(analysis: Analysis, plain: Expansion, hurwitz: Hurwitz) -> tuple[Outcome, tuple[Condition, ...]]:
     """Hurwitz's minors by their first coefficients, under the assumptions of the description."""
     signs, conditions = _unscaled(analysis), []
     for minor in hurwitz.minors:
         if minor.lowest is None:
             return Outcome.UNDECIDED, ()
         lead = minor.coefficients[minor.lowest]
-        ring = told.transfer.ring
-        top = told.formula(Quotient.of(lead.top)).polynomial
-        bottom = told.formula(Quotient.of(lead.bottom)).polynomial
+        ring = plain.transfer.ring
+        top = plain.formula(Quotient.of(lead.top)).polynomial
+        bottom = plain.formula(Quotient.of(lead.bottom)).polynomial
         product = ring.times(top, bottom)
         conditions.append(signs.condition(product))
         if conditions[-1].kind == "never":  # where it is zero, higher orders decide, which are not looked at
@@ -438,5 +445,5 @@ def _unscaled(analysis: Analysis) -> Signs:
         generators = [ring.generators[k] for k in occurring([p])]
         return any(g.name in scales or (g.argument is not None and held(g.argument)) for g in generators)
 
-    kept = tuple(assumption for assumption in analysis.signs.assumptions if not held(assumption[0]))
-    return replace(analysis.signs, assumptions=kept)
+    assumptions = tuple(assumption for assumption in analysis.signs.assumptions if not held(assumption[0]))
+    return replace(analysis.signs, assumptions=assumptions)

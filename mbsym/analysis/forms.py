@@ -28,18 +28,18 @@ def hamilton(analysis: Analysis) -> Hamilton:
     """The canonical equations, formulas written as the description wants its names."""
     from mbsym.problems import canonical
 
-    found = canonical.hamilton(analysis.system, analysis.terms)
-    _write(analysis, found.hamiltonian.ring)
-    return found
+    equations = canonical.hamilton(analysis.system, analysis.terms)
+    _write(analysis, equations.hamiltonian.ring)
+    return equations
 
 
 def routh(analysis: Analysis) -> Routh:
     """Routh's equations."""
     from mbsym.problems import canonical
 
-    found = canonical.routh(analysis.system, analysis.terms)
-    _write(analysis, found.function.ring)
-    return found
+    equations = canonical.routh(analysis.system, analysis.terms)
+    _write(analysis, equations.function.ring)
+    return equations
 
 
 def brackets(analysis: Analysis) -> Brackets | None:
@@ -73,32 +73,32 @@ def wanted_checks(analysis: Analysis) -> Iterator[str]:
 
 
 def _hamilton(analysis: Analysis) -> Check | None:
-    found = analysis.optional("hamilton")
-    if found is None:
+    equations = analysis.optional("hamilton")
+    if equations is None:
         return None
     from mbsym.problems.canonical import check_hamilton
 
-    return check_hamilton(analysis.oracles, found)
+    return check_hamilton(analysis.oracles, equations)
 
 
 def _routh(analysis: Analysis) -> Check | None:
-    found = analysis.optional("routh")
-    if found is None:
+    equations = analysis.optional("routh")
+    if equations is None:
         return None
     from mbsym.problems.canonical import check_routh
 
-    return check_routh(analysis.oracles, found)
+    return check_routh(analysis.oracles, equations)
 
 
 def _brackets(analysis: Analysis) -> Check | None:
-    found = analysis.optional(BRACKETS)
-    if found is None:
+    poisson_brackets = analysis.optional(BRACKETS)
+    if poisson_brackets is None:
         return None
     from mbsym.problems.canonical import check_brackets
 
     system, ring = analysis.system, analysis.hamilton.hamiltonian.ring
     scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
-    return check_brackets(found, analysis.hamilton, scene)
+    return check_brackets(poisson_brackets, analysis.hamilton, scene)
 
 
 CHECKS: dict[str, Callable[[Analysis], Check | None]] = {REDUCED: _routh, CANONICAL: _hamilton, INVOLUTION: _brackets}

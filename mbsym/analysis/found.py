@@ -52,7 +52,7 @@ def beyond(analysis: Analysis) -> tuple[Integral, ...]:
     integrals = [] if result.symmetries is None else _of_symmetries(result.symmetries)
     there = setting(analysis, driven=True)
     if not integrals:
-        return tuple(_polynomials(there, result.found))
+        return tuple(_polynomials(there, result.integrals))
     try:
         return (*integrals, *_polynomials(there, integrals_of(with_known(there, integrals), DEGREE)))
     except Failure:
@@ -75,15 +75,15 @@ def _of_symmetries(symmetries: Symmetries) -> list[Integral]:
     return of_symmetries
 
 
-def _polynomials(there: Setting, found: PolynomialIntegrals) -> list[Integral]:
+def _polynomials(there: Setting, integrals: PolynomialIntegrals) -> list[Integral]:
     """The second of one weight is called by its number, too."""
     listed: list[Integral] = []
     count: dict[int, int] = {}
-    for one in found.new:
-        if one.independent:
-            number = count[one.weight] = count.get(one.weight, 0) + 1
-            which = str(one.weight) if number == 1 else f"{one.weight} ({number})"
-            formula = there.formula(one.polynomial)
+    for generator in integrals.new:
+        if generator.independent:
+            number = count[generator.weight] = count.get(generator.weight, 0) + 1
+            which = str(generator.weight) if number == 1 else f"{generator.weight} ({number})"
+            formula = there.formula(generator.polynomial)
             listed.append(
                 Integral(
                     Message("integral of weight [[weight]]", weight=which), POLYNOMIAL, which, formula, Certainty.PROVED

@@ -54,5 +54,5 @@ def check(analysis: Analysis) -> Check | None:
     """The matrices, against the formulas of the description at numbers."""
     from mbsym.problems import given_system
 
-    found = analysis.optional("linearisation")
-    return None if found is None else given_system.check_matrices(analysis.parameters_scene, found)
+    linear = analysis.optional("linearisation")
+    return None if linear is None else given_system.check_matrices(analysis.parameters_scene, linear)

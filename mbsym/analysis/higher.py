@@ -253,11 +253,13 @@ def expanded_with(analysis: Analysis) -> tuple[bool, frozenset[str], Callable[[i
     return *ignorable(analysis), on_manifold(analysis) if analysis.system.constraints else None
 
 
-def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
+def _told_by_signs(normal_form: InSymbols, signs: Signs) -> InSymbols:
     """With what may vanish at all for parameters of their signs."""
     from mbsym.problems.normal_forms import Vanishing
 
-    region = [x.polynomial for x in (found.trace, found.product, found.discriminant)]  # positive: two frequencies
+    region = [
+        x.polynomial for x in (normal_form.trace, normal_form.product, normal_form.discriminant)
+    ]  # positive: two frequencies
     inside = signs.assuming((x, ">") for x in region)
 
     def left(formula: Formula, may_vanish: Callable[[Polynomial], bool]) -> Formula:
@@ -272,9 +274,9 @@ def _told_by_signs(found: InSymbols, signs: Signs) -> InSymbols:
     def inside_too(factor: Polynomial) -> bool:
         return not inside.never_zero(factor) and not any(map(_zeros_of_terms(factor, signs), region))
 
-    zero = left(found.zero, lambda factor: not signs.never_zero(factor))
-    resonances = tuple((vector, left(x, inside_too)) for vector, x in found.resonances)
-    return replace(found, vanishing=Vanishing(zero, resonances))
+    zero = left(normal_form.zero, lambda factor: not signs.never_zero(factor))
+    resonances = tuple((vector, left(x, inside_too)) for vector, x in normal_form.resonances)
+    return replace(normal_form, vanishing=Vanishing(zero, resonances))
 
 
 def _zeros_of_terms(p: Polynomial, signs: Signs) -> Callable[[Polynomial], bool]:
@@ -338,15 +340,15 @@ _STABLE = ("asymptotically stable", "stable", "formally stable")
 
 def check(analysis: Analysis) -> Check | None:
     """Only where somebody has asked for it: D_4 in symbols against that of enclosures, and problem 6's verdict."""
-    found = analysis.optional("normal_forms") if "normal_forms" in analysis.derived else None
-    if found is None or found.at_values is None:
+    normal_form = analysis.optional("normal_forms") if "normal_forms" in analysis.derived else None
+    if normal_form is None or normal_form.at_values is None:
         return None
     from mbsym.problems.normal_forms.result import symbols_agree
 
     if analysis.system.speeds:
         analysis = analysis.in_coordinates
     routes = ("normal form at the given values", "its formula in parameters, and problem 6")
-    word, said = found.first, found.at_values.outcome.value
+    word, said = normal_form.first, normal_form.at_values.outcome.value
     if word is not None and ((word is Word.UNSTABLE and said in _STABLE) or (word.stable and said == "unstable")):
         return Check(
             "normal forms",
@@ -355,7 +357,7 @@ def check(analysis: Analysis) -> Check | None:
             Message("problem 6 says [[value]], terms of higher order [[said]]", value=word.value, said=said),
         )
     values = stability.parameter_values(analysis.parameters_scene, analysis.equilibrium)
-    agree = symbols_agree(found, values or {})
+    agree = symbols_agree(normal_form, values or {})
     if agree is None:
         return None
     return Check("normal forms", *routes, NUMERICAL if agree else FAILED, "D4 in both" if agree else "D4 differs")

@@ -72,11 +72,11 @@ def group_of(name: str, powers: Powers) -> Expression:
     return product([(name, Fraction(1)), *powers])
 
 
-def in_groups(system: System, found: Groups, values: bool = True) -> System:
+def in_groups(system: System, groups: Groups, values: bool = True) -> System:
     """The description in groups, with ``values`` if these are wanted; claims, units of measurement, limits left out."""
-    units = {name: number(1) for name in found.units}
+    units = {name: number(1) for name in groups.units}
     known: Mapping[str, Expression] = {x.name: x.value for x in system.parameters if x.value is not None and values}
-    stands = {group.parameter: group_of(group.parameter, group.powers) for group in found.groups}
+    stands = {group.parameter: group_of(group.parameter, group.powers) for group in groups.groups}
     related = {relation.name for relation in system.relations}
     parameters = []
     for parameter in system.parameters:
@@ -85,34 +85,36 @@ def in_groups(system: System, found: Groups, values: bool = True) -> System:
         if parameter.name in stands:
             parameters.append(_group(parameter, stands[parameter.name], known))
         else:  # one that does not matter, or follows from others
-            kept = values and parameter.name not in related
-            parameters.append(parameter if kept else replace(parameter, value=None))
+            keeps_value = values and parameter.name not in related
+            parameters.append(parameter if keeps_value else replace(parameter, value=None))
     base = replace(system, parameters=(), initial=(), claims=(), units=Units(), limits=(), abbreviations=())
     changed: System = put(base, units, folded)
     scale = changed.time_scale
-    told = ", ".join(f"{name} = 1" for name in found.units)
+    unit_values = ", ".join(f"{name} = 1" for name in groups.units)
     return replace(
         changed,
         name=f"{system.name}, in dimensionless groups",
-        description=f"In units in which {told}.  {system.description}".strip() if told else system.description,
+        description=f"In units in which {unit_values}.  {system.description}".strip()
+        if unit_values
+        else system.description,
         bodies=tuple(map(_accepted, changed.bodies)),
         parameters=tuple(parameters),
         symbols=tuple(symbol for symbol in changed.symbols if symbol.name not in units),
-        initial=tuple(_initial(system.initial, found, known)),
-        start=tuple(_initial(system.start, found, known)),
+        initial=tuple(_initial(system.initial, groups, known)),
+        start=tuple(_initial(system.start, groups, known)),
         time_scale=scale if scale is not None and names(scale) else None,
-        small=_small(system, {one.name for one in parameters}),
+        small=_small(system, {parameter.name for parameter in parameters}),
         notation=tuple(item for item in changed.notation if names(item.value)),
     )
 
 
-def _small(system: System, kept: Collection[str]) -> SmallParameter | None:
+def _small(system: System, remaining: Collection[str]) -> SmallParameter | None:
     """The small parameter, where what it belongs to is still there."""
     small = system.small
     if small is None:
         return None
     needed = {name for name, _ in small.powers} or {small.name}
-    return small if needed <= set(kept) else None
+    return small if needed <= set(remaining) else None
 
 
 def _accepted(body: Body) -> Body:
@@ -137,15 +139,15 @@ def _valued(x: Expression, values: Mapping[str, Expression]) -> Expression | Non
 
 
 def _initial(
-    given_values: Sequence[InitialValue], found: Groups, values: Mapping[str, Expression]
+    given_values: Sequence[InitialValue], groups: Groups, values: Mapping[str, Expression]
 ) -> Iterable[InitialValue]:
     """Positions by their lengths, velocities by lengths times the rate; left out where a unit has no value."""
-    lengths = {group.parameter: group.powers for group in found.lengths}
-    if found.rate is None:
+    lengths = {group.parameter: group.powers for group in groups.lengths}
+    if groups.rate is None:
         return
     for value in given_values:
         length = _valued(product(lengths.get(value.coordinate, ())), values)
-        rate = _valued(product([*lengths.get(value.coordinate, ()), *found.rate]), values)
+        rate = _valued(product([*lengths.get(value.coordinate, ()), *groups.rate]), values)
         if length is None or rate is None:
             continue
         position = value.position if value.position is None else _divided(value.position, length, values)

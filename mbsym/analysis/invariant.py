@@ -80,8 +80,8 @@ def invariant_sets_of(analysis: Analysis) -> InvariantSets:
             most=MOST_IN_ANGLES,
             remedy=_remedy(analysis.system),
         )
-    found = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
-    chosen, left = _independent(field, [(name, p) for name, p in found if field.reduced(field.derivative(p)) == 0])
+    integrals = [(name, _without_constants(field, p)) for name, p in _known(analysis, there)]
+    chosen, left = _independent(field, [(name, p) for name, p in integrals if field.reduced(field.derivative(p)) == 0])
     if not chosen:
         raise NoClosedForm("no polynomial integrals are known but those of geometry")
     signs = {parameter.name: parameter.sign for parameter in analysis.system.parameters}
@@ -104,7 +104,11 @@ def _remedy(system: System) -> str:
     """What shortens the equations: speeds, and a quaternion for a body with three angles of its own."""
     for body in system.bodies:
         if len(body.own_angles) == 3 and not body.speeds:
-            taken = {*system.parameter_names, *system.coordinates, *(one.name for one in system.prescribed)}
+            taken = {
+                *system.parameter_names,
+                *system.coordinates,
+                *(prescribed.name for prescribed in system.prescribed),
+            }
             free = {*taken} & {"p", "q", "r", "e0", "e1", "e2", "e3"}
             other = ""
             if free:
@@ -140,13 +144,21 @@ def _known(analysis: Analysis, there: Setting) -> list[tuple[str, Any]]:
                     known.append((claim.place or Message("claim [[number]]", number=k + 1), top))
     with suppress(Failure):
         most = 2 * max(polynomial.weights_of(there).weights)
-        found = [one for one in polynomial.integrals_of(there, most).generators if one.certainty is Certainty.PROVED]
-        new = [one for one in found if one.is_new]
-        for k, one in enumerate(new, 1):
+        generators = [
+            generator
+            for generator in polynomial.integrals_of(there, most).generators
+            if generator.certainty is Certainty.PROVED
+        ]
+        new = [generator for generator in generators if generator.is_new]
+        for k, generator in enumerate(new, 1):
             name = Message("further integral [[k]]", k=k) if len(new) > 1 else Message("further integral")
-            known.append((name, one.polynomial))
+            known.append((name, generator.polynomial))
         # What follows from integrals that are none of the field is one of the field all the same.
-        known += [(one.name, one.polynomial) for one in found if one.name == polynomial.FUNCTION and one.independent]
+        known += [
+            (generator.name, generator.polynomial)
+            for generator in generators
+            if generator.name == polynomial.FUNCTION and generator.independent
+        ]
     order = sorted(range(len(known)), key=lambda k: (known[k][0] not in energies, -_degree(field, known[k][1]), k))
     return [known[k] for k in order]
 
@@ -162,7 +174,9 @@ def _without_constants(field: PolynomialField, p: Any) -> Any:
     return field.context.from_dict({m: c for m, c in p.to_dict().items() if any(m[first:])})
 
 
-def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
+def _independent(
+    field: PolynomialField, integrals: list[tuple[str, Any]]
+) -> tuple[list[tuple[str, Any]], tuple[str, ...]]:
     """Those whose gradients are independent of the earlier ones' and of the relations', at a random point mod a prime.
 
     The relations come last, with names of their own: they take part in the families.  And the names of others, but for
@@ -173,22 +187,22 @@ def _independent(field: PolynomialField, found: list[tuple[str, Any]]) -> tuple[
     chance = random.Random(3)
     point = {k: chance.randrange(2, PRIME) for k in range(field.context.nvars())}
     rows = [_gradient(field, relation, point) for relation in field.relations]
-    kept: list[tuple[str, Any]] = []
+    independent: list[tuple[str, Any]] = []
     left = []
-    for name, p in found:
+    for name, p in integrals:
         row = _gradient(field, p, point)
         if rank([*rows, row]) > len(rows):
             rows.append(row)
-            kept.append((name, p))
-        elif not _is_sum(field, p, [q for _, q in kept], point):
+            independent.append((name, p))
+        elif not _is_sum(field, p, [q for _, q in independent], point):
             left.append(name)
-    if not kept:
+    if not independent:
         return [], ()
     for k, relation in enumerate(field.relations):
         several = len(field.relations) > 1
         name = Message("geometry [[number]]", number=k + 1) if several else Message("geometry")
-        kept.append((name, _without_constants(field, relation)))
-    return kept, tuple(left)
+        independent.append((name, _without_constants(field, relation)))
+    return independent, tuple(left)
 
 
 def _is_sum(field: PolynomialField, p: Any, others: list[Any], point: dict[int, int]) -> bool:
@@ -197,9 +211,9 @@ def _is_sum(field: PolynomialField, p: Any, others: list[Any], point: dict[int, 
 
     first = len(field.parameters)
     listed = []
-    for one in (p, *others):
+    for polynomial in (p, *others):
         parts: dict[tuple[int, ...], int] = {}
-        for monomial, c in field.reduced(one).to_dict().items():
+        for monomial, c in field.reduced(polynomial).to_dict().items():
             if any(monomial[first:]):
                 term = field.context.from_dict({(*monomial[:first], *(0 for _ in monomial[first:])): c})
                 key = tuple(int(k) for k in monomial[first:])
@@ -235,22 +249,22 @@ def write_in(ring: Ring, analysis: Analysis, names: Mapping[str, str]) -> tuple[
     system = analysis.system
     symbols = {symbol.name: symbol.latex for symbol in system.symbols}
     in_tex, in_page = latex.LatexNames(list(system.coordinates), symbols), mathml.MathNames(system.coordinates)
-    told: dict[str, str] = {}
+    latex_by_name: dict[str, str] = {}
     page: dict[str, mathml.Symbol] = {}
     for plain, name in names.items():
         stem = name.removesuffix("_dot")
         if name[:4] in ("sin(", "cos("):
             function = name[:3]
             angle, _, share = name[4:-1].partition("/")
-            told[plain] = rf"(\{function} {in_tex[angle]}{'/' + share if share else ''})"
+            latex_by_name[plain] = rf"(\{function} {in_tex[angle]}{'/' + share if share else ''})"
             part = mathml.mo("/") + mathml.mn(share) if share else ""
             inside = mathml.mi(function) + mathml.APPLY + str(in_page[angle]) + part
             page[plain] = mathml.Symbol(mathml.bracketed(inside))
         elif stem != name and stem in system.coordinates:
-            told[plain] = in_tex[stem].accented("dot")
+            latex_by_name[plain] = in_tex[stem].accented("dot")
             page[plain] = in_page[stem].dotted("\u02d9")
-    if told or symbols:
-        latex.write_as(ring, told | symbols)
+    if latex_by_name or symbols:
+        latex.write_as(ring, latex_by_name | symbols)
     if page:
         mathml.write_as(ring, page)
         python.write_as(ring, {x: re.sub("_dot$", "'", names[x]) for x in page})

@@ -114,17 +114,17 @@ class Judge:
             return verdict
         constraints = bool(self.analysis.system.constraints)
         if (constraints or verdict.word.open) and self._in_others is not None:
-            told = self._told_in_others(verdict, values)
-            if constraints or not told.word.open:
-                return told
+            other_verdict = self._told_in_others(verdict, values)
+            if constraints or not other_verdict.word.open:
+                return other_verdict
         if verdict.word.open and all(isinstance(x, Fraction) for x in values.values()):
             verdict = self._by_energy(verdict, values)
             if not self.may_add(verdict):
                 return verdict
         if not installed("mbsym.problems.normal_forms"):
             return verdict
-        found = self._of_higher_order(values)
-        further = None if found is None else self._in_words(found)
+        higher_order = self._of_higher_order(values)
+        further = None if higher_order is None else self._in_words(higher_order)
         if further is None and verdict.word.open:
             return higher.of_one_coordinate(self.analysis, verdict, values)
         if further is None or (verdict.stable and not further.word.asymptotic):
@@ -165,13 +165,19 @@ class Judge:
         for direction in of.balance.displacements(names).directions:
             if not all(x.is_constant() for x in direction):
                 return None
-            shares = {one: fraction(x.leading_coefficient()) for one, x in zip(names, direction, strict=True) if x != 0}
-            name = next((one for one in reversed(names) if one in shares and one not in taken), None)
+            shares = {
+                coordinate: fraction(x.leading_coefficient())
+                for coordinate, x in zip(names, direction, strict=True)
+                if x != 0
+            }
+            name = next(
+                (coordinate for coordinate in reversed(names) if coordinate in shares and coordinate not in taken), None
+            )
             if name is None or any(share in taken for share in shares):
                 return None
             if len(shares) > 1:
                 taken.add(name)
-                system = displaced(system, name, {one: c / shares[name] for one, c in shares.items()})
+                system = displaced(system, name, {coordinate: c / shares[name] for coordinate, c in shares.items()})
         return system if taken else None
 
     def _told_in_others(self, verdict: Verdict, values: Mapping[str, Any]) -> Verdict:
@@ -188,14 +194,18 @@ class Judge:
         uneven = any(of.ring.dependencies(x, every) for row in rows for x in row)
         if further.word.open or uneven:
             return verdict
-        reasons = (one for one in verdict.reasons if one.code is Because.DISPLACEMENTS and one not in further.reasons)
-        return replace(further, reasons=tuple(sorted((*further.reasons, *reasons), key=lambda one: one.rank)))
+        reasons = (
+            reason
+            for reason in verdict.reasons
+            if reason.code is Because.DISPLACEMENTS and reason not in further.reasons
+        )
+        return replace(further, reasons=tuple(sorted((*further.reasons, *reasons), key=lambda reason: reason.rank)))
 
     @cached_property
     def _of_higher_order(self) -> Any:
         return higher.judge(self.analysis)
 
-    def _in_words(self, found: Judged) -> Verdict | None:
+    def _in_words(self, judged: Judged) -> Verdict | None:
         """A verdict of problem 11 as one of problem 6; None where it leaves the motion open, too.
 
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
@@ -203,10 +213,10 @@ class Judge:
         So it is with the relations that integrable velocity constraints keep; what is asymptotically stable at some
         values of them is stable (it is so under constant perturbations, Malkin), and does not come back from others.
         """
-        word = _WORDS.get(found.outcome.value)
+        word = _WORDS.get(judged.outcome.value)
         if word is None:
             return None
-        lasting = found.theorem in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER)
+        lasting = judged.theorem in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER)
         if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
             if not lasting:
                 return None
@@ -215,7 +225,7 @@ class Judge:
             if word is Word.STABLE and not lasting:
                 return None
             word = Word.STABLE
-        return Verdict(word, (found.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
+        return Verdict(word, (judged.theorem.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
 
 
 # Problem 11 along one parameter, from an analysis.
@@ -242,7 +252,7 @@ def exceptional(
     if len(equilibrium.conditions) > len(equilibrium.solved):
         reason = "the motion exists under conditions that were not solved: parameters are not independent then"
         raise Unavailable("conditions", NoResult(reason, "see problem 4", "conditions", "unsolved-conditions"))
-    solved = {one for one, _ in equilibrium.solved}
+    solved = {parameter for parameter, _ in equilibrium.solved}
     if name in solved:
         reason = Message("the motion needs one value of [[name]], which the other parameters give", name=name)
         raise Unavailable("conditions", NoResult(reason, "vary another one", "conditions", "solved"))

@@ -67,7 +67,7 @@ class Oscillating:
     eps > 0, None where that is not known, or depends.
     """
 
-    found: Oscillation
+    oscillation: Oscillation
     ring: Ring
     phase: str
     symbols: Mapping[str, str]
@@ -83,17 +83,19 @@ class Oscillating:
         """An element; in ``told_ring`` with letters for common denominators."""
         letters = None if ring is None else self.denominators
         whole = self.ring if ring is None else ring
-        return Formula(whole, in_letters(self.found.tower, whole, self.symbols, x, letters))
+        return Formula(whole, in_letters(self.oscillation.tower, whole, self.symbols, x, letters))
 
     @cached_property
     def denominators(self) -> tuple[tuple[Any, str], ...]:
         """Letters D1, D2, ... for irreducible factors with several terms that divide more than one coefficient."""
-        found = self.found
-        waves = [one for series in found.series for one in series] + [x for drift in found.drifts for x in drift.waves]
+        expansion = self.oscillation
+        waves = [harmonics for series in expansion.series for harmonics in series] + [
+            x for drift in expansion.drifts for x in drift.waves
+        ]
         values = [x for wave in waves for pair in wave.waves.values() for x in pair if not x.is_zero()]
         factors: list[Any] = []
         often: list[int] = []
-        for x in [*values, *found.corrections]:
+        for x in [*values, *expansion.corrections]:
             for factor, _ in x.bottom.factor()[1]:
                 if len(factor) > 1 and not any(factor.degrees()[:MOST_ROOTS]):
                     if factor not in factors:
@@ -115,16 +117,16 @@ class Oscillating:
             (), (self.phase,), [*names, *(name for _, name in self.denominators)], self.ring.angles, positive, spare=40
         )
 
-    def wave(self, harmonics: Harmonics, told: Ring | None = None) -> Formula:
+    def wave(self, harmonics: Harmonics, target_ring: Ring | None = None) -> Formula:
         """A trigonometric polynomial of the phase."""
-        ring = self.ring if told is None else told
+        ring = self.ring if target_ring is None else target_ring
         total = ring.zero
         s, c = (ring.generator(kind, self.phase) for kind in ("sine", "cosine"))
         for k, (a, b) in harmonics.waves.items():
             sine, cosine = ring.multiple_angle(s, c, k) if k else (ring.zero, ring.one)
-            total = total + ring.times(self.formula(a, told).polynomial, cosine)
-            total = total + ring.times(self.formula(b, told).polynomial, sine)
-        return Formula(ring, total if told is not None else ring.reduce(total))
+            total = total + ring.times(self.formula(a, target_ring).polynomial, cosine)
+            total = total + ring.times(self.formula(b, target_ring).polynomial, sine)
+        return Formula(ring, total if target_ring is not None else ring.reduce(total))
 
     def shortest(self, harmonics: Harmonics) -> Formula:
         """The same with letters for common denominators, in the form that takes least to be written."""
@@ -136,8 +138,8 @@ class Oscillating:
         with letters_as(None):  # to write each in letters would take long
             named = min((plain, reduced), key=lambda x: len(x.text()))
             raw, most = len(named.text()), len(whole.text())
-        told = len(whole.text())
-        if told < min(raw, most):
+        length = len(whole.text())
+        if length < min(raw, most):
             return whole  # the author's letters make it shorter than ours
         return min((named, whole), key=lambda x: len(x.text()))
 
@@ -187,7 +189,7 @@ def small_parameter(system: System) -> SmallParameter:
             remedy="add 'small parameter: eps', or a 'motion' of the coordinates",
         )
     taken = {*system.parameter_names, *system.coordinates}
-    name = next(one for one in ("eps", "epsilon", "eps_", "epsilon_") if one not in taken)
+    name = next(candidate for candidate in ("eps", "epsilon", "eps_", "epsilon_") if candidate not in taken)
     return SmallParameter(name, tuple((coordinate, 1) for coordinate in system.coordinates))
 
 
@@ -204,9 +206,9 @@ def oscillating(
     """
     system = analysis.system
     small = small_parameter(system)
-    given = dict(values or {})
+    known_values = dict(values or {})
     related = {analysis.ring.generators[k].name for k in relations(analysis.parameters_scene)}
-    for name in (small.name, *(one for one, _ in small.powers), *given):
+    for name in (small.name, *(parameter for parameter, _ in small.powers), *known_values):
         if name in related:
             raise NoClosedForm(
                 "[[name]] is given by a relation: it is not small, scaled, or a number by itself",
@@ -214,9 +216,9 @@ def oscillating(
                 remedy="solve the relation for another parameter",
             )
     whole, taylor = _field(analysis, small, order)
-    if small.name in given:
+    if small.name in known_values:
         raise NoClosedForm("the small parameter cannot be a number")
-    numbers = {n: rationals.exact(x) for n, x in given.items() if n in whole.parameters}
+    numbers = {n: rationals.exact(x) for n, x in known_values.items() if n in whole.parameters}
     scaled = {n: numbers.pop(n) for n, _ in small.powers if numbers.get(n)}  # zero has no power
     field = whole.at(numbers) if numbers else whole
     powers = {n: p for n, p in small.powers if n in field.parameters or n in field.variables}
@@ -225,15 +227,17 @@ def oscillating(
             powers[velocity_name(name)] = power
     if small.name not in field.parameters and not powers:
         raise NoClosedForm("the equations do not depend on [[name]]", name=small.name)
-    kept = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
+    symbolic = [n for n in field.parameters if n != small.name and n not in scaled and n not in dict(field.roots)]
     most = order if taylor else order + LATEST
-    left = {*kept, small.name, *related, *given}
+    left = {*symbolic, small.name, *related, *known_values}
     others = [name for name in system.parameter_names if name not in left]
-    tower = tower_over(kept, field.variables, order, others)
+    tower = tower_over(symbolic, field.variables, order, others)
     rows = graded_rows(tower, field, small.name, powers, most, scaled)
     phase, symbols = names_of(system, field)
-    ring = _letters(system, [*kept, *others], phase, symbols)
-    constants = {internal: tower.number(given[shown]) for internal, shown in symbols.items() if shown in given}
+    ring = _letters(system, [*symbolic, *others], phase, symbols)
+    constants = {
+        internal: tower.number(known_values[shown]) for internal, shown in symbols.items() if shown in known_values
+    }
     there = Equations(
         tower,
         small.name,
@@ -246,20 +250,20 @@ def oscillating(
         constants,
         lambda x: _sign(analysis, tower, x),
     )
-    found = oscillation(there, order, leading or small.leading, which)
-    if not found.verified:
+    expansion = oscillation(there, order, leading or small.leading, which)
+    if not expansion.verified:
         raise NoClosedForm("withdrawn: put into the equations, the expansion leaves terms of its own order")
-    used = {AMPLITUDE, *(f"#{name}" for name, _ in found.constants)}
-    sign = _sign(analysis, tower, found.frequency * found.frequency)
+    used = {AMPLITUDE, *(f"#{name}" for name, _ in expansion.constants)}
+    sign = _sign(analysis, tower, expansion.frequency * expansion.frequency)
     if sign == "negative":
         raise NoClosedForm(
             "[[leading]] does not oscillate where [[small]] = 0: the square of its frequency is < 0",
-            leading=found.leading,
+            leading=expansion.leading,
             small=small.name,
         )
-    size = _sign(analysis, tower, found.amplitude * found.amplitude)
+    size = _sign(analysis, tower, expansion.amplitude * expansion.amplitude)
     return Oscillating(
-        found,
+        expansion,
         ring,
         phase,
         {k: v for k, v in symbols.items() if k in used},
@@ -268,11 +272,11 @@ def oscillating(
         sign == "positive",
         tuple(
             divisor
-            for divisor in found.divisors
+            for divisor in expansion.divisors
             if all(_sign(analysis, tower, x) not in ("positive", "negative") for x in divisor.parts)
         ),
-        found.kind is Amplitude.FREE or size == "positive",
-        None if found.exponent is None else _ATTRACTS.get(_sign(analysis, tower, found.exponent[1])),
+        expansion.kind is Amplitude.FREE or size == "positive",
+        None if expansion.exponent is None else _ATTRACTS.get(_sign(analysis, tower, expansion.exponent[1])),
         () if system.speeds else system.velocities,
     )
 
@@ -283,24 +287,24 @@ class NoRate(NoClosedForm):
     code = "no-rate"
 
 
-def with_integrals(told: Oscillating, analysis: Analysis, rates: Mapping[str, Expression]) -> Oscillating:
+def with_integrals(solution: Oscillating, analysis: Analysis, rates: Mapping[str, Expression]) -> Oscillating:
     """The integrals over the time of ``rates``, formulas in variables and parameters, beside the solution.
 
     Powers of eps stand in them as they are: nothing is taken out.  An integral that has the name of a coordinate is
     that coordinate but for its initial value: its rate is held against the description exactly, but for the sign of
     square roots.  Raises NoRate where it is another, NoClosedForm where a formula has no series.
     """
-    system, found = analysis.system, told.found
-    drifts = list(found.drifts)
+    system, expansion = analysis.system, solution.oscillation
+    drifts = list(expansion.drifts)
     for name, rate in rates.items():
         if name in system.coordinates:
             _is_rate(analysis, name, rate)
-        power, slopes = series_of(system, told, rate)
+        power, slopes = series_of(system, solution, rate)
         if power < 0:
-            raise NoClosedForm("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=found.small)
-        nothing = [Harmonics(found.tower, {})] * power
-        drifts.append(integrated(name, [*nothing, *slopes], found.frequency, found.corrections))
-    return replace(told, found=replace(found, drifts=tuple(drifts)))
+            raise NoClosedForm("the rate of [[name]] grows as [[small]] tends to 0", name=name, small=expansion.small)
+        nothing = [Harmonics(expansion.tower, {})] * power
+        drifts.append(integrated(name, [*nothing, *slopes], expansion.frequency, expansion.corrections))
+    return replace(solution, oscillation=replace(expansion, drifts=tuple(drifts)))
 
 
 def _is_rate(analysis: Analysis, name: str, rate: Expression) -> None:
@@ -341,30 +345,34 @@ def _other_roots(x: Expression) -> Expression:
     return x
 
 
-def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscillating:
+def in_variables(solution: Oscillating, system: System, scaling: Scaling) -> Oscillating:
     """The same solution in an author's variables, time and parameters: put in, exactly, divided by the factors.
 
     Constant values and the small parameter keep their names; the amplitude is that of the new leading variable.
     """
-    found, old = told.found, told.found.tower
+    expansion, old = solution.oscillation, solution.oscillation.tower
     if any(angle_in(name) is not None for name in old.parameters):
         raise NoClosedForm("sines and cosines of parameters stand in it: it is not told in other variables")
     base = with_parameters(system, scaling)
-    shown = {name: internal for internal, name in told.symbols.items()}
-    kept = [one.name for one in base.parameters if one.name not in shown and one.name != found.small]
+    shown = {name: internal for internal, name in solution.symbols.items()}
+    symbolic = [
+        parameter.name
+        for parameter in base.parameters
+        if parameter.name not in shown and parameter.name != expansion.small
+    ]
     internal = [name for name in old.parameters if name.startswith("#")]
-    tower = Tower((*kept, *internal))
-    own = {name: tower.parameter(shown.get(name, name)) for name in (*kept, *shown)}
+    tower = Tower((*symbolic, *internal))
+    own = {name: tower.parameter(shown.get(name, name)) for name in (*symbolic, *shown)}
     lower = Lowering(tower, own)
     images = {**own, **{name: lower(value) for name, value in scaling.parameters}}
     factors = {variable.name: lower(variable.factor) for variable in scaling.variables}
     new = {variable.name: variable.new for variable in scaling.variables}
     slow = tower.one if scaling.time is None else lower(scaling.time.factor)
-    for name in told.velocities:
+    for name in solution.velocities:
         plain = without_velocity(name)
         factors[name] = factors.get(plain, tower.one) / slow
         new[name] = velocity_name(new.get(plain, plain))
-    leading = factors.get(found.leading, tower.one)
+    leading = factors.get(expansion.leading, tower.one)
 
     def called(names: tuple[str, ...]) -> tuple[str, ...]:
         return tuple(new.get(name, name) for name in names)
@@ -401,20 +409,21 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
             value=put(divisor.value),
             damping=None if divisor.damping is None else put(divisor.damping),
         )
-        for divisor in found.divisors
+        for divisor in expansion.divisors
     }
     changed = replace(
-        found,
+        expansion,
         tower=tower,
-        names=called(found.names),
-        leading=new.get(found.leading, found.leading),
-        block=called(found.block),
-        frequency=put(found.frequency) * slow,
-        corrections=tuple(map(put, found.corrections)),
-        amplitude=put(found.amplitude) / leading,
-        constants=tuple((name, put(x)) for name, x in found.constants),
+        names=called(expansion.names),
+        leading=new.get(expansion.leading, expansion.leading),
+        block=called(expansion.block),
+        frequency=put(expansion.frequency) * slow,
+        corrections=tuple(map(put, expansion.corrections)),
+        amplitude=put(expansion.amplitude) / leading,
+        constants=tuple((name, put(x)) for name, x in expansion.constants),
         series=tuple(
-            tuple(wave(name, one) for one in series) for name, series in zip(found.names, found.series, strict=True)
+            tuple(wave(name, harmonics) for harmonics in series)
+            for name, series in zip(expansion.names, expansion.series, strict=True)
         ),
         drifts=tuple(
             replace(
@@ -423,23 +432,23 @@ def in_variables(told: Oscillating, system: System, scaling: Scaling) -> Oscilla
                 rates=tuple(put(x) * slow / factors.get(drift.variable, tower.one) for x in drift.rates),
                 waves=tuple(wave(drift.variable, x) for x in drift.waves),
             )
-            for drift in found.drifts
+            for drift in expansion.drifts
         ),
         divisors=tuple(moved.values()),
-        others=tuple((called(names), put(x) * slow * slow) for names, x in found.others),
-        damped=tuple(map(called, found.damped)),
-        with_zero=tuple(map(called, found.with_zero)),
-        not_known=tuple(map(called, found.not_known)),
-        other_amplitudes=None if found.other_amplitudes is None else put(found.other_amplitudes),
-        exponent=None if found.exponent is None else (found.exponent[0], put(found.exponent[1]) * slow),
+        others=tuple((called(names), put(x) * slow * slow) for names, x in expansion.others),
+        damped=tuple(map(called, expansion.damped)),
+        with_zero=tuple(map(called, expansion.with_zero)),
+        not_known=tuple(map(called, expansion.not_known)),
+        other_amplitudes=None if expansion.other_amplitudes is None else put(expansion.other_amplitudes),
+        exponent=None if expansion.exponent is None else (expansion.exponent[0], put(expansion.exponent[1]) * slow),
     )
     return replace(
-        told,
-        found=changed,
-        ring=_letters(base, kept, told.phase, told.symbols),
-        real=told.real or tower.rational(changed.frequency) is not None,
-        resonances=tuple(moved[id(resonance)] for resonance in told.resonances),
-        velocities=called(told.velocities),
+        solution,
+        oscillation=changed,
+        ring=_letters(base, symbolic, solution.phase, solution.symbols),
+        real=solution.real or tower.rational(changed.frequency) is not None,
+        resonances=tuple(moved[id(resonance)] for resonance in solution.resonances),
+        velocities=called(solution.velocities),
     )
 
 
@@ -503,10 +512,12 @@ def names_of(system: System, field: PolynomialField) -> tuple[str, dict[str, str
     return names.phase, {AMPLITUDE: names.amplitude} | {f"#{name}": start for name, start in names.starts.items()}
 
 
-def _letters(system: System, kept: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
-    angles = {inside[1]: inside[2] for name in kept if (inside := angle_in(name)) is not None}
-    names = [name for name in dict.fromkeys((*kept, *angles)) if angle_in(name) is None]
-    positive = [one.name for one in system.parameters if one.name in names and one.sign == "positive"]
+def _letters(system: System, symbolic: list[str], phase: str, symbols: Mapping[str, str]) -> Ring:
+    angles = {inside[1]: inside[2] for name in symbolic if (inside := angle_in(name)) is not None}
+    names = [name for name in dict.fromkeys((*symbolic, *angles)) if angle_in(name) is None]
+    positive = [
+        parameter.name for parameter in system.parameters if parameter.name in names and parameter.sign == "positive"
+    ]
     positive.append(symbols[AMPLITUDE])
     return Ring((), (phase,), [*names, *symbols.values()], {phase: 1} | angles, positive, spare=40)
 
@@ -541,7 +552,7 @@ def in_letters(
     constant, factors = x.bottom.factor()
     below = ring.number(rationals.fraction(constant))
     for factor, power in factors:
-        name = next((name for one, name in denominators if one == factor), None)
+        name = next((name for denominator, name in denominators if denominator == factor), None)
         own = carried(factor) if name is None else ring.generator("parameter", name)
         below = ring.times(below, own ** int(power))
     return ring.times(top, ring.reciprocal(below))

@@ -435,9 +435,9 @@ class Analysis(Stages):
             self.in_coordinates.optional("equations")
         return self.in_coordinates.check(name)
 
-    def take(self, found: Iterable[Check]) -> None:
+    def take(self, checks: Iterable[Check]) -> None:
         """Checks that were carried out on this analysis, or on a copy of it."""
-        for check in found:
+        for check in checks:
             self._checks.setdefault(check.name, check)
 
 

@@ -34,10 +34,10 @@ def pole(analysis: Analysis, values: Mapping[str, Any]) -> Formula | None:
     energy = analysis.optional("energy") if poles else None
     if energy is None:
         return None
-    told = [energy.force_function, energy.A0, *energy.A1, *(x for row in energy.A2 for x in row)]
+    coefficients = [energy.force_function, energy.A0, *energy.A1, *(x for row in energy.A2 for x in row)]
     applied = generalized_forces(analysis.held_scene).values()
     moves = (analysis.parameters_scene.lower(x) for entry in analysis.system.motion for x in (entry.value, entry.rate))
-    held = sorted(poles.intersection(occurring([*(x.polynomial for x in told), *applied, *moves])))
+    held = sorted(poles.intersection(occurring([*(x.polynomial for x in coefficients), *applied, *moves])))
     divisor = ring.generators[held[0]].argument if held else None
     return None if divisor is None else Formula(ring, divisor)
 

@@ -126,14 +126,14 @@ def setting(analysis: Analysis, values: Mapping[str, Fraction] | None = None, dr
     grouped = {name for vector in grouped_by for name in vector}
     speeds = tuple(name for name in speeds if name in whole.variables)
     alone = [(name,) for name in whole.variables if name not in grouped and name not in speeds]
-    found = [one for one in grouped_by if one]
-    apart = (*dict.fromkeys(found), *alone) if declared else (exponentials,)
+    groups = [group for group in grouped_by if group]
+    apart = (*dict.fromkeys(groups), *alone) if declared else (exponentials,)
     kinds = tuple(x for x in (speeds, *apart) if x)
     follows = None
     if len(known) < len(listed):
         follows = cache(partial(_following, analysis, dict(values or {}), transfer.images))
     tied = equations.constraints is not None and equations.constraints.position_rank > 0 and bool(whole.relations)
-    there = Setting(whole, field, transfer, kinds, tuple(found), tuple(known), aside, rational, tied)
+    there = Setting(whole, field, transfer, kinds, tuple(groups), tuple(known), aside, rational, tied)
     return there if follows is None else replace(there, follows=lambda formula: follows()(formula))
 
 
@@ -166,12 +166,12 @@ def _aside(form: SpeedForm, aside: Sequence[str]) -> tuple[str, ...]:
     Of unit vectors those that the description asks for: nobody expects others.
     """
     whole = {name: one for body in form.oriented for one in body.orientation for name in one.components}
-    kept = (name if name not in whole else whole[name].name if _asked(whole[name]) else None for name in aside)
-    return tuple(dict.fromkeys(name for name in kept if name is not None))
+    selected = (name if name not in whole else whole[name].name if _asked(whole[name]) else None for name in aside)
+    return tuple(dict.fromkeys(name for name in selected if name is not None))
 
 
-def _asked(one: UnitVector | Quaternion) -> bool:
-    return isinstance(one, Quaternion) or one.asked
+def _asked(orientation: UnitVector | Quaternion) -> bool:
+    return isinstance(orientation, Quaternion) or orientation.asked
 
 
 def _without_aside(form: SpeedForm, aside: Sequence[str], integral: Integral) -> Integral:
@@ -233,7 +233,7 @@ def _at(whole: PolynomialField, field: PolynomialField, numbers: Mapping[str, An
     return p.compose(*images, ctx=field.context)
 
 
-def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], found: Cases) -> Cases:
+def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], candidates: Cases) -> Cases:
     """Without the cases whose conditions contradict the signs and assumptions of the description."""
     numbers = {name: rationals.exact(x) for name, x in values.items() if name in there.whole.parameters}
     assumed = []
@@ -244,11 +244,11 @@ def allowed(analysis: Analysis, there: Setting, values: Mapping[str, Fraction], 
     words = tuple(declared.get(name, "real") for name in there.field.context.names())
     signs = Signs(there.field.context, words, tuple(assumed))
     cases = tuple(
-        one
-        for one in found.cases
-        if not any(signs.sign(p) in ("positive", "negative", "nonzero") for p in one.conditions)
+        case
+        for case in candidates.cases
+        if not any(signs.sign(p) in ("positive", "negative", "nonzero") for p in case.conditions)
     )
-    return replace(found, cases=cases)
+    return replace(candidates, cases=cases)
 
 
 def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grading:
@@ -256,22 +256,24 @@ def weights_of(there: Setting, weights: Mapping[str, int] | None = None) -> Grad
 
     The components of a unit vector have one weight: the largest that is given to one of them.
     """
-    found = grading(there.field, there.kinds)
+    automatic = grading(there.field, there.kinds)
     if not weights:
-        return found
-    given = dict(zip(there.field.variables, found.weights, strict=True)) | dict(weights)
+        return automatic
+    weight_by_name = dict(zip(there.field.variables, automatic.weights, strict=True)) | dict(weights)
     for vector in there.vectors:
-        largest = max((weights[name] for name in vector if name in weights), default=given[vector[0]])
-        given |= dict.fromkeys(vector, largest)
-    return grading(there.field, there.kinds, [given[name] for name in there.field.variables])
+        largest = max((weights[name] for name in vector if name in weights), default=weight_by_name[vector[0]])
+        weight_by_name |= dict.fromkeys(vector, largest)
+    return grading(there.field, there.kinds, [weight_by_name[name] for name in there.field.variables])
 
 
 def integrals_of(there: Setting, degree: int, weights: Mapping[str, int] | None = None) -> PolynomialIntegrals:
     """All polynomial integrals up to a weighted degree.  Raises NoClosedForm where that is too much."""
     integrals = polynomial_integrals(there.field, weights_of(there, weights), degree, there.known)
     named = (
-        replace(one, name=FUNCTION) if not one.name and there.follows(there.formula(one.polynomial)) else one
-        for one in integrals.generators
+        replace(generator, name=FUNCTION)
+        if not generator.name and there.follows(there.formula(generator.polynomial))
+        else generator
+        for generator in integrals.generators
     )
     found = replace(integrals, aside=there.aside, rational=there.rational, tied=there.tied)
     return replace(found, generators=tuple(named))
@@ -285,7 +287,11 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
     """Problem 9 for the symbols of the description."""
     there = setting(analysis, driven=True)
     integrals = integrals_of(there, DEGREE)
-    on = [one for one in (on_level(integrals, level) for level in levels(integrals)) if one.integrals]
+    on = [
+        restriction
+        for restriction in (on_level(integrals, level) for level in levels(integrals))
+        if restriction.integrals
+    ]
     symmetries = None
     with suppress(Failure):  # the integrals stand without them
         symmetries = symmetries_of(analysis)
@@ -294,7 +300,7 @@ def polynomials_of(analysis: Analysis) -> Polynomials:
         tuple(there.formula(there.field.generator(name)) for name in there.field.variables),
         tuple(there.formula(generator.polynomial) for generator in integrals.generators),
         tuple(on),
-        tuple(tuple(there.formula(f) for _, f in one.integrals) for one in on),
+        tuple(tuple(there.formula(f) for _, f in restriction.integrals) for restriction in on),
         symmetries,
     )
 
@@ -309,20 +315,24 @@ def check(analysis: Analysis) -> Check | None:
         if any(relation.name in analysis.ring.angles for relation in analysis.system.relations):
             return None
         truth = _Related(analysis.system, analysis.ring, truth.count)
-    found = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
-    if found is None:
+    polynomials = analysis.optional("polynomial_integrals") if "polynomial_integrals" in analysis.derived else None
+    if polynomials is None:
         return None
     new = [
         Integral(
-            Message("integral of weight [[weight]]", weight=one.weight), "polynomial", "", formula, Certainty.PROVED
+            Message("integral of weight [[weight]]", weight=generator.weight),
+            "polynomial",
+            "",
+            formula,
+            Certainty.PROVED,
         )
-        for one, formula in zip(found.found.generators, found.formulas, strict=True)
-        if one.is_new
+        for generator, formula in zip(polynomials.found.generators, polynomials.formulas, strict=True)
+        if generator.is_new
     ]
-    if found.symmetries is not None:
+    if polynomials.symmetries is not None:
         new += [
             Integral(Message("integral of symmetry [[k]]", k=k), "symmetry", "", symmetry.integral, Certainty.PROVED)
-            for k, symmetry in enumerate(found.symmetries.symmetries, start=1)
+            for k, symmetry in enumerate(polynomials.symmetries.symmetries, start=1)
             if not symmetry.name
         ]
     if not new:
@@ -361,23 +371,23 @@ class InvariantRelations:
     others: OtherLevels | None
 
 
-def invariant_relations(there: Setting, found: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
-    """All four, up to the degree of ``found``; ``positive``: parameters that are.
+def invariant_relations(there: Setting, integrals: PolynomialIntegrals, positive: Sequence[str]) -> InvariantRelations:
+    """All four, up to the degree of ``integrals``; ``positive``: parameters that are.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
-    grading = found.grading
+    grading = integrals.grading
     return InvariantRelations(
         linear_relations(there.field, grading.weights, positive, grading.free),
-        darboux_of(found, there.kinds, there.known),
-        zero_levels_of(found, there.kinds, there.known),
-        other_levels_of(found, there.kinds, there.known),
+        darboux_of(integrals, there.kinds, there.known),
+        zero_levels_of(integrals, there.kinds, there.known),
+        other_levels_of(integrals, there.kinds, there.known),
     )
 
 
-def special_relations(there: Setting, found: PolynomialIntegrals, low: Fraction, high: Fraction) -> DarbouxAlong:
-    """At which values of the only parameter there are more Darboux polynomials, up to the degree of ``found``.
+def special_relations(there: Setting, integrals: PolynomialIntegrals, low: Fraction, high: Fraction) -> DarbouxAlong:
+    """At which values of the only parameter there are more Darboux polynomials, up to the degree of ``integrals``.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
-    return darboux_along_of(found, there.kinds, there.known, low, high)
+    return darboux_along_of(integrals, there.kinds, there.known, low, high)

@@ -43,32 +43,32 @@ class Reduced:
     reduction: Reduction
     transfer: Transfer
     system: System
-    asked: Reducing
+    request: Reducing
 
     def formula(self, c: Quotient) -> Formula:
         """With sin^2 in place of factors 1 - cos^2 of the denominator."""
         ring, back = self.transfer.ring, self.transfer.back
-        found, below = back(c.top), back(c.bottom)
+        numerator, below = back(c.top), back(c.bottom)
         for name in ring.angles:
             sine = ring.generator("sine", name)
             while (left := ring.quotient(below, ring.one - ring.generator("cosine", name) ** 2)) is not None:
-                found, below = ring.times(found, ring.reciprocal(sine) ** 2), left
-        return Formula(ring, ring.ratio(found, below))
+                numerator, below = ring.times(numerator, ring.reciprocal(sine) ** 2), left
+        return Formula(ring, ring.ratio(numerator, below))
 
     def terms(self, x: Series) -> tuple[tuple[Formula, Formula], ...]:
         """The coefficients with powers of the small parameter, from the lowest on; they hold what it divides."""
-        ring, found = self.transfer.ring, []
-        small = ring.generator("parameter", self.asked.small) if self.asked.small else ring.one
+        ring, pairs = self.transfer.ring, []
+        small = ring.generator("parameter", self.request.small) if self.request.small else ring.one
         for k, c in sorted(x.coefficients.items()):
             below = ring.reciprocal(small) ** max(0, -k)
             own = self.formula(c)
-            found.append((Formula(ring, ring.times(own.polynomial, below)), Formula(ring, small ** max(0, k))))
-        return tuple(found)
+            pairs.append((Formula(ring, ring.times(own.polynomial, below)), Formula(ring, small ** max(0, k))))
+        return tuple(pairs)
 
     @property
     def remainder(self) -> str:
         """From which power on terms are left out."""
-        return f"{self.asked.small}^{self.asked.known}"
+        return f"{self.request.small}^{self.request.known}"
 
     def variable(self, place: int) -> Formula:
         return self.formula(Quotient.of(self.transfer.context.gen(place)))
@@ -91,7 +91,7 @@ def reduced(
     reduction = Reduction(start.rows, start.small, ()).then(How.SORTED, {}, start.flow())
     for step in reducing.steps:
         if not step.by:
-            put = {start.place(name): start.whole(x) for name, x in step.given.items() if name in start.moving}
+            put = {start.place(name): start.whole(x) for name, x in step.definitions.items() if name in start.moving}
             new = dict.fromkeys(node.name for x in put.values() for node in walk(x) if isinstance(node, Name))
             places = [start.place(name) for name in new if name in start.fresh]
             if put:
@@ -101,13 +101,15 @@ def reduced(
         unknown = [start.place(name) for name in step.names]
         if step.by == (INTEGRALS,):
             first = start.initial(reduction.flow.rates)
-            first |= {start.place(name): start.series(x) for name, x in step.given.items()}
+            first |= {start.place(name): start.series(x) for name, x in step.definitions.items()}
             reduction = changes.by_integrals(reduction, unknown, first, start.constants(len(unknown)), reducing.known)
         else:
             reduction = changes.by_equations(
                 reduction, unknown, [start.place(name) for name in step.by], reducing.known
             )
-    abbreviations = (one for one in start.system.abbreviations if one.name not in start.letters)
+    abbreviations = (
+        abbreviation for abbreviation in start.system.abbreviations if abbreviation.name not in start.letters
+    )
     letters = (*abbreviations, *(Abbreviation(name, value) for name, value in start.letters.items()))
     system = replace(start.system, abbreviations=letters)
     return Reduced(reduction, start.transfer, system, reducing)
@@ -123,7 +125,7 @@ class _Start:
         self.system = analysis.system if formulas is None else formulas.system
         bases = dict.fromkeys(own.generators[k].name for k in indices)
         parameters = [*self.system.parameter_names, *(notation.name for notation in self.system.notation)]
-        expressions = {name: x for step in asked.steps if not step.by for name, x in step.given.items()}
+        expressions = {name: x for step in asked.steps if not step.by for name, x in step.definitions.items()}
         self.moving = {own.generators[k].name for k in indices if own.generators[k].kind == "coordinate"}
         self.moving |= {velocity_name(n) for n in bases}
         self.letters = {name: x for name, x in expressions.items() if name not in self.moving}
@@ -149,11 +151,11 @@ class _Start:
             self.environment[velocity_name(name)] = ring.generator("velocity", name)
         places = [k for k, g in enumerate(ring.generators) if g.kind in ("coordinate", "velocity")]
         places += [ring.index(g.kind, g.name) for g in (own.generators[k] for k in indices) if "sine" in g.kind]
-        kept = [ring.index("parameter", name) for name in (*fixed, "pi")]
+        fixed_places = [ring.index("parameter", name) for name in (*fixed, "pi")]
         self.transfer = Transfer(
-            ring, {k: f"{ring.generators[k].kind} {ring.generators[k].name}" for k in places}, kept
+            ring, {k: f"{ring.generators[k].kind} {ring.generators[k].name}" for k in places}, fixed_places
         )
-        self.small = kept.index(ring.index("parameter", asked.small)) if asked.small else -1
+        self.small = fixed_places.index(ring.index("parameter", asked.small)) if asked.small else -1
         self.known = asked.known
         carry = _carrier(own, ring, self.environment, formulas)
         self.rows: dict[int, tuple[Polynomial, Polynomial]] = {}
@@ -173,11 +175,11 @@ class _Start:
             *sorted((integral.formula.polynomial for integral in analysis.integrals), key=len),
         ):
             try:
-                found = self.transfer.fraction(carry(p))[0]
+                polynomial = self.transfer.fraction(carry(p))[0]
             except (NoClosedForm, KeyError):
                 continue  # of a position that no equation holds
-            if self._constant(found) and self._independent([*self.integrals, found]):
-                self.integrals.append(found)
+            if self._constant(polynomial) and self._independent([*self.integrals, polynomial]):
+                self.integrals.append(polynomial)
 
     def _claimed(self, analysis: Analysis, claims: Iterable[Claim], formulas: Formulas | None) -> Iterator[Polynomial]:
         """What an author says are first integrals, in the ring of the equations."""
@@ -219,12 +221,12 @@ class _Start:
 
     def initial(self, places: Iterable[int]) -> dict[int, Series]:
         """The names of what variables are at first."""
-        found = {}
+        initial_values = {}
         for place in places:
             g = self.ring.generators[self.transfer.places[place]]
             if g.kind == "coordinate" and g.name in self._firsts:
-                found[place] = self._sorted(self.environment[self._firsts[g.name]])
-        return found
+                initial_values[place] = self._sorted(self.environment[self._firsts[g.name]])
+        return initial_values
 
     def constants(self, many: int) -> list[Series]:
         return [self._sorted(self.environment[name]) for name in self._constants[:many]]

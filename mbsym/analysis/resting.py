@@ -28,44 +28,53 @@ def relative_equilibria(system: System, values: Mapping[str, Value], within: flo
 
     Raises Unavailable, too, where a check fails that the list stands on.
     """
-    found = judged(system, values, equilibria(system, values, within))
+    judged_equilibria = judged(system, values, equilibria(system, values, within))
     withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
     if withdrawn is not None:
         raise Unavailable("equilibria", withdrawn)
-    return found
+    return judged_equilibria
 
 
-def judged(system: System, values: Mapping[str, Value], found: Equilibria) -> Equilibria:
+def judged(system: System, values: Mapping[str, Value], candidates: Equilibria) -> Equilibria:
     """Verdicts at isolated places that are open, or rest on an energy that may fall, judged further."""
     if not installed("mbsym.problems.normal_forms") or len(system.coordinates) > MOST_COORDINATES:
-        return found
+        return candidates
     bare = at_numbers(system, values)
     judge = Judge(Analysis(bare, ()))
     listed = (
-        _decided(bare, one) if one.verdict.word.open or judge.may_add(one.verdict) else one for one in found.equilibria
+        _decided(bare, equilibrium)
+        if equilibrium.verdict.word.open or judge.may_add(equilibrium.verdict)
+        else equilibrium
+        for equilibrium in candidates.equilibria
     )
-    return replace(found, equilibria=tuple(listed))
+    return replace(candidates, equilibria=tuple(listed))
 
 
-def _decided(bare: System, one: RelativeEquilibrium) -> RelativeEquilibrium:
+def _decided(bare: System, equilibrium: RelativeEquilibrium) -> RelativeEquilibrium:
     """Coordinates without an exact text are parameters that are known by their enclosures."""
-    if one.coordinates_of:
-        return one
-    enclosed = {f"{_PLACE}{x.name}": one.enclosures[x.name] for x in one.values if not x.exact}
-    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in one.values}
+    if equilibrium.coordinates_of:
+        return equilibrium
+    enclosed = {f"{_PLACE}{x.name}": equilibrium.enclosures[x.name] for x in equilibrium.values if not x.exact}
+    places = {x.name: _exact(x) if x.exact else Name(f"{_PLACE}{x.name}") for x in equilibrium.values}
     motion = tuple(
         MotionEntry(name, places.get(name, value), rate) for name, (value, rate) in motion_values(bare).items()
     )
     analysis = Analysis(replace(bare, motion=motion, parameters=tuple(map(Parameter, enclosed))), ())
     try:
-        if one.verdict.because(Because.NO_EQUATIONS):  # of velocities: the whole of problem 6 knows more than the list
+        if equilibrium.verdict.because(
+            Because.NO_EQUATIONS
+        ):  # of velocities: the whole of problem 6 knows more than the list
             stability = None if enclosed else analysis.stability
-            return one if stability is None else replace(one, verdict=stability.numerical or stability.verdict)
-        if (bare.constraints and one.free) or not {*one.free} <= higher.ignorable(analysis)[1]:
-            return one
-        return replace(one, verdict=Judge(analysis).decided(one.verdict, enclosed))
+            return (
+                equilibrium
+                if stability is None
+                else replace(equilibrium, verdict=stability.numerical or stability.verdict)
+            )
+        if (bare.constraints and equilibrium.free) or not {*equilibrium.free} <= higher.ignorable(analysis)[1]:
+            return equilibrium
+        return replace(equilibrium, verdict=Judge(analysis).decided(equilibrium.verdict, enclosed))
     except (Failure, *NOT_THERE):
-        return one
+        return equilibrium
 
 
 #: How names of parameters begin that are coordinates of a place; parameters of the description are numbers by then.

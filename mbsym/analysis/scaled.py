@@ -85,15 +85,18 @@ def in_variables(system: System, scaling: Scaling) -> System:
     if scaling.time is not None and lower(folded(scaling.time.factor, units)) != ring.one:
         left = text(folded(scaling.time.factor, units))
         raise NoDescription("with what can be set to 1 the unit of time is [[left]], not 1", left=left)
-    found = renamed(in_groups(base, groups), {variable.name: variable.new for variable in scaling.variables})
+    changed = renamed(in_groups(base, groups), {variable.name: variable.new for variable in scaling.variables})
     for one in scaling.variables:
         factor = folded(one.factor, units)
         if lower(factor) != ring.one:
-            found = _multiplied(found, one.new, factor)
-    new = Analysis(found)
+            changed = _multiplied(changed, one.new, factor)
+    new = Analysis(changed)
     _demand_law(Analysis(_original(system, scaling)), new, scaling, groups)
-    told = ", ".join(f"{name} = 1" for name in units)
-    return replace(found, name=f"{system.name}, in {f'units in which {told}' if told else 'dimensionless variables'}")
+    unit_values = ", ".join(f"{name} = 1" for name in units)
+    return replace(
+        changed,
+        name=f"{system.name}, in {f'units in which {unit_values}' if unit_values else 'dimensionless variables'}",
+    )
 
 
 def with_parameters(system: System, scaling: Scaling) -> System:
@@ -113,9 +116,11 @@ def with_parameters(system: System, scaling: Scaling) -> System:
         for name in scaling.new
     )
     assumed = [
-        Assumption(images[one.name], RELATION_OF_SIGN[one.sign], number(0))
-        for one in system.parameters
-        if one.name in images and one.sign in RELATION_OF_SIGN and not _has_sign(images[one.name], one.sign, signs)
+        Assumption(images[parameter.name], RELATION_OF_SIGN[parameter.sign], number(0))
+        for parameter in system.parameters
+        if parameter.name in images
+        and parameter.sign in RELATION_OF_SIGN
+        and not _has_sign(images[parameter.name], parameter.sign, signs)
     ]
     small = system.small
     needed = set() if small is None else {name for name, _ in small.powers} or {small.name}
@@ -149,19 +154,19 @@ def _positive(x: Expression, signs: Mapping[str, str]) -> bool:
             return _positive(base, signs)
         case Call("sqrt", inner):
             return _positive(inner, signs)
-    found = rational(x)
-    return found is not None and found > 0
+    value = rational(x)
+    return value is not None and value > 0
 
 
 def _signs(scaling: Scaling, signs: Mapping[str, str]) -> dict[str, str]:
     """New names that have the sign of what is put in for, being a factor of it beside others that are positive."""
-    found: dict[str, str] = {}
+    inferred: dict[str, str] = {}
     for name in scaling.new:
         for old, value in scaling.parameters:
-            others = {**signs, **found, name: "positive"}
+            others = {**signs, **inferred, name: "positive"}
             if name not in signs and old in signs and factor_of(value, name) is not None and _positive(value, others):
-                found[name] = signs[old]
-    return found
+                inferred[name] = signs[old]
+    return inferred
 
 
 def _solved(scaling: Scaling) -> dict[str, Expression]:
@@ -231,7 +236,12 @@ def _groups(base: System, scaling: Scaling, preferred: Sequence[str] = ()) -> Gr
             "nothing that is positive measures [[name]]", name=lost, remedy="say what it is in new names"
         )
     rate = [fmpq(-int(base_ == "s")) for base_ in bases]
-    moving = (*base.coordinates, *base.variables, *(one.name for one in base.prescribed), *base.input_names)
+    moving = (
+        *base.coordinates,
+        *base.variables,
+        *(prescribed.name for prescribed in base.prescribed),
+        *base.input_names,
+    )
     return measured_in(exponents, units, rate, {name: vector(name) for name in moving})
 
 
@@ -256,8 +266,8 @@ def proposed(system: System, dimensions: Scaling, preferred: Sequence[str]) -> s
     for length in groups.lengths:
         if length.parameter in system.coordinates and length.powers:
             items.append(f"{length.parameter}={text(multiply(product(length.powers), Name(new(length.parameter))))}")
-    powers = [groups.rate or (), *(one.powers for one in (*groups.lengths, *groups.groups))]
-    if any(power.denominator > 2 for one in powers for _, power in one):
+    powers = [groups.rate or (), *(group.powers for group in (*groups.lengths, *groups.groups))]
+    if any(power.denominator > 2 for monomial in powers for _, power in monomial):
         return ""  # nobody would choose these units
     if groups.rate:
         items.append(f"t={text(divide(Name('tau'), product(groups.rate)))}")
@@ -277,12 +287,12 @@ def renamed(part: Any, new: Mapping[str, str]) -> Any:
 
 def _renamed(part: Any, every: Mapping[str, str], vectors: Mapping[str, str]) -> Any:
     if isinstance(part, tuple):
-        return tuple(_renamed(one, every, vectors) for one in part)
+        return tuple(_renamed(entry, every, vectors) for entry in part)
     if isinstance(part, (UnitVector, Quaternion)):
         to = vectors.get(part.name, part.name)
-        wanted = tuple(every.get(name, name) for name in part.components)
+        components = tuple(every.get(name, name) for name in part.components)
         vector = replace(part, name=to)
-        if vector.components != wanted:
+        if vector.components != components:
             raise NoDescription(
                 "components of one vector have the names of one vector: [[names]]", names=", ".join(part.components)
             )
@@ -303,7 +313,7 @@ def _renamed(part: Any, every: Mapping[str, str], vectors: Mapping[str, str]) ->
 
 def _in_names(value: Any, every: Mapping[str, str]) -> Any:
     if isinstance(value, tuple):
-        return tuple(_in_names(one, every) for one in value)
+        return tuple(_in_names(entry, every) for entry in value)
     return every.get(value, value) if isinstance(value, str) else value
 
 
@@ -322,13 +332,14 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
     if name in system.dependent:
         raise NoDescription("'[[name]]' is a dependent variable", name=name)
     loads = tuple(_load(load, name, factor) for load in system.loads)
-    kept = {one: getattr(system, one) for one in ("motion", "initial", "start")}
+    conditions = {attribute: getattr(system, attribute) for attribute in ("motion", "initial", "start")}
     base = replace(system, loads=loads, motion=(), initial=(), start=())
     bodies = tuple(
         replace(
             body,
             speeds=tuple(
-                replace(one, form=divide(one.form, factor)) if one.name == name else one for one in body.speeds
+                replace(speed, form=divide(speed.form, factor)) if speed.name == name else speed
+                for speed in body.speeds
             ),
         )
         for body in base.bodies
@@ -342,12 +353,12 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
 
     motion = tuple(
         replace(x, value=divide(x.value, factor), rate=divide(x.rate, factor)) if x.coordinate == name else x
-        for x in kept["motion"]
+        for x in conditions["motion"]
     )
     initial, start = (
         tuple(
             replace(x, position=divided(x.position), velocity=divided(x.velocity)) if x.coordinate == name else x
-            for x in kept[part]
+            for x in conditions[part]
             if x.coordinate != name or valued is not None
         )
         for part in ("initial", "start")
@@ -358,9 +369,9 @@ def _multiplied(system: System, name: str, factor: Expression) -> System:
 def _load(load: Any, name: str, factor: Expression) -> Any:
     """A load on a coordinate, in the coordinate that is ``factor`` times smaller."""
     scaled = {
-        id(one.formula): _by_power(one.formula, factor, -Fraction(one.power))
-        for one in load.measured()
-        if one.coordinate == name
+        id(measured.formula): _by_power(measured.formula, factor, -Fraction(measured.power))
+        for measured in load.measured()
+        if measured.coordinate == name
     }
 
     def changed(part: Any) -> Any:
@@ -368,7 +379,11 @@ def _load(load: Any, name: str, factor: Expression) -> Any:
             return scaled[id(part)]
         return tuple(map(changed, part)) if isinstance(part, tuple) else part
 
-    return replace(load, **{one.name: changed(getattr(load, one.name)) for one in fields(load)}) if scaled else load
+    return (
+        replace(load, **{attribute.name: changed(getattr(load, attribute.name)) for attribute in fields(load)})
+        if scaled
+        else load
+    )
 
 
 def _by_power(x: Expression, factor: Expression, exponent: Fraction) -> Expression:
@@ -434,7 +449,7 @@ class Formulas:
         ``constant``: without what is constant in it, too.
         """
         top, below = self.ring.fraction(self.carry(x.polynomial))
-        if any(_moving(self.ring, one) for one, _ in below):
+        if any(_moving(self.ring, factor) for factor, _ in below):
             return self.formula(x)
         if constant:
             fixed = [k for k, g in enumerate(self.ring.generators) if g.kind != "parameter"]
@@ -470,14 +485,14 @@ def _environment(
 ) -> tuple[dict[str, Any], list[str]]:
     """What the names of the original, by their new names, are in the ring of the new variables."""
     lower = Lowering(ring, own)
-    found = dict(own)
+    environment = dict(own)
     lengths = {} if groups is None else {length.parameter: product(length.powers) for length in groups.lengths}
     factors = {variable.new: variable.factor for variable in scaling.variables}
     slow = ONE if scaling.time is None else scaling.time.factor
     if scaling.time is None and groups is not None and groups.rate is not None:
         slow = divide(ONE, product(groups.rate))
     time = lower(slow)
-    found["t"] = ring.times(time, own["t"])
+    environment["t"] = ring.times(time, own["t"])
     rate = ring.reciprocal(time)
     old = {variable.new: variable.name for variable in scaling.variables}
     scaled = []
@@ -488,20 +503,22 @@ def _environment(
             scaled.append(name)
         for order, end in enumerate(("", *ENDINGS.values())):
             if name + end in own:
-                found[name + end] = ring.times(
+                environment[name + end] = ring.times(
                     own[name + end], ring.times(factor, ring.power(rate, order) if order else ring.one)
                 )
     for name, value in scaling.parameters:
-        found[name] = lower(value)
-    return _following(original, ring, found), scaled
+        environment[name] = lower(value)
+    return _following(original, ring, environment), scaled
 
 
-def _following(system: System, ring: Ring, found: dict[str, Any]) -> dict[str, Any]:
+def _following(system: System, ring: Ring, environment: dict[str, Any]) -> dict[str, Any]:
     """With what relations and the notation give."""
-    given = [(one.name, one.value) for one in system.relations] + [(one.name, one.value) for one in system.notation]
-    for name, value in given:
-        found[name] = Lowering(ring, found)(value)
-    return found
+    definitions = [(relation.name, relation.value) for relation in system.relations] + [
+        (notation.name, notation.value) for notation in system.notation
+    ]
+    for name, value in definitions:
+        environment[name] = Lowering(ring, environment)(value)
+    return environment
 
 
 def _demand_law(old: Analysis, new: Analysis, scaling: Scaling, groups: Groups) -> None:
@@ -512,12 +529,12 @@ def _demand_law(old: Analysis, new: Analysis, scaling: Scaling, groups: Groups) 
     own = ring_environment(whole, ring)
     own |= {x.name: own[x.name] ** 2 for x in units}  # positive: so their roots need no generators
     environment, scaled = _environment(old.system, own, ring, scaling, groups)
-    one = _Put(old.equations.forcing[0].ring, ring, environment, scaled)
+    old_carrier = _Put(old.equations.forcing[0].ring, ring, environment, scaled)
     lower = Lowering(ring, own)
     stands = {x.parameter: lower(multiply(Name(x.parameter), product(x.powers))) for x in groups.groups}
-    other = Carrier(new.equations.forcing[0].ring, ring, _following(new.system, ring, {**own, **stands}))
+    new_carrier = Carrier(new.equations.forcing[0].ring, ring, _following(new.system, ring, {**own, **stands}))
     for left, right in zip(_rows(old), _rows(new), strict=True):
-        a, b = [one(x.polynomial) for x in left], [other(x.polynomial) for x in right]
+        a, b = [old_carrier(x.polynomial) for x in left], [new_carrier(x.polynomial) for x in right]
         k = next((k for k, x in enumerate(b) if x), None)
         same = [
             ring.is_zero(ring.reduce(ring.times(x, b[k]) - ring.times(y, a[k]))) if k is not None else not x
@@ -539,11 +556,13 @@ def _rows(analysis: Analysis) -> Iterator[list[Formula]]:
     ring = equations.forcing[0].ring
     lower, system = analysis.scene.lower, analysis.system
     known = ring_environment(system, ring)
-    given = [(entry.coordinate, entry.value) for entry in system.motion]
-    given += [(velocity_name(entry.coordinate), entry.rate) for entry in system.motion]
-    given += [(one.name, one.initial) for one in system.prescribed if one.initial is not None]
-    given += [(one.name, one.held) for one in system.inputs]
-    for name, value in given:
+    definitions = [(entry.coordinate, entry.value) for entry in system.motion]
+    definitions += [(velocity_name(entry.coordinate), entry.rate) for entry in system.motion]
+    definitions += [
+        (prescribed.name, prescribed.initial) for prescribed in system.prescribed if prescribed.initial is not None
+    ]
+    definitions += [(quantity.name, quantity.held) for quantity in system.inputs]
+    for name, value in definitions:
         yield [Formula(ring, known[name]), Formula(ring, lower(value))]
     speeds = cast("SpeedEquations", equations).speeds if equations.in_speeds else ()
     rates = [_rate(ring, name) for name in speeds] or [

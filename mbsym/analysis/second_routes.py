@@ -31,13 +31,13 @@ def checks(analysis: Analysis) -> tuple[Check, ...]:
         analysis.stage(number)
     if analysis.system.speeds and 5 in analysis.problems:
         analysis.optional("first_order")
-    return tuple(found for name in _wanted(analysis) if (found := analysis.check(name)) is not None)
+    return tuple(checked for name in _wanted(analysis) if (checked := analysis.check(name)) is not None)
 
 
 def carried_out(analysis: Analysis) -> list[Check]:
     """Those of the same that what is derived so far allows; nothing else is derived."""
     with analysis.unvouched():
-        return [found for name in _wanted(analysis) if (found := analysis.check(name)) is not None]
+        return [checked for name in _wanted(analysis) if (checked := analysis.check(name)) is not None]
 
 
 def _wanted(analysis: Analysis) -> list[str]:
@@ -75,13 +75,13 @@ def check(analysis: Analysis, name: str) -> Check | None:
 
 
 def _kinematics(analysis: Analysis) -> Check | None:
-    found = analysis.optional("kinematics")
-    return None if found is None else comparison.check_kinematics(analysis.oracles, found)
+    kinematics = analysis.optional("kinematics")
+    return None if kinematics is None else comparison.check_kinematics(analysis.oracles, kinematics)
 
 
 def _energy(analysis: Analysis) -> Check | None:
-    found = analysis.optional("energy")
-    return None if found is None else comparison.check_energy(analysis.oracles, found, found.speeds)
+    energy = analysis.optional("energy")
+    return None if energy is None else comparison.check_energy(analysis.oracles, energy, energy.speeds)
 
 
 def _closed(analysis: Analysis) -> Equations | None:
@@ -100,10 +100,10 @@ def _equations(analysis: Analysis) -> Check | None:
 
 
 def _program(analysis: Analysis) -> Check | None:
-    found = analysis.optional("programs")
-    if found is None:
+    programs = analysis.optional("programs")
+    if programs is None:
         return None
-    checked = comparison.check_program(analysis.oracles, found)
+    checked = comparison.check_program(analysis.oracles, programs)
     if not analysis.system.speeds or checked.failed:
         return checked
     from mbsym.problems.in_speeds import check_program
@@ -113,25 +113,25 @@ def _program(analysis: Analysis) -> Check | None:
 
 
 def _mass_matrix(analysis: Analysis) -> Check | None:
-    found = analysis.optional("programs")
-    return None if found is None else comparison.check_mass_matrix(analysis.oracles, found)
+    programs = analysis.optional("programs")
+    return None if programs is None else comparison.check_mass_matrix(analysis.oracles, programs)
 
 
 def _equilibrium(analysis: Analysis) -> Check | None:
     """Against the closed equations where these are derived, else against d'Alembert's principle."""
-    found, closed = analysis.optional("equilibrium"), _closed(analysis)
-    if found is None or analysis.system.linear is not None:
+    steady_state, closed = analysis.optional("equilibrium"), _closed(analysis)
+    if steady_state is None or analysis.system.linear is not None:
         return None
     if analysis.system.constraints:
         from mbsym.problems.reduction_check import check_reduced_motion
 
         about = analysis.reduced.about
-        return check_reduced_motion(analysis.system, analysis.ring, found.residuals, about, dependent(analysis))
-    if found.singular:  # what is demanded besides is differentiated a second time
+        return check_reduced_motion(analysis.system, analysis.ring, steady_state.residuals, about, dependent(analysis))
+    if steady_state.singular:  # what is demanded besides is differentiated a second time
         closed = analysis.optional("equations")
     if closed is not None:
-        return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), found.residuals)
-    of_each = found.residuals[: len(analysis.system.coordinates)]
+        return comparison.check_residuals(analysis.ring, residuals_of(analysis, closed), steady_state.residuals)
+    of_each = steady_state.residuals[: len(analysis.system.coordinates)]
     return perturbation.check_motion(analysis.system, analysis.ring, of_each, dependent(analysis))
 
 
@@ -163,8 +163,8 @@ def _first_order(analysis: Analysis) -> Check | None:
     """Only where somebody has asked for it."""
     if not analysis.system.speeds or "first_order" not in analysis.derived:
         return None
-    found, linear = analysis.optional("first_order"), analysis.optional("linearisation")
-    if found is None or linear is None:
+    first_order_form, linear = analysis.optional("first_order"), analysis.optional("linearisation")
+    if first_order_form is None or linear is None:
         return None
     from mbsym.problems import first_order
     from mbsym.problems.in_speeds import SpeedEquations
@@ -172,24 +172,24 @@ def _first_order(analysis: Analysis) -> Check | None:
     closed = analysis.equations
     assert isinstance(closed, SpeedEquations)
     reduced = analysis.in_coordinates.reduced if analysis.system.constraints else None
-    return first_order.check(analysis.form, closed, found, linear, analysis.equilibrium, reduced)
+    return first_order.check(analysis.form, closed, first_order_form, linear, analysis.equilibrium, reduced)
 
 
 def _integrals(analysis: Analysis) -> Check | None:
-    found = analysis.optional("integrals")
-    if found and analysis.system.constraints:
-        return constrained.integrals_check(analysis, found)
-    return perturbation.check_integrals(analysis.oracles, analysis.programs, found) if found else None
+    integrals = analysis.optional("integrals")
+    if integrals and analysis.system.constraints:
+        return constrained.integrals_check(analysis, integrals)
+    return perturbation.check_integrals(analysis.oracles, analysis.programs, integrals) if integrals else None
 
 
 def _stabilisation(analysis: Analysis) -> Check | None:
     """Only where somebody has asked for it."""
-    found = analysis.optional("stabilisation") if "stabilisation" in analysis.derived else None
-    if found is None:
+    stabilisation = analysis.optional("stabilisation") if "stabilisation" in analysis.derived else None
+    if stabilisation is None:
         return None
     from mbsym.problems.stabilisation.checks import check_stabilisation
 
-    return check_stabilisation(analysis.parameters_scene, analysis.judgeable, found)
+    return check_stabilisation(analysis.parameters_scene, analysis.judgeable, stabilisation)
 
 
 #: Every check, by its name, in the order in which they are told.

@@ -32,7 +32,7 @@ class Averaging(Shown):
     """
 
     phases: tuple[str, ...]
-    found: Averaged | None = None
+    averaged: Averaged | None = None
     analysis: Analysis | None = None
     failure: str = ""
 
@@ -69,7 +69,11 @@ def small_parameters_of(analysis: Analysis) -> SmallParameters:
     phases = fast_phases(system)
     if system.small is None and not phases:
         return SmallParameters()
-    averaged = tuple(_averaging(analysis, one) for one in dict.fromkeys((*((x,) for x in phases), phases)) if one)
+    averaged = tuple(
+        _averaging(analysis, combination)
+        for combination in dict.fromkeys((*((x,) for x in phases), phases))
+        if combination
+    )
     if system.small is None:
         return SmallParameters(averaged=averaged)
     slow, missing = _slow(analysis)
@@ -95,29 +99,29 @@ def _with_remedy(failure: Failure) -> str:
 def _slow(analysis: Analysis) -> tuple[Expansion | None, str]:
     from mbsym.analysis.expanding import expansion
 
-    found = None
+    accepted = None
     for order in ORDERS:
         try:
             further = expansion(analysis, order)
         except (Failure, ZeroDivisionError) as reason:
-            return (found, "") if found is not None else (None, message_of(reason))
+            return (accepted, "") if accepted is not None else (None, message_of(reason))
         decided = further.manifold.steady is None or further.slow[0] is not Outcome.UNDECIDED
-        if found is None or decided:
-            found = further
+        if accepted is None or decided:
+            accepted = further
         if decided:
             break
-    return found, ""
+    return accepted, ""
 
 
 def _averaging(analysis: Analysis, phases: tuple[str, ...]) -> Averaging:
     from mbsym.analysis.pipeline import Analysis as Whole
 
     try:
-        found = averaging_of(analysis, phases)
+        average = averaging_of(analysis, phases)
         broken = analysis.broken(("energy",))
         if broken is not None:
             raise NoClosedForm(broken.reason)
     except Failure as reason:
         return Averaging(phases, failure=_with_remedy(reason))
-    averaged: System = averaged_system(analysis.system, found)
-    return Averaging(phases, found, Whole(averaged, (6,)))
+    averaged: System = averaged_system(analysis.system, average)
+    return Averaging(phases, average, Whole(averaged, (6,)))

@@ -25,12 +25,12 @@ def complain_of_constraints(system: System, complaints: Complaints) -> None:
     ring, plain = ring_of(system), system.without_speeds if system.speeds else system
     try:
         scene = Scene(plain, ring, ring_environment(plain, ring), ring)
-        found = faults(scene)
-        if system.speeds and system.dependent and not found:
-            found = _in_speeds(system, ring, scene)
+        detected = faults(scene)
+        if system.speeds and system.dependent and not detected:
+            detected = _in_speeds(system, ring, scene)
     except Failure:  # nothing is known to be wrong; the derivation says what it has met
         return
-    for fault in found:
+    for fault in detected:
         _complain(fault, system, complaints)
 
 
@@ -54,9 +54,9 @@ def _in_speeds(system: System, ring: Ring, plain: Scene) -> tuple[Fault, ...]:
     from mbsym.problems.constraints.analysis import constraints_in_speeds
 
     tied, form = constraints(plain), SpeedForm(system, ring)
-    kept = [(name.constraint, name.component) for name in tied.names]
+    components = [(name.constraint, name.component) for name in tied.names]
     try:
-        constraints_in_speeds(form, form.scene(), tied, constrained_programs(plain.system, ring, kept))
+        constraints_in_speeds(form, form.scene(), tied, constrained_programs(plain.system, ring, components))
     except Unsound as reason:
         return reason.faults
     return ()

@@ -213,8 +213,8 @@ class Stages(GuessesNames):
 def later(module: str, name: str) -> Callable[..., Any]:
     """A function of a module that is imported when it is first called."""
 
-    def call(*given: Any) -> Any:
-        return getattr(import_module(module), name)(*given)
+    def call(*arguments: Any) -> Any:
+        return getattr(import_module(module), name)(*arguments)
 
     call.__doc__ = f"See ``{module}.{name}``."
     return call
@@ -261,7 +261,7 @@ class Derived(Generic[Owner, T]):
     def __get__(self, pipeline: Owner | None, owner: type) -> Self | T:
         if pipeline is None:
             return self
-        found: T = pipeline.result(self.name, lambda: self.derive(pipeline))
+        value: T = pipeline.result(self.name, lambda: self.derive(pipeline))
         if self.stands_on and pipeline.asked_from_outside(self.says):
             pipeline.vouch(self.name, self.stands_on)
-        return found
+        return value

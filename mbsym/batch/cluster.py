@@ -89,9 +89,9 @@ class Connection:
                 self._own.close()
 
     def _check_versions(self) -> None:
-        wanted = derivation()
-        for worker, found in self.client.run(derivation).items():
-            if found != wanted:
+        own_version = derivation()
+        for worker, worker_version in self.client.run(derivation).items():
+            if worker_version != own_version:
                 text = "the worker [[worker]] has another version of mbsym: install the same there and here"
                 raise NoCluster(Message(text, worker=worker))
 
@@ -110,14 +110,14 @@ class Cluster:
     def submit(self, task: Task, budget: Budget) -> Future[Finished]:
         from concurrent.futures import Future
 
-        told: Future[Finished] = Future()
+        future: Future[Finished] = Future()
         there = self._there.executor.submit(at_worker, task_text(task), budget, derivation(), self._token)
 
         def pass_on(done: Future[tuple[str, float]]) -> None:
-            told.set_result(_finished(done, task))
+            future.set_result(_finished(done, task))
 
         there.add_done_callback(pass_on)
-        return told
+        return future
 
     def close(self) -> None:
         with suppress(Exception):

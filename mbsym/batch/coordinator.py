@@ -97,9 +97,9 @@ class Batch:
     def _up_to_date(self, place: Place) -> bool:
         if self._stopped:
             return False
-        found = self._store.look(place)
-        if isinstance(found, Row):
-            self._end(found)
+        state = self._store.look(place)
+        if isinstance(state, Row):
+            self._end(state)
             return True
         return False
 
@@ -131,12 +131,12 @@ class Batch:
             if not self._store.take(place):
                 continue
             waiting.remove(place)
-            found = self._store.look(place)  # the other batch may have done it in the meantime
-            if isinstance(found, Row):
+            state = self._store.look(place)  # the other batch may have done it in the meantime
+            if isinstance(state, Row):
                 self._store.leave(place)
-                self._end(found)
+                self._end(state)
                 continue
-            running[executor.submit(found, self._budget)] = place, found
+            running[executor.submit(state, self._budget)] = place, state
             self._watcher.began(place.file)
         self._all_taken = bool(waiting)
 
@@ -148,7 +148,7 @@ class Batch:
         from concurrent.futures import FIRST_COMPLETED, wait
 
         done, _ = wait(running, TICK, FIRST_COMPLETED)
-        for future in sorted(done, key=lambda one: running[one][0].file):
+        for future in sorted(done, key=lambda completed: running[completed][0].file):
             place, task = running[future]
             try:
                 row = self._store.keep(task, self._result(future, task))

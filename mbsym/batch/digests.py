@@ -37,12 +37,12 @@ def of_meaning(text: str, filename: str) -> str:
     tree, editor = placed_tree(text, filename)
     if tree is None:
         return ""
-    found = hashlib.sha256(b"editor" if editor else b"yaml")
+    digest = hashlib.sha256(b"editor" if editor else b"yaml")
     for piece in _pieces(tree):
         data = piece.encode(errors="surrogatepass")
-        found.update(b"%d:" % len(data))  # so that no two sequences of pieces are one sequence of bytes
-        found.update(data)
-    return found.hexdigest()
+        digest.update(b"%d:" % len(data))  # so that no two sequences of pieces are one sequence of bytes
+        digest.update(data)
+    return digest.hexdigest()
 
 
 def _pieces(tree: object) -> Iterator[str]:
@@ -67,13 +67,13 @@ def _pieces(tree: object) -> Iterator[str]:
 
 def derivation() -> str:
     """The digest of everything that derives and writes: whoever changes a line of it gets new results."""
-    found = hashlib.sha256(__version__.encode())
+    digest = hashlib.sha256(__version__.encode())
     for name in _LIBRARIES:
-        found.update(f"\0{name} {_version(name)}".encode())
+        digest.update(f"\0{name} {_version(name)}".encode())
     for name, path in _sources():
-        found.update(f"\0{name}\0".encode())
-        found.update(path.read_bytes())
-    return found.hexdigest()
+        digest.update(f"\0{name}\0".encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
 
 
 def _sources() -> Iterator[tuple[str, Path]]:

@@ -45,12 +45,12 @@ def junit(summary: Summary) -> str:
 
 def _suite(suites: Element, row: Row, summary: Summary) -> dict[str, int]:
     """One description; how many cases there are, and how many did not hold."""
-    found = list(cases(row, strict=row.outcome is Outcome.CLAIMS))
-    count = {kind: sum(case.kind == kind for case in found) for kind in ("failure", "error", "skipped")}
+    tests = list(cases(row, strict=row.outcome is Outcome.CLAIMS))
+    count = {kind: sum(case.kind == kind for case in tests) for kind in ("failure", "error", "skipped")}
     seconds = 0.0 if row.cached else row.seconds
-    numbers = {"tests": len(found), "failures": count["failure"], "errors": count["error"]}
-    told = {key: str(value) for key, value in numbers.items()}
-    attributes = {"name": safe(row.file), **told, "skipped": str(count["skipped"]), "time": f"{seconds:.3f}"}
+    numbers = {"tests": len(tests), "failures": count["failure"], "errors": count["error"]}
+    counts = {key: str(value) for key, value in numbers.items()}
+    attributes = {"name": safe(row.file), **counts, "skipped": str(count["skipped"]), "time": f"{seconds:.3f}"}
     suite = SubElement(suites, "testsuite", attributes)
     properties = SubElement(suite, "properties")
     shown = {
@@ -61,7 +61,7 @@ def _suite(suites: Element, row: Row, summary: Summary) -> dict[str, int]:
     }
     for name, value in shown.items():
         SubElement(properties, "property", {"name": name, "value": safe(value)})
-    for case in found:
+    for case in tests:
         element = SubElement(suite, "testcase", {"classname": safe(row.file), "name": safe(case.name), "time": "0"})
         if case.kind:
             inner = SubElement(element, case.kind, {"message": safe(case.message)})
@@ -79,8 +79,10 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
     """The cases of one description.  ``strict``: a claim that is not proved to hold has failed."""
     yield _reading(row)
     if row.outcome in _ENDED:
-        told = row.message or "; ".join(row.notes)
-        yield Case("derivation", "error", f"{row.outcome}: {told}" if told else str(row.outcome), "\n".join(row.notes))
+        message = row.message or "; ".join(row.notes)
+        yield Case(
+            "derivation", "error", f"{row.outcome}: {message}" if message else str(row.outcome), "\n".join(row.notes)
+        )
     elif row.outcome in _UNTRIED:
         yield Case("derivation", "skipped", str(row.outcome))
     for problem in row.problems:
@@ -92,8 +94,8 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
         yield _claim(number, claim, strict)
     for check in row.checks:
         kind = "failure" if check.failed else "skipped" if check.outcome == "undecided" else ""
-        told = f"{check.first} against {check.second}: {check.outcome}"
-        yield Case(f"self-check: {check.name}", kind, told, f"{told}\n{check.detail}")
+        message = f"{check.first} against {check.second}: {check.outcome}"
+        yield Case(f"self-check: {check.name}", kind, message, f"{message}\n{check.detail}")
 
 
 def _reading(row: Row) -> Case:

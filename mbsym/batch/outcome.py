@@ -235,8 +235,17 @@ def findings(summary: Summary) -> tuple[Finding, ...]:
 
 
 def _of(row: Row) -> Iterator[Finding]:
-    for one in row.complaints:
-        yield Finding(row.file, one.code, one.message, one.severity, one.line, one.column, one.length or 1, one.hint)
+    for complaint in row.complaints:
+        yield Finding(
+            row.file,
+            complaint.code,
+            complaint.message,
+            complaint.severity,
+            complaint.line,
+            complaint.column,
+            complaint.length or 1,
+            complaint.hint,
+        )
     for check in row.checks:
         if check.failed:
             yield Finding(row.file, "self-check-failed", f"self-check failed: {check.name}: {check.detail}")

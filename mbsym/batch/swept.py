@@ -30,19 +30,19 @@ class Workers:
         return self._there.width
 
     def submit(self, chunk: Chunk) -> Future[Columns]:
-        found: Future[Columns] = self._there.executor.submit(at_worker, self._text, self._asked, chunk, derivation())
-        return found
+        future: Future[Columns] = self._there.executor.submit(at_worker, self._text, self._asked, chunk, derivation())
+        return future
 
     def close(self) -> None:
         self._there.close()
 
 
-def at_worker(description: str, asked: Asked, chunk: Chunk, version: str) -> Mapping[str, Any]:
+def at_worker(description: str, request: Asked, chunk: Chunk, version: str) -> Mapping[str, Any]:
     """The columns of a chunk.  Raises RuntimeError where this worker is of another version."""
     if derivation() != version:
         raise RuntimeError("a worker has another version of mbsym")
-    points = asked.points.part(chunk.start, chunk.stop)
-    return dict(_measure(description, repr(asked), _Held(asked)).at(points))
+    points = request.points.part(chunk.start, chunk.stop)
+    return dict(_measure(description, repr(request), _Held(request)).at(points))
 
 
 class _Held:

@@ -23,15 +23,15 @@ def task_text(task: Task) -> str:
 
 
 def read_task(text: str) -> Task:
-    found = json.loads(text)
-    asked = found["asked"]
-    problems = None if asked["problems"] is None else tuple(asked["problems"])
+    document = json.loads(text)
+    options = document["asked"]
+    problems = None if options["problems"] is None else tuple(options["problems"])
     return Task(
-        found["file"],
-        found["folder"],
-        base64.b64decode(found["data"]),
-        BatchOptions(tuple(asked["formats"]), problems, asked["terms"], asked["angles"], asked["detail"]),
-        found["known"],
+        document["file"],
+        document["folder"],
+        base64.b64decode(document["data"]),
+        BatchOptions(tuple(options["formats"]), problems, options["terms"], options["angles"], options["detail"]),
+        document["known"],
     )
 
 
@@ -48,9 +48,9 @@ def finished_text(finished: Finished) -> str:
 
 def read_finished(text: str | bytes) -> Finished:
     """Raises one of MALFORMED where it is something else."""
-    found = json.loads(text)
-    files = {str(name): _read_content(content) for name, content in found["files"].items()}
-    return Finished(read_row(found["row"]), files, str(found["meaning"]), bool(found["same"]))
+    document = json.loads(text)
+    files = {str(name): _read_content(content) for name, content in document["files"].items()}
+    return Finished(read_row(document["row"]), files, str(document["meaning"]), bool(document["same"]))
 
 
 def _messages(value: object) -> Iterator[Message]:
@@ -83,20 +83,20 @@ def _sentence_data(said: object) -> Any:
     return str(said)
 
 
-def _read_sentence(found: Any) -> str:
-    if isinstance(found, str):
-        return found
-    if "number" in found:
-        return Counted(int(found["number"]), str(found["one"]), str(found["form"]))
-    return Message(str(found["text"]), **{name: _read_sentence(gap) for name, gap in found["gaps"].items()})
+def _read_sentence(sentence: Any) -> str:
+    if isinstance(sentence, str):
+        return sentence
+    if "number" in sentence:
+        return Counted(int(sentence["number"]), str(sentence["one"]), str(sentence["form"]))
+    return Message(str(sentence["text"]), **{name: _read_sentence(gap) for name, gap in sentence["gaps"].items()})
 
 
 def _content_data(content: str | bytes) -> str | dict[str, str]:
     return content if isinstance(content, str) else {"base64": base64.b64encode(content).decode()}
 
 
-def _read_content(found: Any) -> str | bytes:
-    return base64.b64decode(found["base64"], validate=True) if isinstance(found, dict) else str(found)
+def _read_content(content: Any) -> str | bytes:
+    return base64.b64decode(content["base64"], validate=True) if isinstance(content, dict) else str(content)
 
 
 def row_data(row: Row) -> dict[str, Any]:
@@ -110,19 +110,19 @@ def row_data(row: Row) -> dict[str, Any]:
 def read_row(data: Mapping[str, Any]) -> Row:
     """The row of ``row_data``.  Raises one of MALFORMED where it is something else."""
     messages = {str(english): _read_sentence(part) for english, part in data["sentences"].items()}
-    found = _with_messages({name: part for name, part in data.items() if name != "sentences"}, messages)
+    values = _with_messages({name: part for name, part in data.items() if name != "sentences"}, messages)
     return Row(
-        file=str(found["file"]),
-        folder=str(found["folder"]),
-        outcome=Outcome(found["outcome"]),
-        name=str(found["name"]),
-        problems=convert(found["problems"], tuple[ProblemRow, ...]),
-        claims=convert(found["claims"], tuple[ClaimRow, ...]),
-        checks=convert(found["checks"], tuple[CheckRow, ...]),
-        complaints=convert(found["complaints"], tuple[ComplaintRow, ...]),
-        files=convert(found["files"], tuple[FileRow, ...]),
-        message=convert(found["message"], str),
-        notes=convert(found["notes"], tuple[str, ...]),
+        file=str(values["file"]),
+        folder=str(values["folder"]),
+        outcome=Outcome(values["outcome"]),
+        name=str(values["name"]),
+        problems=convert(values["problems"], tuple[ProblemRow, ...]),
+        claims=convert(values["claims"], tuple[ClaimRow, ...]),
+        checks=convert(values["checks"], tuple[CheckRow, ...]),
+        complaints=convert(values["complaints"], tuple[ComplaintRow, ...]),
+        files=convert(values["files"], tuple[FileRow, ...]),
+        message=convert(values["message"], str),
+        notes=convert(values["notes"], tuple[str, ...]),
     )
 
 
@@ -155,7 +155,7 @@ class Task:
     file: str
     folder: str
     data: bytes
-    asked: BatchOptions
+    options: BatchOptions
     known: str = ""
 
 

@@ -63,7 +63,7 @@ def _derived(task: Task, system: System) -> tuple[Row, dict[str, str | bytes]]:
     from mbsym.report.targets import shown_by
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
-    options = task.asked
+    options = task.options
     problems = own_problems(system, shown_by(options.formats)) if options.problems is None else options.problems
     analysis = Analysis(system, problems, options.terms)
     analysis.detail = options.detail

@@ -76,8 +76,12 @@ def diff(a: Mapping[str, Any], b: Mapping[str, Any]) -> Diff:
     A parameter, coordinate or body counts as renamed only if every formula that holds the new name is, exactly, the old
     one with the name replaced.  Raises ValueError for what is no result of format 1.
     """
-    for one in (a, b):
-        if not isinstance(one, Mapping) or one.get("format") != 1 or not isinstance(one.get("coordinates"), list):
+    for document in (a, b):
+        if (
+            not isinstance(document, Mapping)
+            or document.get("format") != 1
+            or not isinstance(document.get("coordinates"), list)
+        ):
             raise ValueError("it is no results.json of format 1")
     whole = schema("results")
     known = _known(a, b)
@@ -151,26 +155,28 @@ def _used(b: Mapping[str, Any], proposal: tuple[Renaming, ...]) -> bool:
     """Whether every new name stands in some result: a name that nothing holds is no evidence of a renaming."""
     results = {key: value for key, value in b.items() if key not in ("coordinates", "parameters", "claims", "system")}
     text = json.dumps(results, ensure_ascii=False)
-    return all(re.search(rf"(?<![A-Za-z0-9_]){re.escape(one.after)}(?![A-Za-z0-9])", text) for one in proposal)
+    return all(
+        re.search(rf"(?<![A-Za-z0-9_]){re.escape(renaming.after)}(?![A-Za-z0-9])", text) for renaming in proposal
+    )
 
 
 def _known(a: Mapping[str, Any], b: Mapping[str, Any]) -> Known:
-    coordinates = {str(name) for one in (a, b) for name in one["coordinates"]}
-    signs: list[dict[str, str]] = [dict(_signs(one)) for one in (a, b)]
+    coordinates = {str(name) for document in (a, b) for name in document["coordinates"]}
+    signs: list[dict[str, str]] = [dict(_signs(document)) for document in (a, b)]
     agreed = {
         name: sign
         for name, sign in (signs[0] | signs[1]).items()
         if signs[0].get(name, sign) == signs[1].get(name, sign)
     }
-    tables = [_tables(one) for one in (a, b)]
+    tables = [_tables(document) for document in (a, b)]
     alike = {name: x for name, x in (tables[0] | tables[1]).items() if tables[0].get(name, x) == tables[1].get(name, x)}
     return Known(frozenset(coordinates), agreed, alike)
 
 
-def _tables(one: Mapping[str, Any]) -> dict[str, Table]:
+def _tables(document: Mapping[str, Any]) -> dict[str, Table]:
     """What formulas call: of a table that jumps, what keeps its end values outside."""
     tables: dict[str, Table] = {}
-    for item in one.get("tables") or ():
+    for item in document.get("tables") or ():
         points = tuple((Fraction(x), Fraction(y)) for x, y in item["points"])
         held = item.get("held")
         name, outside = (held, HOLD) if held else (item["name"], item["outside"])
@@ -180,8 +186,8 @@ def _tables(one: Mapping[str, Any]) -> dict[str, Table]:
     return tables
 
 
-def _signs(one: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    for item in one.get("parameters") or ():
+def _signs(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    for item in document.get("parameters") or ():
         if isinstance(item, Mapping):
             yield str(item.get("name")), str(item.get("sign"))
 
@@ -237,14 +243,14 @@ def renamed(a: Mapping[str, Any], proposal: tuple[Renaming, ...]) -> dict[str, A
             return {replaced(key) if key in names else key: replaced(item) for key, item in value.items()}
         return value
 
-    found: dict[str, Any] = replaced(a)
-    return found
+    document: dict[str, Any] = replaced(a)
+    return document
 
 
-def _names(one: Mapping[str, Any], kind: str) -> list[str]:
+def _names(document: Mapping[str, Any], kind: str) -> list[str]:
     if kind == "coordinate":
-        return list(map(str, one["coordinates"]))
-    listed = one.get("parameters") if kind == "parameter" else (one.get("kinematics") or {}).get("bodies")
+        return list(map(str, document["coordinates"]))
+    listed = document.get("parameters") if kind == "parameter" else (document.get("kinematics") or {}).get("bodies")
     return [str(item["name"]) for item in listed or () if isinstance(item, Mapping) and "name" in item]
 
 

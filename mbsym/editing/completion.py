@@ -48,32 +48,36 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     declares as parameters are found by their look.
     """
     lines = text.split("\n")
-    found = where(lines, line, column)
-    if found.is_value and not found.path:
+    place = where(lines, line, column)
+    if place.is_value and not place.path:
         return []
-    if found.is_value:
-        return list(_values(found, text, system))
-    known = keys_in(found.path)
-    keys = [Suggestion(key, "key", one.meaning, f"{key}: ") for key, one in known.items() if key not in found.beside]
-    if keys or not any(isinstance(one, Named) and one.of for one in types_at(found.path)):
+    if place.is_value:
+        return list(_values(place, text, system))
+    known = keys_in(place.path)
+    keys = [
+        Suggestion(key, "key", definition.meaning, f"{key}: ")
+        for key, definition in known.items()
+        if key not in place.beside
+    ]
+    if keys or not any(isinstance(value_type, Named) and value_type.of for value_type in types_at(place.path)):
         return keys
     return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
 
 
-def _values(found: Where, text: str, system: System | None) -> Iterator[Suggestion]:
-    types = types_at(found.path)
-    if found.path == ("parameters",):
+def _values(place: Where, text: str, system: System | None) -> Iterator[Suggestion]:
+    types = types_at(place.path)
+    if place.path == ("parameters",):
         yield from (Suggestion(sign, "word", "its sign", sign) for sign in SIGNS)
-    elif words := [str(word) for one in types if isinstance(one, Word) for word in one.choices]:
+    elif words := [str(word) for value_type in types if isinstance(value_type, Word) for word in value_type.choices]:
         yield from (Suggestion(word, "word", insert=word) for word in words)
-    elif any(isinstance(one, BodyName) and not one.new for one in types):
+    elif any(isinstance(value_type, BodyName) and not value_type.new for value_type in types):
         yield Suggestion("0", "body", "the inertial frame", "0")
         yield from (Suggestion(body.name, "body", "a body", body.name) for body in (system.bodies if system else ()))
-    elif any(isinstance(one, Name) for one in types):
+    elif any(isinstance(value_type, Name) for value_type in types):
         yield from (Suggestion(name, "name", "a coordinate", name) for name in _coordinates(system))
-    elif not types or any(isinstance(one, Formula | Vector | Equation | Index | About) for one in types):
-        yield from _names(text, system, "loads" in found.path or "claims" in found.path)
-        if system is not None and system.small is not None and found.path[0] in ("claims", "abbreviations"):
+    elif not types or any(isinstance(value_type, Formula | Vector | Equation | Index | About) for value_type in types):
+        yield from _names(text, system, "loads" in place.path or "claims" in place.path)
+        if system is not None and system.small is not None and place.path[0] in ("claims", "abbreviations"):
             symbols = oscillation_names(oscillating_variables(system), names_in(system)).all
             yield from (Suggestion(name, "name", "a symbol of an oscillation", name) for name in symbols)
 
@@ -89,13 +93,22 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
         names = _DECLARED.findall(section[1]) if section else []
         yield from (Suggestion(name, "name", "a parameter", name) for name in names)
     else:
-        yield from (Suggestion(one.name, "name", one.meaning or "a parameter", one.name) for one in system.parameters)
+        yield from (
+            Suggestion(parameter.name, "name", parameter.meaning or "a parameter", parameter.name)
+            for parameter in system.parameters
+        )
         yield from (Suggestion(name, "name", "a coordinate", name) for name in system.coordinates)
         if velocities:
             rates = map(velocity_name, system.coordinates)
             yield from (Suggestion(name, "name", "a velocity", name) for name in rates)
-        yield from (Suggestion(one.name, "name", one.meaning or "prescribed", one.name) for one in system.prescribed)
-        yield from (Suggestion(one.name, "name", one.meaning or "an input", one.name) for one in system.inputs)
+        yield from (
+            Suggestion(prescribed.name, "name", prescribed.meaning or "prescribed", prescribed.name)
+            for prescribed in system.prescribed
+        )
+        yield from (
+            Suggestion(system_input.name, "name", system_input.meaning or "an input", system_input.name)
+            for system_input in system.inputs
+        )
         yield from (Suggestion(notation.name, "name", "a notation", notation.name) for notation in system.notation)
         yield from (Suggestion(table.name, "function", "a table", f"{table.name}(") for table in system.tables)
     yield from (Suggestion(name, "function", "", f"{name}(") for name in FUNCTIONS)
@@ -107,23 +120,23 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
 
 def keys_in(path: tuple[str, ...]) -> Mapping[str, Key]:
     """The keys that a mapping at this place may have; none where names are chosen freely."""
-    return next((keys for one in _types(path) if (keys := _keys(one))), {})
+    return next((keys for value_type in _types(path) if (keys := _keys(value_type))), {})
 
 
 def types_at(path: tuple[str, ...]) -> list[Type]:
     """What may stand at a place, item of a list or value of a key."""
-    return [inner for one in _types(path) for inner in plain(one)]
+    return [inner for value_type in _types(path) for inner in plain(value_type)]
 
 
 def _types(path: tuple[str, ...]) -> list[Type]:
     types: list[Type] = [DESCRIPTION]
     for key in path:
-        types = [inner for one in types for inner in _inside(one, ALIASES.get(key, key))]
+        types = [inner for value_type in types for inner in _inside(value_type, ALIASES.get(key, key))]
     return types
 
 
-def _keys(one: Type) -> Mapping[str, Key]:
-    for inner in plain(one):
+def _keys(value_type: Type) -> Mapping[str, Key]:
+    for inner in plain(value_type):
         match inner:
             case Record(keys):
                 return keys
@@ -132,14 +145,14 @@ def _keys(one: Type) -> Mapping[str, Key]:
     return {}
 
 
-def _inside(one: Type, key: str) -> list[Type]:
+def _inside(value_type: Type, key: str) -> list[Type]:
     """What the value of a key may be."""
-    found: list[Type] = []
-    for inner in plain(one):
+    types: list[Type] = []
+    for inner in plain(value_type):
         match inner:
             case Named(value):
-                found.append(value)
+                types.append(value)
             case Record() | Kinds():
                 keys = _keys(inner)
-                found += [keys[key].type] if key in keys else []
-    return found
+                types += [keys[key].type] if key in keys else []
+    return types

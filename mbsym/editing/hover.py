@@ -32,12 +32,12 @@ def explanation(text: str, line: int, column: int, analysis: Analysis | None = N
     if line >= len(lines):
         return None
     key = key_at(lines[line], column)
-    found = where(lines, line, len(lines[line][:column]) if not key else lines[line].index(key))
+    place = where(lines, line, len(lines[line][:column]) if not key else lines[line].index(key))
     if key:
-        known = keys_in(found.path if not found.is_value else found.path[:-1])
-        one = known.get(ALIASES.get(key, key))
-        if one is not None:
-            return f"**{plain(key)}**: {one.meaning}"
+        known = keys_in(place.path if not place.is_value else place.path[:-1])
+        definition = known.get(ALIASES.get(key, key))
+        if definition is not None:
+            return f"**{plain(key)}**: {definition.meaning}"
     value = lines[line][lines[line].find(":") + 1 :].strip(" {}[],")
     if value in CLAIMS:
         return f"**{value}**: {CLAIMS[value].meaning}"
@@ -51,30 +51,28 @@ def _name(word: str, analysis: Analysis) -> str | None:
     """A parameter, coordinate, velocity, prescribed motion, notation."""
     system = analysis.system
     unit = system.units.of(word)
-    told = f" {plain(f'[{unit}]')}" if unit else ""
+    unit_text = f" {plain(f'[{unit}]')}" if unit else ""
     for parameter in system.parameters:
         if parameter.name == word:
             value = "" if parameter.value is None else f" = {code(written(parameter.value))}"
             meaning = f": {plain(parameter.meaning)}" if parameter.meaning else ""
-            return f"**{plain(word)}**{value}{told}, {parameter.sign}{meaning}"
+            return f"**{plain(word)}**{value}{unit_text}, {parameter.sign}{meaning}"
     name = without_velocity(word)
     if name in system.coordinates:
         body = next(body.name for body in system.bodies if name in body.coordinates)
-        parts = [
-            f"**{plain(word)}**{told}: {'velocity of' if name != word else ''} a coordinate of {plain(body)}".replace(
-                ":  ", ": "
-            )
-        ]
+        parts = [f"**{plain(word)}**{unit_text}: {'velocity of ' if name != word else ''}a coordinate of {plain(body)}"]
         energy = _or_none(lambda: analysis.energy)
         if energy is not None and name in energy.cyclic:
             parts.append("cyclic: T and U do not hold it")
         return "; ".join(parts)
     for motion in system.prescribed:
         if motion.name == word:
-            return f"**{plain(word)}**{told}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
-    for one in system.inputs:
-        if one.name == word:
-            return f"**{plain(word)}**{told}: an input" + (f", {plain(one.meaning)}" if one.meaning else "")
+            return f"**{plain(word)}**{unit_text}: prescribed, {plain(word)}' = {code(written(motion.rate))}"
+    for system_input in system.inputs:
+        if system_input.name == word:
+            return f"**{plain(word)}**{unit_text}: an input" + (
+                f", {plain(system_input.meaning)}" if system_input.meaning else ""
+            )
     for symbol in system.notation:
         if symbol.name == word:
             return f"**{plain(word)}** = {code(written(symbol.value))}"
@@ -88,12 +86,12 @@ def _body(word: str, analysis: Analysis) -> str | None:
     kinematics = _or_none(lambda: analysis.kinematics)
     if kinematics is None:
         return f"**{plain(word)}**: a body"
-    found = kinematics.body(word)
+    motion = kinematics.body(word)
     return "\n\n".join(
         [
             f"**{plain(word)}**, in its own axes",
-            f"angular velocity: {_vector(found.angular_velocity)}",
-            f"velocity of the mass centre: {_vector(found.velocity_mass_centre)}",
+            f"angular velocity: {_vector(motion.angular_velocity)}",
+            f"velocity of the mass centre: {_vector(motion.velocity_mass_centre)}",
         ]
     )
 

@@ -51,8 +51,8 @@ def where(lines: list[str], line: int, column: int) -> Where:
 
 
 def _uncommented(text: str) -> str:
-    found = re.search(r"(?:^|\s)#", text)
-    return text if found is None else text[: found.start()]
+    match = re.search(r"(?:^|\s)#", text)
+    return text if match is None else text[: match.start()]
 
 
 def _inside_brackets(rest: str) -> tuple[list[str], str, str]:

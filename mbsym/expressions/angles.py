@@ -24,14 +24,14 @@ class LinearForm:
         total = dict(self.coefficients)
         for name, value in other.coefficients:
             total[name] = total.get(name, Fraction(0)) + value
-        kept = tuple(sorted((name, value) for name, value in total.items() if value))
-        return LinearForm(kept, self.turns + other.turns, self.constant + other.constant)
+        coefficients = tuple(sorted((name, value) for name, value in total.items() if value))
+        return LinearForm(coefficients, self.turns + other.turns, self.constant + other.constant)
 
     def scaled(self, factor: Fraction) -> LinearForm:
         if not factor:
             return LinearForm()
-        kept = tuple((name, value * factor) for name, value in self.coefficients)
-        return LinearForm(kept, self.turns * factor, self.constant * factor)
+        coefficients = tuple((name, value * factor) for name, value in self.coefficients)
+        return LinearForm(coefficients, self.turns * factor, self.constant * factor)
 
     @property
     def is_constant(self) -> bool:

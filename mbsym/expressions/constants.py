@@ -65,15 +65,15 @@ def meaningless(tree: Expression, known: Known | None = None) -> tuple[Expressio
 
 def out_of_range(tree: Expression) -> str:
     """Why no double holds the number that a tree is; "" where one does, or the tree has names or no value."""
-    found = value(tree)
-    if found is None:
+    number = value(tree)
+    if number is None:
         return ""
-    if isinstance(found, Fraction):
-        size = found.numerator.bit_length() - found.denominator.bit_length() if found else 0
+    if isinstance(number, Fraction):
+        size = number.numerator.bit_length() - number.denominator.bit_length() if number else 0
     else:
-        found = abs(found)
-        size = 0 if found.contains(0) else 2 * MOST_BITS if found > _power_of_two(MOST_BITS) else 0
-        if not found.contains(0) and found < _power_of_two(-MOST_BITS):
+        number = abs(number)
+        size = 0 if number.contains(0) else 2 * MOST_BITS if number > _power_of_two(MOST_BITS) else 0
+        if not number.contains(0) and number < _power_of_two(-MOST_BITS):
             size = -2 * MOST_BITS
     if size > MOST_BITS:
         return "it is beyond the range of double precision"
@@ -94,8 +94,8 @@ def sign_of(tree: Expression) -> int | None:
         constants = _Constants({}, bits, bits == _BITS[-1])
         with suppress(_Vague):
             try:
-                found = constants.computed(tree)
-                return None if found is None else constants.sign(found)
+                number = constants.computed(tree)
+                return None if number is None else constants.sign(number)
             except (_NoValue, _Unknown):
                 return None
     return None
@@ -171,8 +171,8 @@ class _Constants:
 
                 return arb.pi()
             case Name(name):
-                found = self.known.get(name)
-                return found if found is None or isinstance(found, Fraction) else self._ball(found)
+                known = self.known.get(name)
+                return known if known is None or isinstance(known, Fraction) else self._ball(known)
             case Negative():
                 return None if parts[0] is None else -parts[0]
             case Operation(sign):
@@ -237,13 +237,13 @@ class _Constants:
             return abs(x)
         return self._finite(node, getattr(self._ball(x), function)())
 
-    def _finite(self, node: Expression, found: Any) -> Any:
-        if isinstance(found, Fraction):
-            if max(found.numerator.bit_length(), found.denominator.bit_length()) > _LONGEST:
-                return self._ball(found)
-            return found
-        if found.is_finite():
-            return found
+    def _finite(self, node: Expression, number: Any) -> Any:
+        if isinstance(number, Fraction):
+            if max(number.numerator.bit_length(), number.denominator.bit_length()) > _LONGEST:
+                return self._ball(number)
+            return number
+        if number.is_finite():
+            return number
         if not self.last:
             raise _Vague
         raise _NoValue(node, "it is infinite, or far beyond the range of any arithmetic")

@@ -77,8 +77,8 @@ def filled(text: str, value: Callable[[str], str]) -> str:
 
 def joined(parts: Iterable[object], between: str = " ") -> Message:
     """Messages, names, formulas one after another: in one order and with the same signs between in every language."""
-    found = {str(k): part for k, part in enumerate(parts)}
-    return Message(between.join(f"[[{k}]]" for k in found), **found)
+    gaps = {str(k): part for k, part in enumerate(parts)}
+    return Message(between.join(f"[[{k}]]" for k in gaps), **gaps)
 
 
 def enumerated(parts: Sequence[str]) -> str:

@@ -236,7 +236,7 @@ def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> lis
     spans = [item.span for item in refused if item.span is not None and item.code != "division-by-zero"]
     if len(text) > MAX_LENGTH:
         return []
-    found: list[Name] = []
+    names: list[Name] = []
     blank = _Token("operator", "", 0, 0)
     previous, end, position = blank, -1, 0  # end: where the last piece that is no token ended
     while position < len(text):
@@ -254,9 +254,9 @@ def names_apart(text: str, span_of: SpanOf, refused: Sequence[Complaint]) -> lis
         if token.kind == "name" and previous.kind == "operator" and not (beside or call or token.text in FUNCTIONS):
             span = span_of(start, position)
             if not any(_inside(span, other) for other in spans):
-                found.append(Name(token.text, span))
+                names.append(Name(token.text, span))
         previous = token
-    return found
+    return names
 
 
 def _inside(span: Span, other: Span) -> bool:
@@ -497,18 +497,18 @@ class _Parser:
         span = self.span_of(token.start, self.last_end)
         return self.grown(Call(token.text, argument, span, tuple(more), table), argument, *more)
 
-    def inside(self, opening: _Token, wanted: int = 1, usage: str = "") -> list[Expression]:
+    def inside(self, opening: _Token, required: int = 1, usage: str = "") -> list[Expression]:
         """What stands between an opening parenthesis, already read, and its closing one: so many arguments."""
         self.nest(opening)
         expressions = [self.sum(0)]
-        while self.next.text == "," and len(expressions) < wanted:
+        while self.next.text == "," and len(expressions) < required:
             self.advance()
             expressions.append(self.sum(0))
         self.nesting -= 1
-        if self.next.text == ")" and len(expressions) < wanted:
+        if self.next.text == ")" and len(expressions) < required:
             raise self.refusal(
                 "bad-expression",
-                Message("[[wanted]] arguments are wanted", wanted=wanted),
+                Message("[[wanted]] arguments are wanted", wanted=required),
                 self.next,
                 Message("write [[usage]]", usage=usage),
             )
@@ -516,11 +516,11 @@ class _Parser:
             self.advance()
             return expressions
         if self.next.text == ",":
-            message = "one argument only" if wanted == 1 else Message("[[wanted]] arguments only", wanted=wanted)
+            message = "one argument only" if required == 1 else Message("[[wanted]] arguments only", wanted=required)
             hint = decimal_comma(self.text) or (Message("write [[usage]]", usage=usage) if usage else None)
             raise self.refusal("bad-expression", message, self.next, hint)
         if self.next.kind == "end":
-            hint = "within {...} or [...] quote what holds commas" if wanted > len(expressions) else None
+            hint = "within {...} or [...] quote what holds commas" if required > len(expressions) else None
             raise self.refusal("bad-expression", "this parenthesis is never closed", opening, hint)
         raise self.trailing(self.next)
 
@@ -631,7 +631,7 @@ def _function_hint(name: str, tables: Iterable[str]) -> str:
     if name in _FOREIGN_FUNCTIONS:
         return Message("write [[function]]", function=_FOREIGN_FUNCTIONS[name])
     lower = name.lower()[:40]
-    begun = [one for one in FUNCTIONS if lower.startswith(one)]  # cosine, sinus, exponential
+    begun = [function for function in FUNCTIONS if lower.startswith(function)]  # cosine, sinus, exponential
     close = [max(begun, key=len)] if begun else get_close_matches(lower, FUNCTIONS, n=1)
     if close:
         return Message("did you mean '[[other]]'?", other=close[0])

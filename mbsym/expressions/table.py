@@ -104,8 +104,8 @@ class Curve:
         if self.order:
             whole = self.table.curve.polynomials
             return tuple(
-                tuple(c * perm(k, self.order) for k, c in enumerate(one) if k >= self.order) or (Fraction(0),)
-                for one in whole
+                tuple(c * perm(k, self.order) for k, c in enumerate(coefficients) if k >= self.order) or (Fraction(0),)
+                for coefficients in whole
             )
         degree = 1 if self.table.between == LINEAR else 3
         inner = [
@@ -139,8 +139,8 @@ class Curve:
     @property
     def constant(self) -> Fraction | None:
         """The number that it is everywhere, if it is one."""
-        found = self.polynomial
-        return None if found is None or any(found[1:]) else found[0]
+        coefficients = self.polynomial
+        return None if coefficients is None or any(coefficients[1:]) else coefficients[0]
 
     @cached_property
     def derivative(self) -> Curve:
@@ -166,16 +166,16 @@ class Curve:
 
     def __call__(self, x: Fraction) -> Fraction:
         """The exact value."""
-        found = [self.on(piece, x) for piece in self.pieces_at(x)]
-        return Fraction(sum(found)) / len(found)
+        values = [self.on(piece, x) for piece in self.pieces_at(x)]
+        return Fraction(sum(values)) / len(values)
 
     def kinked_at(self, x: Fraction) -> bool:
         """Whether a derivative of this one, of any order, jumps at x: it has no series there."""
         around = self.pieces_at(x)
         if len(around) == 1:
             return False
-        (a, b), (one, other) = around, (self.polynomials[k] for k in around)
-        return _moved(one, self.bases[b] - self.bases[a]) != other
+        (a, b), (polynomial, other) = around, (self.polynomials[k] for k in around)
+        return _moved(polynomial, self.bases[b] - self.bases[a]) != other
 
 
 class Tabulated(str):
@@ -227,16 +227,16 @@ def _moved(polynomial: tuple[Fraction, ...], by: Fraction) -> tuple[Fraction, ..
 
 def pieces(table: Table) -> list[tuple[Fraction, Fraction, Fraction]]:
     """(a_k, b_k, c_k) between each point and the next."""
-    chords = [(later[1] - one[1]) / (later[0] - one[0]) for one, later in pairwise(table.points)]
+    chords = [(later[1] - earlier[1]) / (later[0] - earlier[0]) for earlier, later in pairwise(table.points)]
     if table.between == LINEAR:
         return [(chord, Fraction(0), Fraction(0)) for chord in chords]
-    lengths = [later[0] - one[0] for one, later in pairwise(table.points)]
+    lengths = [later[0] - earlier[0] for earlier, later in pairwise(table.points)]
     slopes = _natural_slopes(lengths, chords)
-    found = []
+    coefficients = []
     for k, (length, chord) in enumerate(zip(lengths, chords, strict=True)):
         first, last = slopes[k], slopes[k + 1]
-        found.append((first, (3 * chord - 2 * first - last) / length, (first + last - 2 * chord) / length**2))
-    return found
+        coefficients.append((first, (3 * chord - 2 * first - last) / length, (first + last - 2 * chord) / length**2))
+    return coefficients
 
 
 def _natural_slopes(lengths: list[Fraction], chords: list[Fraction]) -> list[Fraction]:
@@ -248,10 +248,10 @@ def _natural_slopes(lengths: list[Fraction], chords: list[Fraction]) -> list[Fra
     above, right = [Fraction(0)] * count, [Fraction(0)] * count
     for k in range(count):
         before, after = (inverse[k - 1] if k else Fraction(0)), (inverse[k] if k < count - 1 else Fraction(0))
-        wanted = 3 * ((before * chords[k - 1] if k else 0) + (after * chords[k] if k < count - 1 else 0))
+        right_side = 3 * ((before * chords[k - 1] if k else 0) + (after * chords[k] if k < count - 1 else 0))
         pivot = 2 * (before + after) - (before * above[k - 1] if k else 0)
         above[k] = round(after / pivot, SLOPE_DIGITS)
-        right[k] = unit * round((wanted - (before * right[k - 1] if k else 0)) / (pivot * unit), SLOPE_DIGITS)
+        right[k] = unit * round((right_side - (before * right[k - 1] if k else 0)) / (pivot * unit), SLOPE_DIGITS)
     slopes = [right[-1]] * count
     for k in range(count - 2, -1, -1):
         slopes[k] = unit * round((right[k] - above[k] * slopes[k + 1]) / unit, SLOPE_DIGITS)

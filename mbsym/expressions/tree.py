@@ -157,8 +157,8 @@ def written_out(table: Table, x: Expression, whole: bool = True) -> Expression:
     half, polynomials = Number(Fraction(1, 2)), table.curve.polynomials
     kinks = [Call("abs", subtract(x, _exact(place))) for place, _ in table.points]
     inside = [multiply(half, subtract(subtract(x, _exact(first)), kinks[0]))]
-    for k, ((one, _), (later, _)) in enumerate(pairwise(table.points)):
-        inside.append(multiply(half, add(subtract(kinks[k], kinks[k + 1]), _exact(later - one))))
+    for k, ((earlier, _), (later, _)) in enumerate(pairwise(table.points)):
+        inside.append(multiply(half, add(subtract(kinks[k], kinks[k + 1]), _exact(later - earlier))))
     inside.append(multiply(half, add(subtract(x, _exact(last)), kinks[-1])))
     total = _exact(start)
     for u, polynomial in zip(inside, polynomials, strict=True):
@@ -196,7 +196,7 @@ def without_tables(expression: Expression, chosen: Callable[[Call], bool]) -> Ex
             inner = without_tables(argument, chosen)
             if table is not None and order == 0 and chosen(expression):
                 return written_out(table, inner)
-            others = tuple(without_tables(one, chosen) for one in more)
+            others = tuple(without_tables(extra, chosen) for extra in more)
             return Call(function, inner, more=others, table=table, order=order)
         case Negative(operand):
             return negative(without_tables(operand, chosen))
@@ -298,10 +298,10 @@ class Derivation:
         self._known: dict[int, Expression] = {}
 
     def __call__(self, expression: Expression) -> Expression:
-        found = self._known.get(id(expression))
-        if found is None:
-            found = self._known[id(expression)] = self._derivative(expression)
-        return found
+        derivative = self._known.get(id(expression))
+        if derivative is None:
+            derivative = self._known[id(expression)] = self._derivative(expression)
+        return derivative
 
     def _derivative(self, expression: Expression) -> Expression:
         match expression:
@@ -382,7 +382,7 @@ def substitute(expression: Expression, replacements: Mapping[str, Expression]) -
         case Operation(operator, left, right):
             return Operation(operator, substitute(left, replacements), substitute(right, replacements))
         case Call(function, argument, more=more, table=table, order=order):
-            others = tuple(substitute(one, replacements) for one in more)
+            others = tuple(substitute(extra, replacements) for extra in more)
             return Call(function, substitute(argument, replacements), more=others, table=table, order=order)
     return expression
 

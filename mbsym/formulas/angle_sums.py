@@ -88,11 +88,11 @@ def _shortest(products: Mapping[Code, int], squares: bool) -> Joined | None:
     pieces = [Part(weight, (), code) for code, weight in products.items()]
     best, least = None, _length(pieces, 1)
     for block in _candidates(products, squares):
-        found = _over(products, block)
-        length = _length(*found)
+        candidate = _over(products, block)
+        length = _length(*candidate)
         if length < least:
-            best, least = found, length
-            if 2 * len(found[0]) <= len(products) and len(block) > 1:
+            best, least = candidate, length
+            if 2 * len(candidate[0]) <= len(products) and len(block) > 1:
                 break
     if best is None:
         return None
@@ -146,7 +146,7 @@ def _linked(products: Mapping[Code, int]) -> list[tuple[int, int]]:
 
     Their weights are equal up to sign: only then does a sum of angles replace two products by one wave.
     """
-    found: set[tuple[int, int]] = set()
+    pairs: set[tuple[int, int]] = set()
     for code, weight in products.items():
         sines, cosines, rest, angle = [], [], code, 0
         while rest:
@@ -158,29 +158,29 @@ def _linked(products: Mapping[Code, int]) -> list[tuple[int, int]]:
             rest >>= _BITS
             angle += 1
         for place, a in enumerate(sines):
-            one = 1 << (_BITS * a)
+            unit = 1 << (_BITS * a)
             for b in sines[place + 1 :]:
-                if abs(products.get(code + one + (1 << (_BITS * b)), 0)) == abs(weight):
-                    found.add((a, b))
+                if abs(products.get(code + unit + (1 << (_BITS * b)), 0)) == abs(weight):
+                    pairs.add((a, b))
             for b in cosines:
-                if b != a and abs(products.get(code + one - (1 << (_BITS * b)), 0)) == abs(weight):
-                    found.add((a, b) if a < b else (b, a))
-    return sorted(found)
+                if b != a and abs(products.get(code + unit - (1 << (_BITS * b)), 0)) == abs(weight):
+                    pairs.add((a, b) if a < b else (b, a))
+    return sorted(pairs)
 
 
 def _squared(products: Mapping[Code, int]) -> list[int]:
     """Angles with ``X cos^2`` beside X, of weights that leave one of 1, sin^2, cos(2 a)."""
-    found: set[int] = set()
+    angles: set[int] = set()
     for code, weight in products.items():
         rest, angle = code, 0
         while rest:
             if rest & _BYTE >= 4:
                 below = products.get(code - (4 << (_BITS * angle)), 0)
                 if below and (weight == -below or weight == -2 * below):
-                    found.add(angle)
+                    angles.add(angle)
             rest >>= _BITS
             angle += 1
-    return sorted(found)
+    return sorted(angles)
 
 
 def _components(links: Iterable[tuple[int, int]]) -> list[tuple[int, ...]]:
@@ -211,14 +211,14 @@ def _over(products: Mapping[Code, int], block: tuple[int, ...]) -> tuple[list[Pa
     for code, weight in products.items():
         beside.setdefault(code & ~mask, {})[code & mask] = weight
     scale = 1 << max(_degree(code & mask) for code in products)
-    found: list[Part] = []
+    parts: list[Part] = []
     for outside, inner in beside.items():
         as_products = [Part(weight * scale, (), code) for code, weight in inner.items()]
         waves = _waves(inner, block, scale)
         if waves is None or _length(waves, scale) >= _length(as_products, scale):
             waves = as_products
-        found += [Part(weight, wave, code | outside) for weight, wave, code in waves] if outside else waves
-    return found, scale
+        parts += [Part(weight, wave, code | outside) for weight, wave, code in waves] if outside else waves
+    return parts, scale
 
 
 @lru_cache(maxsize=1 << 12)

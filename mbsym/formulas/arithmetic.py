@@ -59,8 +59,8 @@ def power(formula: Formula, exponent: object) -> tuple[Ring, Polynomial]:
 
 def environment(ring: Ring) -> dict[str, Polynomial]:
     """Every name of the system and its generator."""
-    found = {g.name + ENDINGS.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
-    return {name: ring.context.gen(k) for name, k in found.items()}
+    indices = {g.name + ENDINGS.get(g.kind, ""): k for k, g in enumerate(ring.generators) if g.kind in _NAMED}
+    return {name: ring.context.gen(k) for name, k in indices.items()}
 
 
 def substituted(formula: Formula, values: Mapping[str, Any]) -> tuple[Ring, Polynomial]:
@@ -76,7 +76,9 @@ def substituted(formula: Formula, values: Mapping[str, Any]) -> tuple[Ring, Poly
     images: dict[int, Polynomial] = {}
     for name, value in values.items():
         if name not in known or name == "pi":
-            raise ValueError(f"unknown name '{name}'{guess(name, [one for one in known if one != 'pi'])}")
+            raise ValueError(
+                f"unknown name '{name}'{guess(name, [known_name for known_name in known if known_name != 'pi'])}"
+            )
         tree = _expression(name, value)
         for unknown in sorted(names(tree) - known.keys()):
             raise ValueError(f"unknown name '{unknown}'{guess(unknown, known)}")

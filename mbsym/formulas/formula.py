@@ -43,8 +43,8 @@ class Shown(GuessesNames):
         return "$\\displaystyle \\begin{aligned} " + " \\\\ ".join(lines) + " \\end{aligned}$"
 
 
-def _parts(found: Any) -> list[tuple[str, Any]]:
-    every = ((field.name, getattr(found, field.name)) for field in fields(found))
+def _parts(record: Any) -> list[tuple[str, Any]]:
+    every = ((field.name, getattr(record, field.name)) for field in fields(record))
     return [(name, value) for name, value in every if not isinstance(value, Ring)]
 
 
@@ -185,8 +185,8 @@ class Formula(GuessesNames):
     def _with(self, other: object, operation: Callable[[Ring, Polynomial, Polynomial], Polynomial]) -> Formula:
         from mbsym.formulas.arithmetic import together
 
-        found = together(self, other)
-        return NotImplemented if found is None else Formula(found[0], operation(*found))
+        operands = together(self, other)
+        return NotImplemented if operands is None else Formula(operands[0], operation(*operands))
 
     def _repr_latex_(self) -> str:
         return f"$\\displaystyle {self.latex()}$"

@@ -146,10 +146,10 @@ def _escaped(name: str) -> str:
 _NAMES: WeakKeyDictionary[Ring, LatexNames] = WeakKeyDictionary()
 
 
-def write_as(ring: Ring, given: Mapping[str, str]) -> None:
-    """From now on names of the ring are written in LaTeX as ``given``, in every formula."""
+def write_as(ring: Ring, spellings: Mapping[str, str]) -> None:
+    """From now on names of the ring are written in LaTeX as ``spellings``, in every formula."""
     kinds = ("coordinate", "prescribed", "parameter")
-    _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], given)
+    _NAMES[ring] = LatexNames(["t", *(g.name for g in ring.generators if g.kind in kinds)], spellings)
     forget_printed()
 
 

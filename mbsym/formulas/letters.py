@@ -59,22 +59,22 @@ FURTHER = 24
 class Letters:
     """Letters with what they stand for, in order: later ones may hold earlier ones.
 
-    ``asked``: those that are wanted, also where nothing gets shorter, and names that are to stay; None: all of them
+    ``requested``: those that are wanted, also where nothing gets shorter, and names that are to stay; None: all of them
     where it does.
     """
 
     given: tuple[tuple[str, Expression], ...]
-    asked: tuple[str, ...] | None = None
+    requested: tuple[str, ...] | None = None
 
     @property
     def wanted(self) -> tuple[str, ...]:
         known = tuple(name for name, _ in self.given)
-        return known if self.asked is None else tuple(name for name in self.asked if name in known)
+        return known if self.requested is None else tuple(name for name in self.requested if name in known)
 
     @property
     def kept(self) -> frozenset[str]:
         """Names that are to stay in formulas."""
-        return frozenset(self.asked or ()) - {name for name, _ in self.given}
+        return frozenset(self.requested or ()) - {name for name, _ in self.given}
 
     def definitions(self, used: Iterable[str]) -> list[tuple[str, Expression]]:
         """Those of the letters in ``used`` and of the letters that they are made of, in order."""
@@ -108,16 +108,16 @@ def letters() -> Letters | None:
 
 def lettered(ring: Ring, polynomial: Polynomial) -> tuple[Ring, Polynomial]:
     """The formula as it is to be written: in the letters that were asked for, or as it is."""
-    wanted = letters()
-    if wanted is None or isinstance(ring, LetterRing):
+    requested = letters()
+    if requested is None or isinstance(ring, LetterRing):
         return ring, polynomial
-    found = rewriter(ring, wanted)(polynomial)
-    if found is None:
+    rewritten = rewriter(ring, requested)(polynomial)
+    if rewritten is None:
         return ring, polynomial
     used = _USED.get()
     if used is not None:
-        used |= found.used
-    return found.ring, found.polynomial
+        used |= rewritten.used
+    return rewritten.ring, rewritten.polynomial
 
 
 class LetterRing(Ring):
@@ -199,7 +199,7 @@ class Rewriter:
         self._known: dict[tuple[int, str], tuple[Polynomial, Written | None]] = {}
         self._equal: dict[tuple[int, ...], list[Polynomial]] = {}
         self.letters = letters
-        self.work, self.most_read = (WORK, MOST_READ) if letters.asked else (WORK_UNASKED, MOST_READ_UNASKED)
+        self.work, self.most_read = (WORK, MOST_READ) if letters.requested else (WORK_UNASKED, MOST_READ_UNASKED)
         held = {g.name + ENDINGS.get(g.kind, "") for g in ring.generators if g.argument is None} | {"t", "pi"}
         self.values = self._expanded(letters, held, ring)
         moving = [name for name, value in self.values.items() if not _constant(value, ring)]
@@ -214,9 +214,11 @@ class Rewriter:
         letter = set(self.places.values())
         other = letter - {self.places[name] for name in letters.wanted if name in self.places}
         self.steps = [x for x in self.steps if not x.brings & other and x.symbol not in other]
-        given = {x.letter for x in self.steps if x.given}
+        given_letters = {x.letter for x in self.steps if x.given}
         self.chained = [
-            x for x in self.steps if (x.given or x.letter not in given) and x.degree == 1 and x.symbol not in letter
+            x
+            for x in self.steps
+            if (x.given or x.letter not in given_letters) and x.degree == 1 and x.symbol not in letter
         ]
         if len({x.letter for x in self.chained}) > MOST_CHAINED:
             self.chained = []
@@ -299,10 +301,10 @@ class Rewriter:
         shared = reduce(lambda x, y: x.gcd(y), _powers(self.ring, relation, own).values())
         relation = relation if shared.is_constant() else relation / shared
         held = occurring([relation])
-        kept = {next(iter(occurring([self.named[x]]))) for x in self.letters.kept if x in self.named}
+        kept_symbols = {next(iter(occurring([self.named[x]]))) for x in self.letters.kept if x in self.named}
         for symbol in held:
             powers = _powers(self.ring, relation, symbol)
-            if symbol in (own, *kept) or len(powers) != 2 or 0 not in powers:
+            if symbol in (own, *kept_symbols) or len(powers) != 2 or 0 not in powers:
                 continue
             degree = max(powers)
             factor, rest = powers[degree], powers[0]
@@ -323,7 +325,7 @@ class Rewriter:
     def _written(self, polynomial: Polynomial) -> Written | None:
         if not self.steps or len(polynomial) > MOST_TERMS or polynomial.is_constant():
             return None
-        if not self.letters.asked:
+        if not self.letters.requested:
             self.work = WORK_SHORT if len(polynomial) <= SHORT else WORK_UNASKED
         try:
             with self.ring.whole.budget(self.work):
@@ -352,7 +354,7 @@ class Rewriter:
         left = {ring.generators[k].name for k in held}
         instead = not any(ring.generators[k].name in left for name in used for k in self._symbols(name))
         share = INSTEAD if instead else SHORTER
-        if not self.letters.asked and size(ring, best) > size(whole, polynomial) * share:
+        if not self.letters.requested and size(ring, best) > size(whole, polynomial) * share:
             return None
         return Written(ring, best, used)
 
@@ -383,29 +385,29 @@ class Rewriter:
         routes = [x for x in routes if x is not fraction]
         return self._joined(min(routes, key=self._read)) if routes else None
 
-    def _improved(self, found: _Fraction) -> _Fraction:
+    def _improved(self, fraction: _Fraction) -> _Fraction:
         """What single steps make of it, each of which leaves less to read, or far fewer terms of many."""
         with suppress(Failure), self.ring.budget(self.work):  # what is found within the budget is as good
-            if self._long(found):
-                while (few := min(self._candidates(found), key=lambda x: x[0], default=None)) is not None:
-                    if few[0] > _terms(found) * SHORTER:
+            if self._long(fraction):
+                while (few := min(self._candidates(fraction), key=lambda x: x[0], default=None)) is not None:
+                    if few[0] > _terms(fraction) * SHORTER:
                         break
-                    found = few[1]
-                if self._long(found):
-                    return found
-            least = self._read(found)
-            while (tried := self._tried(found)) is not None and tried[0] <= least * STEP:
-                least, found = tried
-        return found
+                    fraction = few[1]
+                if self._long(fraction):
+                    return fraction
+            least = self._read(fraction)
+            while (tried := self._tried(fraction)) is not None and tried[0] <= least * STEP:
+                least, fraction = tried
+        return fraction
 
-    def _long(self, found: _Fraction) -> bool:
+    def _long(self, fraction: _Fraction) -> bool:
         """Whether to read it would take too long: its terms are counted in place of that."""
-        return len(found[0]) > self.most_read
+        return len(fraction[0]) > self.most_read
 
-    def _read(self, found: _Fraction) -> int:
+    def _read(self, fraction: _Fraction) -> int:
         """How much there is to read of a numerator and its denominator; nothing is adjoined for it."""
-        read = size(self.ring, self._first(found[0]))
-        return read + sum(1 + (n != 1) + size(self.ring, self._first(x)) for x, n in found[1])
+        read = size(self.ring, self._first(fraction[0]))
+        return read + sum(1 + (n != 1) + size(self.ring, self._first(x)) for x, n in fraction[1])
 
     def _first(self, polynomial: Polynomial) -> Polynomial:
         """The first that was met of equal polynomials, of which shapes are kept: steps lead to the same ones often."""
@@ -415,72 +417,72 @@ class Rewriter:
             alike.append(known := polynomial)
         return known
 
-    def _chain(self, found: _Fraction) -> _Fraction | None:
+    def _chain(self, fraction: _Fraction) -> _Fraction | None:
         """One symbol for each letter that is not made of letters alone: A = a C, B = b C, lz = n C r; None for no step.
 
         The symbol is one that leaves no denominator, and that few letters hold.  For letters that were asked for, which
         are taken also where nothing gets shorter, there is no other.
         """
-        start, gone, taken = self._held(found), set[int](), 0
-        if self.letters.asked and len(found[0]) == 1 and found[0].total_degree() == 1 and not found[1]:
+        start, gone, taken = self._held(fraction), set[int](), 0
+        if self.letters.requested and len(fraction[0]) == 1 and fraction[0].total_degree() == 1 and not fraction[1]:
             return None  # a symbol
         start |= set(self.places.values())
         for name in self.values:
-            held = self._held(found)
+            held = self._held(fraction)
             own = [x for x in self.chained if x.letter == name and x.symbol in held - gone and x.brings <= start]
-            if self.letters.asked:
+            if self.letters.requested:
                 own = [x for x in own if x.factor.is_constant()]
             if own:
                 step = min(own, key=lambda x: (not x.factor.is_constant(), self.sharing[x.symbol]))
-                after = self._after(found, step)
+                after = self._after(fraction, step)
                 if after is not None:
-                    found, taken = after, taken + 1
+                    fraction, taken = after, taken + 1
                     gone.add(step.symbol)
-        return found if taken else None
+        return fraction if taken else None
 
-    def _held(self, found: _Fraction) -> set[int]:
+    def _held(self, fraction: _Fraction) -> set[int]:
         """The generators of a fraction, and those in what is adjoined."""
-        return self.ring.held([found[0], *(x for x, _ in found[1])])
+        return self.ring.held([fraction[0], *(x for x, _ in fraction[1])])
 
-    def _applicable(self, found: _Fraction, steps: Iterable[_Step], forced: bool = False) -> list[_Step]:
+    def _applicable(self, fraction: _Fraction, steps: Iterable[_Step], forced: bool = False) -> list[_Step]:
         """Those that have something to do and, unless ``forced``, bring in no other symbol than their letter."""
-        held = self._held(found)
+        held = self._held(fraction)
         return [x for x in steps if x.symbol in held and (forced or x.brings <= held)]
 
-    def _tried(self, found: _Fraction) -> tuple[int, _Fraction] | None:
+    def _tried(self, fraction: _Fraction) -> tuple[int, _Fraction] | None:
         """(how much there is to read, what is left) by the step that leaves least."""
-        fewest = sorted(self._candidates(found), key=lambda x: x[0])[:WRITTEN]
+        fewest = sorted(self._candidates(fraction), key=lambda x: x[0])[:WRITTEN]
         return min(((self._read(x), x) for _, x in fewest), key=lambda x: x[0], default=None)
 
-    def _candidates(self, found: _Fraction) -> Iterator[tuple[int, _Fraction]]:
+    def _candidates(self, fraction: _Fraction) -> Iterator[tuple[int, _Fraction]]:
         """(terms, what is left) by each step that leaves neither more terms nor more denominators."""
-        most = _terms(found)
-        for step in self._applicable(found, self.steps):
+        most = _terms(fraction)
+        for step in self._applicable(fraction, self.steps):
             try:
-                after = self._after(found, step)
+                after = self._after(fraction, step)
             except (Failure, ZeroDivisionError):
                 continue
-            if after is not None and len(after[1]) <= len(found[1]) and (terms := _terms(after)) <= most:
+            if after is not None and len(after[1]) <= len(fraction[1]) and (terms := _terms(after)) <= most:
                 yield terms, after
 
-    def _joined(self, found: _Fraction) -> Polynomial:
-        ring, result = self.ring, found[0]
-        for factor, exponent in found[1]:
+    def _joined(self, fraction: _Fraction) -> Polynomial:
+        ring, result = self.ring, fraction[0]
+        for factor, exponent in fraction[1]:
             result = ring.times(result, ring.reciprocal(factor) ** exponent)
         return result
 
-    def _after(self, found: _Fraction, step: _Step) -> _Fraction | None:
+    def _after(self, fraction: _Fraction, step: _Step) -> _Fraction | None:
         """The fraction after one step, in lowest terms; None where nothing changes."""
         ring = self.ring
-        inside = [ring.generators[k].argument for k in occurring([found[0], *(x for x, _ in found[1])])]
+        inside = [ring.generators[k].argument for k in occurring([fraction[0], *(x for x, _ in fraction[1])])]
         if any(step.symbol in self._held((x, [])) for x in inside if x is not None):
             if step.degree > 1:
                 return None
             image = -ring.times(step.rest, ring.reciprocal(step.factor))
-            return ring.fraction(ring.substitute(self._joined(found), {step.symbol: image}))
-        top, above = self._put(found[0], step)
-        changed, below = top != found[0], list[tuple[Polynomial, int]]()
-        for factor, exponent in found[1]:
+            return ring.fraction(ring.substitute(self._joined(fraction), {step.symbol: image}))
+        top, above = self._put(fraction[0], step)
+        changed, below = top != fraction[0], list[tuple[Polynomial, int]]()
+        for factor, exponent in fraction[1]:
             other, more = self._put(factor, step)
             changed |= other != factor
             above -= more * exponent
@@ -509,11 +511,11 @@ class Rewriter:
     def _lowest(self, top: Polynomial, below: Sequence[tuple[Polynomial, int]]) -> _Fraction:
         """In lowest terms, the denominator in irreducible factors without numbers."""
         ring, factors = self.ring, list[tuple[Polynomial, int]]()
-        for one, exponent in below:
-            if one.is_constant():
-                top = top / one.leading_coefficient() ** exponent
+        for polynomial, exponent in below:
+            if polynomial.is_constant():
+                top = top / polynomial.leading_coefficient() ** exponent
                 continue
-            content, parts = ring.factored(one)
+            content, parts = ring.factored(polynomial)
             top = top / content**exponent
             for part, times in parts:
                 count = times * exponent + next((n for x, n in factors if x == part), 0)
@@ -545,9 +547,9 @@ def size(ring: Ring, polynomial: Polynomial) -> int:
     return sum(length(ring, present(ring, x, angles)) for x in (polynomial, *inside))
 
 
-def _terms(found: _Fraction) -> int:
+def _terms(fraction: _Fraction) -> int:
     """What is counted to see which of several fractions may be the shortest to read: terms and generators."""
-    polynomials = [found[0], *(x for x, _ in found[1])]
+    polynomials = [fraction[0], *(x for x, _ in fraction[1])]
     return sum(map(len, polynomials)) + len(occurring(polynomials))
 
 

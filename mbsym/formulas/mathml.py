@@ -451,23 +451,23 @@ class _Reader:
 
     def row(self, closing: str = "") -> list[str]:
         """What stands up to the end, or to the ``closing`` brace."""
-        found: list[str] = []
+        elements: list[str] = []
         while token := self._next():
             if token == closing:
-                return found
+                return elements
             if token == "}":
                 raise ValueError(f"a brace was never opened: {self.tex}")
             if token in ("_", "^"):
-                if not found:
+                if not elements:
                     raise ValueError(f"nothing has this index: {self.tex}")
-                found.append(self._scripts(found.pop(), token))
-            elif token == "-" and (not found or found[-1] in _BEFORE_SIGNS):
-                found.append(sign(_SIGNS[token]))
+                elements.append(self._scripts(elements.pop(), token))
+            elif token == "-" and (not elements or elements[-1] in _BEFORE_SIGNS):
+                elements.append(sign(_SIGNS[token]))
             elif token.strip("\\") not in _LEFT_TO_SCREENS:
-                found.append(self._element(token))
+                elements.append(self._element(token))
         if closing:
             raise ValueError(f"a brace is never closed: {self.tex}")
-        return found
+        return elements
 
     def _next(self) -> str:
         match = _TOKEN.search(self.tex, self.place)

@@ -142,9 +142,9 @@ _PRIMES = {"velocity": "'", "acceleration": "''"}
 _NAMES: WeakKeyDictionary[Ring, Mapping[str, str]] = WeakKeyDictionary()
 
 
-def write_as(ring: Ring, given: Mapping[str, str]) -> None:
-    """From now on names of the ring are written for people as ``given``: ``sin(theta)`` for ``sin_theta``."""
-    _NAMES[ring] = given
+def write_as(ring: Ring, spellings: Mapping[str, str]) -> None:
+    """From now on names of the ring are written for people as ``spellings``: ``sin(theta)`` for ``sin_theta``."""
+    _NAMES[ring] = spellings
 
 
 def readable_name(ring: Ring, name: str) -> str:

@@ -232,15 +232,15 @@ class Presenter:
         return squared if lengths[1] < lengths[0] else sums or (0, {})
 
     def _shape(self, scale: int, terms: Terms, under: list[Factor]) -> Sum:
-        found = self._by_terms(scale, terms) if self.ring.leading and not under else None
-        if found is not None and not self.ring.shortest:
-            return found
+        by_terms = self._by_terms(scale, terms) if self.ring.leading and not under else None
+        if by_terms is not None and not self.ring.shortest:
+            return by_terms
         product = self._product(terms, factored=len(terms) <= FACTOR_COEFFICIENTS)
         product = product._replace(coefficient=product.coefficient / scale)
         if under:
             return Sum((product._replace(under=_ordered(self, [*product.under, *under])),))
         whole = self._opened(product)
-        return whole if found is None or self.length(whole) <= self.length(found) else found
+        return whole if by_terms is None or self.length(whole) <= self.length(by_terms) else by_terms
 
     def _by_terms(self, scale: int, terms: Terms) -> Sum | None:
         """What leads is read term by term, without common factors in front; None where nothing does."""
@@ -450,10 +450,10 @@ class Presenter:
                 continue
             minus: Terms = {((index, 1),): 1, (): -1}
             plus: Terms = {((index, 1),): 1, (): 1}
-            powers = [next((n for part, n in parts if part == one), 0) for one in (minus, plus)]
+            powers = [next((n for part, n in parts if part == factor), 0) for factor in (minus, plus)]
             both = min(powers)
             if both:
-                left = [(one, n - both) for one, n in zip((minus, plus), powers, strict=True) if n > both]
+                left = [(factor, n - both) for factor, n in zip((minus, plus), powers, strict=True) if n > both]
                 parts = [*(item for item in parts if item[0] not in (minus, plus)), *left]
                 content = -content if both % 2 else content
                 common = self._joined(common, (self.ring.index("sine", g.name), 2 * both))

@@ -83,8 +83,8 @@ def short_listing(
     shared = sum(count > 1 and program.instructions[k].operation not in leaves for k, count in uses.items())
     if shared > most:
         return None
-    found = listing(program, outputs, names, dialect)
-    return None if len(found.assignments) > most else found
+    program_listing = listing(program, outputs, names, dialect)
+    return None if len(program_listing.assignments) > most else program_listing
 
 
 def _uses(program: Program, outputs: Iterable[Node]) -> Counter[int]:
@@ -168,9 +168,9 @@ class _Writer:
                 return self.dialect.call(function, self._operand(a, _SUM)), _ATOM
         raise ValueError(f"no such operation: {instruction.operation}")
 
-    def _operand(self, number: int, wanted: int) -> str:
+    def _operand(self, number: int, required: int) -> str:
         text, precedence = self.written[number]
-        return text if precedence >= wanted else f"({text})"
+        return text if precedence >= required else f"({text})"
 
 
 class WithoutTables(Program):

@@ -136,11 +136,11 @@ def tell(
     varying |= {opposite[k] for k in live if k in opposite and k in varying}
     shared = _common(program, live, named.keys(), opposite)
 
-    def teller(kept: set[int] | None) -> _Teller[M]:
+    def teller(selected: set[int] | None) -> _Teller[M]:
         names: dict[int, tuple[str, M | None]] = {}
         count = 0
         for number in sorted({*live, *(opposite[k] for k in live if k in opposite)}):
-            if number in opposite or (kept is not None and number not in kept):
+            if number in opposite or (selected is not None and number not in selected):
                 continue
             if number in named:
                 names[number] = named[number]
@@ -158,12 +158,12 @@ def tell(
 
 def _varying(program: Program, live: Sequence[int], constants: frozenset[str]) -> set[int]:
     """The numbers of nodes that depend on more than constants."""
-    found: set[int] = set()
+    varying: set[int] = set()
     for number in live:
         operation, operands, payload = program.instructions[number]
-        if (operation == "input" and payload not in constants) or any(k in found for k in operands):
-            found.add(number)
-    return found
+        if (operation == "input" and payload not in constants) or any(k in varying for k in operands):
+            varying.add(number)
+    return varying
 
 
 def _opposites(program: Program, live: Sequence[int], named: Collection[int]) -> dict[int, int]:
@@ -198,13 +198,13 @@ def _common(program: Program, live: Sequence[int], named: Collection[int], oppos
     """
     uses = Counter(opposite.get(k, k) for number in live for k in program.instructions[number].operands)
     terms: dict[int, int] = {}
-    found: set[int] = set()
+    shared: set[int] = set()
     for number in live:
         operation, operands, _ = program.instructions[number]
         if operation == "multiply":
             short, long = sorted(operands, key=lambda k: (terms[k], k))
             if terms[short] > 1 and terms[short] * terms[long] > PRODUCT_TERMS:
-                found.add(opposite.get(long, long))
+                shared.add(opposite.get(long, long))
                 terms[long] = 1
         lengths = [terms[k] for k in operands]
         length = 1
@@ -214,14 +214,14 @@ def _common(program: Program, live: Sequence[int], named: Collection[int], oppos
             length = lengths[0] * lengths[1]
         elif operation == "divide":
             length = lengths[0]
-        one = opposite.get(number, number)
-        if one in named:
+        canonical = opposite.get(number, number)
+        if canonical in named:
             length = 1
-        elif uses[one] > 1 and length >= COMMON_TERMS:
-            found.add(one)
+        elif uses[canonical] > 1 and length >= COMMON_TERMS:
+            shared.add(canonical)
             length = 1
         terms[number] = length
-    return found
+    return shared
 
 
 class _Counted:

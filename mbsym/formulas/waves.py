@@ -62,7 +62,7 @@ class Waves:
             beside.setdefault(tuple(rest), {})[code] = coefficient
         if len(beside) == len(terms):
             return None
-        found: list[tuple[Monomial, int, dict[int, int], angle_sums.Joined | None]] = []
+        groups: list[tuple[Monomial, int, dict[int, int], angle_sums.Joined | None]] = []
         below = 0
         for outside, products in beside.items():
             waves = None
@@ -71,11 +71,11 @@ class Waves:
                 waves = angle_sums.joined(frozenset([(code, c // content) for code, c in products.items()]), squares)
                 if waves is not None:
                     below = max(below, waves.below)
-            found.append((outside, content, products, waves))
+            groups.append((outside, content, products, waves))
         if not below:
             return None
         result: Terms = {}
-        for outside, content, products, waves in found:
+        for outside, content, products, waves in groups:
             if waves is None:
                 parts = [angle_sums.Part(weight * below, (), code) for code, weight in products.items()]
             else:

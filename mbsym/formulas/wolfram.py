@@ -164,7 +164,9 @@ def wolfram_definition(table: Table) -> str:
 def _piecewise(name: str, curve: Curve, written: Sequence[str]) -> str:
     before, *inner, last = written
     cases = [f"{{{before}, x < {wolfram_number(curve.knots[0])}}}"]
-    cases += [f"{{{one}, x <= {wolfram_number(knot)}}}" for one, knot in zip(inner, curve.knots[1:], strict=True)]
+    cases += [
+        f"{{{formula}, x <= {wolfram_number(knot)}}}" for formula, knot in zip(inner, curve.knots[1:], strict=True)
+    ]
     return f"{wolfram_table(name)}[x_] := Piecewise[{{{', '.join(cases)}}}, {last}]"
 
 

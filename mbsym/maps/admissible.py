@@ -66,16 +66,19 @@ def admissibility(analysis: Analysis, section: Section) -> Admissibility:
     _assumptions(analysis, section.images, demands, left_out)
     for body in analysis.system.bodies:
         _triangles(analysis, body, section.images, demands, left_out)
-    told: list[Demand] = []
+    distinct: list[Demand] = []
     for demand in demands:
-        same = (x.condition.polynomial == demand.condition.polynomial and x.relation == demand.relation for x in told)
+        same = (
+            x.condition.polynomial == demand.condition.polynomial and x.relation == demand.relation for x in distinct
+        )
         if not any(same):
-            told.append(demand)
-    plain = [one for one in told if not one.condition.polynomial.is_constant()]
+            distinct.append(demand)
+    plain = [requirement for requirement in distinct if not requirement.condition.polynomial.is_constant()]
     broken = [
-        one
-        for one in told
-        if one.condition.polynomial.is_constant() and not one.kept(_number(one.condition.polynomial))
+        requirement
+        for requirement in distinct
+        if requirement.condition.polynomial.is_constant()
+        and not requirement.kept(_number(requirement.condition.polynomial))
     ]
     return Admissibility(tuple(plain), tuple(broken), tuple(dict.fromkeys(left_out)))
 
@@ -84,7 +87,7 @@ def _number(p: Polynomial) -> Any:
     return p.leading_coefficient() if p != 0 else 0
 
 
-def _signs(analysis: Analysis, section: Section, found: list[Demand]) -> None:
+def _signs(analysis: Analysis, section: Section, demands: list[Demand]) -> None:
     """Declared signs of the axes, of symbols among them, and of what relations make of them."""
     words = analysis.signs.words
     chosen = {axis.name for axis in section.axes} | {item.name for item in analysis.system.relations}
@@ -101,10 +104,10 @@ def _signs(analysis: Analysis, section: Section, found: list[Demand]) -> None:
         if relation in _FLIPPED:
             top, relation = -top, _FLIPPED[relation]
         condition = Condition(Origin.SIGN, top * bottom, about=about)
-        found.append(Demand(condition, relation))
+        demands.append(Demand(condition, relation))
 
 
-def _assumptions(analysis: Analysis, images: Images, found: list[Demand], left_out: list[str]) -> None:
+def _assumptions(analysis: Analysis, images: Images, demands: list[Demand], left_out: list[str]) -> None:
     scene = analysis.parameters_scene
     for item in analysis.system.assumptions:
         words = f"{text(item.left)} {item.relation} {text(item.right)}"
@@ -116,10 +119,10 @@ def _assumptions(analysis: Analysis, images: Images, found: list[Demand], left_o
         relation, value = item.relation, top * bottom
         if relation in _FLIPPED:
             value, relation = -value, _FLIPPED[relation]
-        found.append(Demand(Condition(Origin.ASSUMPTION, value, about=words), relation))
+        demands.append(Demand(Condition(Origin.ASSUMPTION, value, about=words), relation))
 
 
-def _triangles(analysis: Analysis, body: Body, images: Images, found: list[Demand], left_out: list[str]) -> None:
+def _triangles(analysis: Analysis, body: Body, images: Images, demands: list[Demand], left_out: list[str]) -> None:
     """The second moments of a body about its mass centre are positive semidefinite: no principal minor is negative."""
     if body.inertia is None or body.inertia.accepted:
         return
@@ -145,7 +148,7 @@ def _triangles(analysis: Analysis, body: Body, images: Images, found: list[Deman
         if value is None:
             left_out.append(about)
         else:
-            found.append(Demand(Condition(Origin.INERTIA, value, about=about), ">="))
+            demands.append(Demand(Condition(Origin.INERTIA, value, about=about), ">="))
 
 
 def _expressed(p: Polynomial, images: Images, signs: Signs) -> Polynomial | None:

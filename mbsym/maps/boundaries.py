@@ -126,13 +126,13 @@ def boundaries(
     return factored(conditions)
 
 
-def factored(found: Sequence[Condition]) -> Boundaries:
+def factored(boundary_conditions: Sequence[Condition]) -> Boundaries:
     """The irreducible factors of conditions, each once, with those in which it stands."""
     factors: list[Polynomial] = []
     places: dict[str, int] = {}
     conditions: list[list[Condition]] = []
     vanishing: list[Condition] = []
-    for condition in found:
+    for condition in boundary_conditions:
         if condition.polynomial == 0:
             vanishing.append(condition)
             continue
@@ -142,9 +142,9 @@ def factored(found: Sequence[Condition]) -> Boundaries:
                 places[key] = len(factors)
                 factors.append(factor)
                 conditions.append([])
-            told = conditions[places[key]]
-            if not any(x.origin is condition.origin and x.part == condition.part for x in told):
-                told.append(condition)
+            listed = conditions[places[key]]
+            if not any(x.origin is condition.origin and x.part == condition.part for x in listed):
+                listed.append(condition)
     return Boundaries(tuple(factors), tuple(map(tuple, conditions)), tuple(vanishing))
 
 
@@ -262,11 +262,11 @@ def _of_roots_over(system: LinearSystem, part: int, reduced: bool, constant: Con
     """
 
     def told(origin: Origin, polynomial: Polynomial) -> Condition:
-        found = constant.reduced(polynomial)
-        if found == 0:
+        value = constant.reduced(polynomial)
+        if value == 0:
             text = "this vanishes identically, with irrational numbers: [[what]]"
             raise TooLargeError(Message(text, what=worded(origin.value)))
-        return Condition(origin, found, part, "", reduced)
+        return Condition(origin, value, part, "", reduced)
 
     raw = characteristic_polynomial(system.M, added(system.D, system.G), added(system.K, system.N))
     p = tuple(map(constant.reduced, raw))
@@ -294,14 +294,16 @@ def deciding_zeros(coefficients: Sequence[Polynomial], constant: Constant | None
     is singular.  Where f^e divides it up to e roots are zero all along, and how many of the others are on which side
     changes where a coefficient behind vanishes: on the curve, not beside it.
     """
-    kept = [x for x in coefficients if x != 0]
-    if not kept:
+    nonzero = [x for x in coefficients if x != 0]
+    if not nonzero:
         return
-    yield kept[0]
-    lowest = kept[0] if constant is None else constant.norm(kept[0])  # over its field factors may be multiple, too
+    yield nonzero[0]
+    lowest = (
+        nonzero[0] if constant is None else constant.norm(nonzero[0])
+    )  # over its field factors may be multiple, too
     most = max((int(exponent) for _, exponent in irreducible_factors(lowest)[1]), default=1)
     if most > 1:
-        yield from kept[1 : 1 + most]
+        yield from nonzero[1 : 1 + most]
 
 
 def _coefficients(matrix: Matrix, constant: Constant | None = None) -> Coefficients:
@@ -309,8 +311,8 @@ def _coefficients(matrix: Matrix, constant: Constant | None = None) -> Coefficie
     n, zero = len(matrix), matrix[0][0] * 0
     unit = [[zero + (1 if i == j else 0) for j in range(n)] for i in range(n)]
     nothing = [[zero] * n for _ in range(n)]
-    found = characteristic_polynomial(nothing, unit, matrix)
-    return tuple(found) if constant is None else tuple(map(constant.reduced, found))
+    coefficients = characteristic_polynomial(nothing, unit, matrix)
+    return tuple(coefficients) if constant is None else tuple(map(constant.reduced, coefficients))
 
 
 def _common(entries: Sequence[Polynomial], section: Section | None) -> Polynomial:

@@ -142,18 +142,18 @@ def _tried(made: Subdivision[Cell], cells: Sequence[Cell]) -> list[tuple[int, Ju
     """(number, verdict, a random point) of some proved boxes, those of the largest area first."""
     source = Random(20261123)
     judged = [(cell.number, cell.judged, made.tiles[cell.number].box) for cell in cells if cell.judged is not None]
-    judged.sort(key=lambda one: -one[2].area)
-    found = []
+    judged.sort(key=lambda entry: -entry[2].area)
+    trials = []
     chosen = [*judged[: TRIED // 2], *source.sample(judged, min(TRIED // 2, len(judged)))]
     # where boxes are few, several points in each
     for number, verdict, box in chosen * (TRIED // len(chosen) if chosen else 0):
         shares = [fmpq(source.randint(0, 996), 996) for _ in range(2)]
         at = (box.x0 + (box.x1 - box.x0) * shares[0], box.y0 + (box.y1 - box.y0) * shares[1])
-        found.append((number, verdict, at))
-    return found
+        trials.append((number, verdict, at))
+    return trials
 
 
-def _bounded(there: Section, admissibility: Admissibility, found: Boundaries) -> ByBoundaries[Cell]:
+def _bounded(there: Section, admissibility: Admissibility, boundaries: Boundaries) -> ByBoundaries[Cell]:
     """Judged at the centre, exactly."""
     judge = Judge(there, admissibility)
 
@@ -161,7 +161,7 @@ def _bounded(there: Section, admissibility: Admissibility, found: Boundaries) ->
         cell = judge(Shape.BOX, 0, Point(x, y))
         return None if cell.lack is Lack.TOO_LARGE else cell
 
-    return ByBoundaries(without_constant(there, found).factors, at)
+    return ByBoundaries(without_constant(there, boundaries).factors, at)
 
 
 class _Enclosed:
@@ -265,8 +265,10 @@ class IrrationalSection:
     def at(self, x: Rational, y: Rational) -> Verdict:
         """The verdict at a point, by the route that problem 6 takes at the numbers of a description."""
         if self._exact is None:
-            one = self._analysis
-            self._exact = ExactVerdicts(one.parameters_scene, one.balance, one.judgeable, one.equilibrium, one.signs)
+            analysis = self._analysis
+            self._exact = ExactVerdicts(
+                analysis.parameters_scene, analysis.balance, analysis.judgeable, analysis.equilibrium, analysis.signs
+            )
         point = (rationals.fraction(v) for v in (x, y))
         names = {item.name for item in self._analysis.system.parameters}
         known = {name: value for name, value in self.plain.numbers.items() if name in names}

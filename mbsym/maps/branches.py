@@ -75,23 +75,25 @@ def branches(
     leaving = joined([*(part.borders() for part in parts), lost])
     changing = joined([stability_changes(part) for part in parts])
     remarks = _doubts(bifurcating, leaving, changing)
-    if any(one.in_angles for one in parts):  # where something happens is not found: all of the curve seems to be there
+    if any(
+        curve.in_angles for curve in parts
+    ):  # where something happens is not found: all of the curve seems to be there
         text = Message("[[name]] stands in a root or a function", name=axis.name)
         remarks = [Remark(Doubt.UNFINISHED, text) if x.doubt is Doubt.THROUGHOUT else x for x in remarks]
     of_all = (bifurcating, leaving, changing)
     numbers = _distinct([x for points in of_all for x in (*(y.number for y in points.points), *points.continua)])
     count_proved = not any(points.unfinished or points.throughout for points in (bifurcating, leaving))
     line = divided(*ends(axis), [(x, ()) for x in numbers])
-    regions = [Cell(Shape.INTERVAL, one.id, one.sample, lack=Lack.NOT_REACHED) for one in line.intervals]
+    regions = [Cell(Shape.INTERVAL, span.id, span.sample, lack=Lack.NOT_REACHED) for span in line.intervals]
     corners = [Cell(Shape.ZERO, zero.id, zero.number, lack=Lack.NOT_REACHED) for zero in line.zeros]
     names = tuple(dict.fromkeys(name for part in parts for name in part.names))
     related = {item.name for item in system.relations}
-    given = {name: value for name, value in values.items() if name != axis.name and name not in related}
+    fixed_values = {name: value for name, value in values.items() if name != axis.name and name not in related}
 
     def made(pieces: Sequence[Piece] = (), interrupted: bool = True) -> Branches:
         """As far as it was reached."""
         return Branches(
-            Of.EQUILIBRIA, (axis,), given, line, Boundaries((), (), ()), tuple(regions), (), tuple(corners),
+            Of.EQUILIBRIA, (axis,), fixed_values, line, Boundaries((), (), ()), tuple(regions), (), tuple(corners),
             lengths(line), interrupted=interrupted, coordinates=names, pieces=tuple(pieces),
             remarks=tuple(dict.fromkeys(remarks)),
         )  # fmt: skip
@@ -100,12 +102,12 @@ def branches(
         for k, interval in enumerate(line.intervals):
             watch("samples", k, len(regions))
             sample = _sample(interval, line)
-            found = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds, rank=rank)
-            remarks += _of_sample(found, fraction(sample))
-            at_lost = any(x.verdict.because(Because.RANK_LOST) for x in found.equilibria)
-            constant = count_proved and found.complete and not found.families and not at_lost
+            sampled = equilibria(system, {**values, axis.name: fraction(sample)}, limits=bounds, rank=rank)
+            remarks += _of_sample(sampled, fraction(sample))
+            at_lost = any(x.verdict.because(Because.RANK_LOST) for x in sampled.equilibria)
+            constant = count_proved and sampled.complete and not sampled.families and not at_lost
             surely = Certainty.PROVED if constant else Certainty.UNDECIDED
-            regions[k] = Cell(Shape.INTERVAL, k, sample, Counted(found.equilibria), surely)
+            regions[k] = Cell(Shape.INTERVAL, k, sample, Counted(sampled.equilibria), surely)
         for k, number in enumerate(numbers):
             watch("critical values", k, len(numbers))
             meetings, reason, singular = _meetings(parts, number)
@@ -156,11 +158,11 @@ def _doubts(bifurcating: CurvePoints, leaving: CurvePoints, changing: CurvePoint
     return doubts
 
 
-def _of_sample(found: Equilibria, sample: Fraction) -> list[Remark]:
+def _of_sample(sampled: Equilibria, sample: Fraction) -> list[Remark]:
     remarks = []
-    if not found.complete:
+    if not sampled.complete:
         remarks.append(Remark(Doubt.INCOMPLETE, str(sample)))
-    if found.families:
+    if sampled.families:
         remarks.append(Remark(Doubt.FAMILIES, str(sample)))
     return remarks
 
@@ -212,13 +214,17 @@ def _meetings(parts: Sequence[Curve], number: Number) -> tuple[tuple[Meeting, ..
     return tuple(meetings), "", singular
 
 
-def _judged(meetings: Sequence[Meeting], found: Equilibria) -> tuple[Meeting, ...]:
+def _judged(meetings: Sequence[Meeting], sampled: Equilibria) -> tuple[Meeting, ...]:
     """With the verdicts of the list at that number, where more is known of signs than with a parameter."""
-    told = []
-    for one in meetings:
-        same = [x for x in found.equilibria if x.coordinates_of == one.coordinates_of and _close(x.values, one.values)]
-        told.append(replace(one, verdict=same[0].verdict) if len(same) == 1 else one)
-    return tuple(told)
+    judged = []
+    for meeting in meetings:
+        same = [
+            x
+            for x in sampled.equilibria
+            if x.coordinates_of == meeting.coordinates_of and _close(x.values, meeting.values)
+        ]
+        judged.append(replace(meeting, verdict=same[0].verdict) if len(same) == 1 else meeting)
+    return tuple(judged)
 
 
 def _close(a: Sequence[CoordinateValue], b: Sequence[CoordinateValue]) -> bool:
@@ -227,20 +233,20 @@ def _close(a: Sequence[CoordinateValue], b: Sequence[CoordinateValue]) -> bool:
     )
 
 
-def _balanced(found: Branches, at: Cell) -> Critical:
+def _balanced(diagram: Branches, at: Cell) -> Critical:
     """Whether the events account for the counts on both sides."""
-    critical = found.critical(at)
+    critical = diagram.critical(at)
     if critical.meetings is None or critical.continuum or critical.border:
         return critical
     named_ = [x.named for x in critical.meetings]
     if any(x.below is None for x in named_):
         return critical
-    below, above = found.sides(at)
+    below, above = diagram.sides(at)
     holds: list[bool] = []
     if below is not None:
-        holds.append(sum(x.below or 0 for x in named_) == len(found.equilibria(below)))
+        holds.append(sum(x.below or 0 for x in named_) == len(diagram.equilibria(below)))
     if above is not None:
-        holds.append(sum(x.above or 0 for x in named_) == len(found.equilibria(above)))
+        holds.append(sum(x.above or 0 for x in named_) == len(diagram.equilibria(above)))
     return replace(critical, balance=all(holds)) if holds else critical
 
 
@@ -257,32 +263,32 @@ FAR = 0.05
 _ZERO = 1e-9
 
 
-def linked(parts: Sequence[Curve], found: Branches) -> list[Piece]:
+def linked(parts: Sequence[Curve], diagram: Branches) -> list[Piece]:
     """The branches over all intervals, with the meetings they start from and end in."""
     usable = [part for part in parts if uses_only_known(part.ring, [*part.forcing, *chain(*part.slopes)])]
     pieces: list[Piece] = []
-    for interval in found.intervals:
+    for interval in diagram.intervals:
         made: list[Piece] = []
         arrivals: list[tuple[tuple[float, ...] | None, tuple[float, ...] | None]] = []
-        for number, equilibrium in enumerate(found.equilibria(interval)):
+        for number, equilibrium in enumerate(diagram.equilibria(interval)):
             curve = _curve_of(usable, equilibrium, float_of(interval.sample))
-            piece, where = _followed(curve, equilibrium, found, interval, number)
+            piece, where = _followed(curve, equilibrium, diagram, interval, number)
             made.append(piece)
             arrivals.append(where)
         starts, stops = (
-            _assigned(found, critical, [x[side] for x in arrivals], usable, below=side == 1)
-            for side, critical in enumerate(found.between(interval))
+            _assigned(diagram, critical, [x[side] for x in arrivals], usable, below=side == 1)
+            for side, critical in enumerate(diagram.between(interval))
         )
-        pieces += [replace(one, start=a, end=b) for one, a, b in zip(made, starts, stops, strict=True)]
+        pieces += [replace(branch, start=a, end=b) for branch, a, b in zip(made, starts, stops, strict=True)]
     return pieces
 
 
-def _curve_of(usable: Sequence[Curve], one: RelativeEquilibrium | Meeting, p: float) -> Curve | None:
+def _curve_of(usable: Sequence[Curve], equilibrium: RelativeEquilibrium | Meeting, p: float) -> Curve | None:
     """The curve that an equilibrium lies on: of the cases of the rank of constraints the nearest one."""
-    values = {x.name: x.value for x in one.values}
+    values = {x.name: x.value for x in equilibrium.values}
     near: list[tuple[float, Curve]] = []
     for curve in usable:
-        if curve.label != one.coordinates_of or set(curve.names) != set(values):
+        if curve.label != equilibrium.coordinates_of or set(curve.names) != set(values):
             continue
         numbers, at = Floats(curve.ring, curve.parameter), {**values, curve.parameter: p}
         if all(abs(numbers(x, at)) > _ZERO for x in curve.search.case.nonzero):
@@ -291,14 +297,14 @@ def _curve_of(usable: Sequence[Curve], one: RelativeEquilibrium | Meeting, p: fl
 
 
 def _followed(
-    curve: Curve | None, equilibrium: RelativeEquilibrium, found: Branches, interval: Cell, number: int
+    curve: Curve | None, equilibrium: RelativeEquilibrium, diagram: Branches, interval: Cell, number: int
 ) -> tuple[Piece, tuple[tuple[float, ...] | None, tuple[float, ...] | None]]:
     sample, k = float_of(interval.sample), interval.number
     values = {x.name: x.value for x in equilibrium.values}
     if curve is None:
         start = tuple(x.value for x in equilibrium.values)
         return Piece(k, number, False, None, None, (sample,), (start,)), (None, None)
-    low, high = (float(enclosure(x).mid()) for x in found.ends(interval))
+    low, high = (float(enclosure(x).mid()) for x in diagram.ends(interval))
     start = tuple(values[name] for name in curve.names)
     ps, qs, at_low, at_high = followed(curve, start, sample, low, high)
     piece = Piece(k, number, False, None, None, tuple(ps), tuple(qs))
@@ -311,12 +317,12 @@ def _followed(
 
 def _features(curve: Curve, p: float, q: Sequence[float]) -> tuple[float, ...]:
     balls = {name: arb(x) for name, x in zip(curve.names, q, strict=True)} | {curve.parameter: arb(p)}
-    place = Place(curve.found, balls, {}, None)
+    place = Place(curve.rest, balls, {}, None)
     return tuple(float(x.mid()) for x in curve.search._features(place))
 
 
 def _assigned(
-    found: Branches,
+    diagram: Branches,
     at: Cell | None,
     arrivals: Sequence[tuple[float, ...] | None],
     usable: Sequence[Curve],
@@ -327,7 +333,7 @@ def _assigned(
     ``below``: the branches lie at smaller values of the parameter than the critical one.
     """
     nobody: list[int | None] = [None] * len(arrivals)
-    meetings = None if at is None else found.critical(at).meetings
+    meetings = None if at is None else diagram.critical(at).meetings
     if at is None or meetings is None:
         return nobody
     p = float(enclosure(at.sample).mid())
@@ -340,9 +346,9 @@ def _assigned(
         ]  # fmt: skip
         nearest = min(distances, default=(math.inf, -1))
         chosen.append(nearest[1] if nearest[0] < FAR else None)
-    wanted = [meeting.named.below if below else meeting.named.above for meeting in meetings]
+    required = [meeting.named.below if below else meeting.named.above for meeting in meetings]
     return [
-        k if k is not None and (wanted[k] is None or chosen.count(k) == wanted[k]) else None for k in chosen
+        k if k is not None and (required[k] is None or chosen.count(k) == required[k]) else None for k in chosen
     ]  # fmt: skip
 
 
@@ -423,7 +429,7 @@ def followed(
 def _outwards(
     curve: Curve, numbers: Floats, start: Sequence[float], sample: float, end: float
 ) -> tuple[list[tuple[float, tuple[float, ...]]], bool]:
-    found: list[tuple[float, tuple[float, ...]]] = []
+    points: list[tuple[float, tuple[float, ...]]] = []
     q = np.array(start, dtype=float)
     before: tuple[float, Array] | None = None
     at = sample
@@ -436,10 +442,10 @@ def _outwards(
         if corrected is None or np.max(np.abs(corrected - q)) > 0.6:
             corrected = _newton(curve, numbers, q, p)
         if corrected is None or np.max(np.abs(corrected - q)) > 0.6:
-            return found, False
+            return points, False
         before, q, at = (at, q), corrected, p
-        found.append((p, tuple(float(x) for x in q)))
-    return found, True
+        points.append((p, tuple(float(x) for x in q)))
+    return points, True
 
 
 def _newton(curve: Curve, numbers: Floats, guess: Array, p: float) -> Array | None:

@@ -66,20 +66,20 @@ class Varied:
     def __init__(self, search: _ChartSearch) -> None:
         search._conditions()
         self.search, self.chart, self.limits = search, search.chart, search.limits
-        self.found, self.ring, self.label = self.chart.found, self.chart.found.ring, self.chart.label
+        self.rest, self.ring, self.label = self.chart.rest, self.chart.rest.ring, self.chart.label
         self.unknown = [self.ring.context.gen(self.ring.index("parameter", name)) for name in search.parameters]
         self.empty = search.impossible
         here, elsewhere = search.ranks
         self.regular = elsewhere is None or here == elsewhere
         #: Further constraints follow from those that are independent.
-        self.redundant = here < len(self.found.rows)
+        self.redundant = here < len(self.rest.rows)
         if self.empty:
             self.names: tuple[str, ...] = ()
             return
         if search.reason:
             raise NoClosedForm(search.reason)
         used = [*search.equations, *self._rows]
-        self.names = tuple(x for x in self.found.constant if any(self.ring.depends_on(y, x) for y in used))
+        self.names = tuple(x for x in self.rest.constant if any(self.ring.depends_on(y, x) for y in used))
         many = self.regular and len([x for x in self._rows if not x.is_zero()]) > len(self.names)
         if many or search.remarks or search.doubts:
             raise NoClosedForm("the equations at rest are more than their unknowns, or vary in time")
@@ -94,11 +94,11 @@ class Varied:
     @cached_property
     def _independent(self) -> list[Row]:
         """The constraints that are independent near the case."""
-        return [self.found.rows[k] for k in near(self.found, self.search.case)[1]]
+        return [self.rest.rows[k] for k in near(self.rest, self.search.case)[1]]
 
     @cached_property
     def _rows(self) -> list[Polynomial]:
-        left, _ = near(self.found, self.search.case)
+        left, _ = near(self.rest, self.search.case)
         held = [row.position for row in self._independent]
         if any(x is None for x in held):
             raise NoClosedForm(OF_VELOCITIES)
@@ -136,7 +136,7 @@ class Varied:
     @cached_property
     def mass(self) -> Polynomial | None:
         """det M, and where that vanishes throughout det [[M, J^T], [J, 0]]; None of more than ``MOST_COORDINATES``."""
-        matrix = self.found.mass_matrix()
+        matrix = self.rest.mass_matrix()
         if len(matrix) > MOST_COORDINATES:
             return None
         plain = self.ring.reduce(determinant(matrix))
@@ -167,8 +167,8 @@ class Varied:
             tops = []
             for x in equations:
                 degree = max(sum(int(m[i]) for i in places) for m in x.monoms())
-                kept = {m: c for m, c in x.terms() if sum(int(m[i]) for i in places) == degree}
-                tops.append(table.context.from_dict(kept))
+                leading = {m: c for m, c in x.terms() if sum(int(m[i]) for i in places) == degree}
+                tops.append(table.context.from_dict(leading))
             yield table, [*tops, table.context.gens()[at] - 1]
 
 
@@ -179,7 +179,9 @@ def searches_over(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    kept_parameters = tuple(replace(one, value=None) for one in system.parameters if one.name in parameters)
+    kept_parameters = tuple(
+        replace(parameter, value=None) for parameter in system.parameters if parameter.name in parameters
+    )
     numbers = {key: value for key, value in values.items() if key not in parameters}
     first = rest(replace(at_numbers(system, numbers), parameters=kept_parameters))
     if first.rows and not limits.reduction:
@@ -259,30 +261,30 @@ class Curve(Varied):
 
     def where(self, further: Sequence[Polynomial], at: Number | None = None) -> CurvePoints:
         """The points of the curve, p within the range, at which ``further`` vanish, or at one number p."""
-        given = [self.ring.fraction(x)[0] for x in further]
-        table = self.table(given)
-        wanted = [table.polynomial(x) for x in (*self.search.equations, *given) if not x.is_zero()]
+        numerators = [self.ring.fraction(x)[0] for x in further]
+        table = self.table(numerators)
+        equations = [table.polynomial(x) for x in (*self.search.equations, *numerators) if not x.is_zero()]
         if at is not None:
-            wanted.append(_of_number(at, table.context, table.indices.index(self.index)))
-        return self._solved(table, [*wanted, *table.relations()], at)
+            equations.append(_of_number(at, table.context, table.indices.index(self.index)))
+        return self._solved(table, [*equations, *table.relations()], at)
 
     def where_on_components(self, further: Sequence[Polynomial], limits_too: bool = False) -> CurvePoints:
         """As ``where``, component by component of the curve: longer polynomials are short on one.
 
         ``limits_too``: also where the curve only tends to, as something vanishes that must not.
         """
-        given = [self.ring.fraction(x)[0] for x in further]
-        table = self.table(given)
+        numerators = [self.ring.fraction(x)[0] for x in further]
+        table = self.table(numerators)
         equations = [table.polynomial(x) for x in self.search.equations] + table.relations()
         usable = [table.polynomial(x) for x in self.search.nonzero if table.holds(x)]
         whole = solve(equations, usable, table.bounded(), self.limits)
-        found = [CurvePoints((), (), False, whole.unfinished)]
-        wanted = [table.polynomial(x) for x in given]
+        points = [CurvePoints((), (), False, whole.unfinished)]
+        conditions = [table.polynomial(x) for x in numerators]
         for family in whole.families:
             if any(part.dimension > 1 for part in whole.families):
                 return CurvePoints((), (), True, ())
-            found.append(self._solved(table, [*family.equations, *table.relations(), *wanted], None, limits_too))
-        return joined(found)
+            points.append(self._solved(table, [*family.equations, *table.relations(), *conditions], None, limits_too))
+        return joined(points)
 
     def _solved(
         self, table: Unknowns, equations: Sequence[Any], at: Number | None, limits_too: bool = False
@@ -326,8 +328,8 @@ class Curve(Varied):
     def _number(self, table: Unknowns, point: AlgebraicPoint, at: Number | None) -> Number | None:
         """p there, if it lies in the range (and is ``at``)."""
         value = point.values[table.indices.index(self.index)]
-        found = _algebraic(value, point, self.low, self.high)
-        return None if found is None or (at is not None and compare(found, at) != 0) else found
+        algebraic = _algebraic(value, point, self.low, self.high)
+        return None if algebraic is None or (at is not None and compare(algebraic, at) != 0) else algebraic
 
     def _point(self, table: Unknowns, point: AlgebraicPoint, p: Number) -> CurvePoint:
         place = self.search._place(table, point)
@@ -348,8 +350,8 @@ class Curve(Varied):
         """Where a square root vanishes, a denominator does, or a length goes to infinity."""
         parts = [self._without_conditions([x]) for x in self.undefined()]
         parts += [
-            CurvePoints((), (), False, (INFINITY_OPEN,)) if one is None else self._gone(*one)
-            for one in self.at_infinity()
+            CurvePoints((), (), False, (INFINITY_OPEN,)) if system is None else self._gone(*system)
+            for system in self.at_infinity()
         ]
         return joined([*parts, self._massless()])
 
@@ -365,11 +367,11 @@ class Curve(Varied):
         return replace(self.where([self.mass]), throughout=False)
 
     def _without_conditions(self, further: Sequence[Polynomial]) -> CurvePoints:
-        kept, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
+        saved, self.search.nonzero = self.search.nonzero, list(self.search.singular_where)
         try:
             return self.where(further)
         finally:
-            self.search.nonzero = kept
+            self.search.nonzero = saved
 
     def _gone(self, table: Unknowns, equations: Sequence[Any]) -> CurvePoints:
         """The values of p at which a length may go to infinity."""
@@ -408,7 +410,7 @@ def curves(
     Besides, the rests in positions in which the constraints have another rank than ``rank``, and the places where the
     curve tends to such positions.
     """  # fmt: skip
-    found, singular = [], []
+    regular_curves, singular = [], []
     for searches in searches_over(system, (parameter,), values, limits, rank):
         cases = [Curve(search, low, high) for search in searches]
         regular = [curve for curve in cases if curve.regular and not curve.empty]
@@ -417,10 +419,10 @@ def curves(
                 singular += [curve.where_on_components(other.search.case.zero, limits_too=True) for curve in regular]
                 singular += [] if other.empty else [other.where([])]
         singular += [replace(curve.where([]), continua=(), throughout=False) for curve in regular if curve.redundant]
-        found += regular
+        regular_curves += regular
         if any(not curve.search.equations for curve in regular):
             break
-    return tuple(found), joined(singular)
+    return tuple(regular_curves), joined(singular)
 
 
 # --- numbers ----------------------------------------------------------------------------------------------------------
@@ -448,8 +450,8 @@ def _algebraic(value: Any, point: AlgebraicPoint, low: Any, high: Any) -> Number
         ball = point.enclosure(value, bits)
         near = [root for root in roots if root.enclosure(bits).overlaps(ball)]
         if len(near) == 1:
-            found = number(near[0])
-            return found if compare(found, low) >= 0 and compare(found, high) <= 0 else None
+            algebraic = number(near[0])
+            return algebraic if compare(algebraic, low) >= 0 and compare(algebraic, high) <= 0 else None
         bits *= 2
 
 

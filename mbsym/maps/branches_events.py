@@ -136,36 +136,36 @@ class _Reduction:
         by_p = [self.value(self.curve.along(x)) for x in self.curve.forcing]
         g_p, g_yy = self.field.dot(self.w, by_p), self.field.dot(self.w, self.second(self.v, self.v))
         first, curved = self.sign(g_p), self.sign(g_yy)
-        told = [("g_p", g_p), ("g_yy", g_yy)]
+        coefficients = [("g_p", g_p), ("g_yy", g_yy)]
         if first and curved:
             more_above = first * curved < 0
-            return self.found(Event.FOLD, more_above, told)
+            return self.found(Event.FOLD, more_above, coefficients)
         if not first and curved:
             q_p = self.solved([-x for x in by_p])
             g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
             g_pp = self.field.dot(self.w, self.twice_by_p())
             g_pp += 2 * self.field.dot(self.w, self.mixed(q_p)) + self.field.dot(self.w, self.second(q_p, q_p))
             split = self.sign((g_yp * g_yp - g_yy * g_pp) % self.modulus)
-            told += [("g_yp", g_yp % self.modulus), ("g_pp", g_pp % self.modulus)]
+            coefficients += [("g_yp", g_yp % self.modulus), ("g_pp", g_pp % self.modulus)]
             if split:
-                return self.found(Event.TRANSCRITICAL if split > 0 else Event.ISOLATED, True, told)
+                return self.found(Event.TRANSCRITICAL if split > 0 else Event.ISOLATED, True, coefficients)
             return _unnamed()
         q_yy = self.solved([-x for x in self.second(self.v, self.v)])
         g_yyy = self.field.dot(self.w, self.third()) + 3 * self.field.dot(self.w, self.second(self.v, q_yy))
         cubic = self.sign(g_yyy % self.modulus)
-        told.append(("g_yyy", g_yyy % self.modulus))
+        coefficients.append(("g_yyy", g_yyy % self.modulus))
         if first:
-            return self.found(Event.STEEP, True, told) if cubic else _unnamed()
+            return self.found(Event.STEEP, True, coefficients) if cubic else _unnamed()
         q_p = self.solved([-x for x in by_p])
         g_yp = self.field.dot(self.w, self.mixed(self.v)) + self.field.dot(self.w, self.second(self.v, q_p))
         crossing = self.sign(g_yp % self.modulus)
-        told.append(("g_yp", g_yp % self.modulus))
-        return self.found(Event.PITCHFORK, crossing * cubic < 0, told) if crossing and cubic else _unnamed()
+        coefficients.append(("g_yp", g_yp % self.modulus))
+        return self.found(Event.PITCHFORK, crossing * cubic < 0, coefficients) if crossing and cubic else _unnamed()
 
-    def found(self, event: Event, more_above: bool, told: Sequence[tuple[str, Element]]) -> Named:
+    def found(self, event: Event, more_above: bool, coefficients: Sequence[tuple[str, Element]]) -> Named:
         few, many = SIDES[event]
         below, above = (few, many) if more_above else (many, few)
-        return Named(event, below, above, tuple((name, float(self.place.enclose(x).mid())) for name, x in told))
+        return Named(event, below, above, tuple((name, float(self.place.enclose(x).mid())) for name, x in coefficients))
 
     # --- derivatives ---
 
@@ -246,7 +246,7 @@ def stability_changes(curve: Curve) -> CurvePoints:
     linear = curve.search._linear
     if isinstance(linear, str) or linear.varying:
         return CurvePoints((), (), False, ("no linear equations",))
-    if linear.found.rows:
+    if linear.rest.rows:
         reason = Message("under constraints changes of stability are solved without damping and gyroscopic forces only")
         return CurvePoints((), (), False, () if _unforced(linear) else (reason,))
     try:
@@ -255,14 +255,14 @@ def stability_changes(curve: Curve) -> CurvePoints:
         return CurvePoints((), (), False, (str(reason),))
     if conditions is None:
         return CurvePoints((), (), False, (f"more than {MOST_COORDINATES} coordinates, or polynomials too long",))
-    found = []
+    changes = []
     for x in conditions:
         try:
             points = curve.where_on_components([x])
-            found.append(curve.where([x]) if points.unfinished else points)
+            changes.append(curve.where([x]) if points.unfinished else points)
         except Failure as reason:
-            found.append(CurvePoints((), (), False, (str(reason),)))
-    return joined(found)
+            changes.append(CurvePoints((), (), False, (str(reason),)))
+    return joined(changes)
 
 
 def _conditions(curve: Curve, linear: LinearAtRest) -> list[Polynomial] | None:
@@ -283,13 +283,13 @@ def _conditions(curve: Curve, linear: LinearAtRest) -> list[Polynomial] | None:
         p = p[1:]
     if len(p) < 3:
         return []
-    found: list[Polynomial] = []
+    conditions: list[Polynomial] = []
     if any(not x.is_zero() for x in p[1::2]):
-        found.append(hurwitz_minors(p)[len(p) - 3])
+        conditions.append(hurwitz_minors(p)[len(p) - 3])
     elif len(p) > 3:
-        found.append(discriminant(p[::2]))
-    found = [ring.reduce(x) for x in found]
-    return None if any(len(x) > MOST_TERMS for x in found) else [x for x in found if not x.is_constant()]
+        conditions.append(discriminant(p[::2]))
+    conditions = [ring.reduce(x) for x in conditions]
+    return None if any(len(x) > MOST_TERMS for x in conditions) else [x for x in conditions if not x.is_constant()]
 
 
 def _unforced(linear: LinearAtRest) -> bool:

@@ -86,7 +86,10 @@ class ExactVerdicts:
         if all(point_verdict.roots is not None for point_verdict in verdicts):
             right = sum(point_verdict.roots.right for point_verdict in verdicts if point_verdict.roots is not None)
             real = sum(_real(point_verdict) for point_verdict in verdicts)
-        kinds = {_border(part, one, usual, at) for part, one, usual in zip(parts, verdicts, self._usual, strict=True)}
+        kinds = {
+            _border(part, part_verdict, usual, at)
+            for part, part_verdict, usual in zip(parts, verdicts, self._usual, strict=True)
+        }
         border = next((kind for kind in _ORDER if kind in kinds), None)
         return Judged(verdict, right, real, sum(x[2] for x in signature), sum(x[1] for x in signature), border)
 
@@ -108,11 +111,11 @@ def _signs(place: Place) -> tuple[int, ...]:
     return tuple(sign(x) if isinstance(x, fmpq) else x.compare(fmpq(0)) for x in numbers)
 
 
-def _real(found: PointVerdict) -> int:
+def _real(point_verdict: PointVerdict) -> int:
     """Real roots to the right."""
-    if found.roots is None or not found.roots.right:
+    if point_verdict.roots is None or not point_verdict.roots.right:
         return 0
-    return counted_real(found.polynomial)[2]
+    return counted_real(point_verdict.polynomial)[2]
 
 
 def _usual(part: LinearSystem) -> tuple[int, int]:
@@ -133,22 +136,22 @@ def _usual(part: LinearSystem) -> tuple[int, int]:
     return zeros, least
 
 
-def _border(part: LinearSystem, found: PointVerdict, usual: tuple[int, int], at: ExactPoint) -> Border | None:
-    roots = found.roots
+def _border(part: LinearSystem, point_verdict: PointVerdict, usual: tuple[int, int], at: ExactPoint) -> Border | None:
+    roots = point_verdict.roots
     if roots is None:
         return Border.MASS
     if roots.zero > usual[0]:
         return Border.ZERO
     if roots.imaginary_multiplicity > 1:
-        return Border.JORDAN if _has_block(part, found, roots, at) else Border.SEMISIMPLE
+        return Border.JORDAN if _has_block(part, point_verdict, roots, at) else Border.SEMISIMPLE
     return Border.IMAGINARY if roots.imaginary > usual[1] else None
 
 
-def _has_block(part: LinearSystem, found: PointVerdict, roots: RootCount, at: ExactPoint) -> bool:
+def _has_block(part: LinearSystem, point_verdict: PointVerdict, roots: RootCount, at: ExactPoint) -> bool:
     """Whether a multiple imaginary root has a Jordan block."""
-    if found.verdict.stable and not roots.right:
+    if point_verdict.verdict.stable and not roots.right:
         return False
-    if found.verdict.because(Because.JORDAN_BLOCK) and roots.zero < 2:
+    if point_verdict.verdict.because(Because.JORDAN_BLOCK) and roots.zero < 2:
         return True
     m, d, g, k, n = (evaluated(matrix, at) for matrix in part.matrices)
     a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), part.following)
@@ -296,7 +299,7 @@ Verdicts = Sequence[Judged | None]  # None: no verdict is asked for there
 
 def check(
     section: Section,
-    found: Arrangement | Line,
+    decomposition: Arrangement | Line,
     regions: Verdicts,
     arcs: Verdicts = (),
     corners: Verdicts = (),
@@ -308,28 +311,28 @@ def check(
     Of a line the regions are its intervals, the corners its zeros.
     """
     checking = _Checking(section, Random(seed))
-    doubted = jumps(found, regions, arcs, corners)
+    doubted = jumps(decomposition, regions, arcs, corners)
     checking.findings += [Finding(Mistake.JUMP, arc=k) for k in doubted[0]]
     checking.findings += [Finding(Mistake.JUMP, corner=k) for k in doubted[1]]
-    if isinstance(found, Line):
-        count = len(found.intervals)
-        for at, interval in enumerate(found.intervals * (1 + FEWEST // count)):
+    if isinstance(decomposition, Line):
+        count = len(decomposition.intervals)
+        for at, interval in enumerate(decomposition.intervals * (1 + FEWEST // count)):
             progress("check", at, max(FEWEST, count))
             first, last = interval.ends
-            below = found.low if first is None else found.zeros[first].number
-            above = found.high if last is None else found.zeros[last].number
+            below = decomposition.low if first is None else decomposition.zeros[first].number
+            above = decomposition.high if last is None else decomposition.zeros[last].number
             x = checking.between(below, above, checking.share(2, at // count, (at % count, 0)))
-            checking.region(interval.id, regions[interval.id], (x,), interval.signs, found.factors)
+            checking.region(interval.id, regions[interval.id], (x,), interval.signs, decomposition.factors)
         return checking.result()
-    checking.findings += [Finding(Mistake.LAW, arc=x.arc, breach=x) for x in breaches(found)]
-    cells = sum(len(each.sections) - 1 for each in found.columns)
-    strips = [*range(len(found.columns))] * (1 + FEWEST // cells)
+    checking.findings += [Finding(Mistake.LAW, arc=x.arc, breach=x) for x in breaches(decomposition)]
+    cells = sum(len(each.sections) - 1 for each in decomposition.columns)
+    strips = [*range(len(decomposition.columns))] * (1 + FEWEST // cells)
     for at, strip in enumerate(strips):
         progress("check", at, len(strips))
-        checking.strip(found, strip, regions, at // len(found.columns))
-    for arc, judged in zip(found.arcs, arcs, strict=False):
+        checking.strip(decomposition, strip, regions, at // len(decomposition.columns))
+    for arc, judged in zip(decomposition.arcs, arcs, strict=False):
         if judged is not None:
-            checking.arc(found, arc, judged)
+            checking.arc(decomposition, arc, judged)
     progress("check", len(strips), len(strips))
     return checking.result()
 
@@ -368,11 +371,11 @@ class _Checking:
     def share(self, base: int, at: int, key: tuple[int, int]) -> Rational:
         """Element ``at`` of a sequence that fills (0, 1) evenly from a random start, which belongs to a ``key``."""
         start = self._starts.setdefault((base, *key), self.source.randint(1, 996))
-        found, weight = 0, 1
+        numerator, weight = 0, 1
         while at:
             weight *= base
-            found, at = found * base + at % base, at // base
-        whole = (fmpq(found, weight) * 997).floor()
+            numerator, at = numerator * base + at % base, at // base
+        whole = (fmpq(numerator, weight) * 997).floor()
         return fmpq((start + int(whole) - 1) % 996 + 1, 997)
 
     def between(self, below: Any, above: Any, share: Rational) -> Rational:
@@ -383,19 +386,19 @@ class _Checking:
         x, slack = a + (b - a) * share, (b - a) * min(share, 1 - share) / 64
         return simplest(x - slack, x + slack)
 
-    def strip(self, found: Arrangement, strip: int, regions: Verdicts, at: int) -> None:
+    def strip(self, arrangement: Arrangement, strip: int, regions: Verdicts, at: int) -> None:
         """A point in each cell of a strip, over one abscissa, for the time ``at``."""
-        left, right = (found.fibres[strip + k].abscissa.x for k in (0, 1))
+        left, right = (arrangement.fibres[strip + k].abscissa.x for k in (0, 1))
         x = self.between(left, right, self.share(2, at, (strip, -1)))
-        there = column(found.curves, found.box, x)
-        expected = found.columns[strip].sections
+        there = column(arrangement.curves, arrangement.box, x)
+        expected = arrangement.columns[strip].sections
         if [section.curve for section in there.sections] != [section.curve for section in expected]:
             self.findings.append(Finding(Mistake.BRANCHES, near=(float(x),)))
             return
         for cell in range(len(expected) - 1):
             y = self.between(there.sections[cell].y, there.sections[cell + 1].y, self.share(3, at, (strip, cell)))
-            region = found.places.cells[strip, cell]
-            self.region(region, regions[region], (x, y), found.regions[region].signs, found.factors)
+            region = arrangement.places.cells[strip, cell]
+            self.region(region, regions[region], (x, y), arrangement.regions[region].signs, arrangement.factors)
 
     def region(
         self,
@@ -431,9 +434,9 @@ class _Checking:
         if (there.word is Word.UNSTABLE) != (judged.verdict.word is Word.UNSTABLE):
             self.findings.append(Finding(Mistake.VERDICT, region=number, near=tuple(map(float, point))))
 
-    def arc(self, found: Arrangement, arc: Arc, judged: Judged) -> None:
+    def arc(self, arrangement: Arrangement, arc: Arc, judged: Judged) -> None:
         """A second exact point of an arc."""
-        point = self._second(found, arc, self.source.choice(arc.pieces))
+        point = self._second(arrangement, arc, self.source.choice(arc.pieces))
         try:
             there = self._exact(beside(point, self.section.constant))
         except TooLargeError:  # not counted among those tried
@@ -453,13 +456,13 @@ class _Checking:
             return verdict_at(self.section, point)
         return self._exact(beside(Point(*point) if len(point) > 1 else point[0], constant))
 
-    def _second(self, found: Arrangement, arc: Arc, piece: Piece) -> Point:
-        fibre = found.fibres[piece.strip]
+    def _second(self, arrangement: Arrangement, arc: Arc, piece: Piece) -> Point:
+        fibre = arrangement.fibres[piece.strip]
         if piece.vertical:
             below, above = (fibre.points[piece.section + k].y for k in (0, 1))
             return Point(fibre.abscissa.x, self.between(below, above, fmpq(1, 3)))
-        x = self.between(fibre.abscissa.x, found.fibres[piece.strip + 1].abscissa.x, fmpq(1, 4))
-        return Point(x, sample_of(column(found.curves, found.box, x).sections[piece.section].y))
+        x = self.between(fibre.abscissa.x, arrangement.fibres[piece.strip + 1].abscissa.x, fmpq(1, 4))
+        return Point(x, sample_of(column(arrangement.curves, arrangement.box, x).sections[piece.section].y))
 
     def _enclosed(self, point: tuple[Rational, ...], judged: Judged) -> tuple[bool, bool]:
         """(whether balls allow the counts, whether they decide them)"""
@@ -470,11 +473,11 @@ class _Checking:
                 return True, False
             with ctx.workprec(bits):
                 ranges = [_counted(part, point, self.section.constant, bits) for part in self.section.parts]
-            known = [one for one in ranges if one is not None]
+            known = [bounds for bounds in ranges if bounds is not None]
             bits *= 2
         agrees, decided = True, True
         for k, value in enumerate((judged.right, judged.degree)):
-            least, most = sum(one[k][0] for one in known), sum(one[k][1] for one in known)
+            least, most = sum(bounds[k][0] for bounds in known), sum(bounds[k][1] for bounds in known)
             agrees &= value is None or least <= value <= most
             decided &= least == most
         return agrees, decided
@@ -485,7 +488,9 @@ def _differences(there: Judged, judged: Judged) -> list[Mistake]:
     wrong = []
     if there.verdict.word is not judged.verdict.word:
         wrong.append(Mistake.VERDICT)
-    counts = [(one.right, one.real_right, one.degree, one.null) for one in (there, judged)]
+    counts = [
+        (judgement.right, judgement.real_right, judgement.degree, judgement.null) for judgement in (there, judged)
+    ]
     if counts[0] != counts[1]:
         wrong.append(Mistake.COUNT)
     return wrong

@@ -83,26 +83,26 @@ def equilibria_map(
     others = [Cell(*place, lack=Lack.UNCOUNTED) for place in places(made)]
     arcs, corners = (tuple(x for x in others if x.shape is shape) for shape in (Shape.ARC, Shape.CORNER))
     related = {item.name for item in system.relations}
-    given = {name: x for name, x in values.items() if name not in names and name not in related}
+    fixed_values = {name: x for name, x in values.items() if name not in names and name not in related}
     return EquilibriaMap(
-        Of.EQUILIBRIA, axes, given, made, boundaries, tuple(cells), arcs, corners, areas(made),
+        Of.EQUILIBRIA, axes, fixed_values, made, boundaries, tuple(cells), arcs, corners, areas(made),
         interrupted=interrupted, unfinished=unfinished,
     )  # fmt: skip
 
 
 def _curves(parts: Sequence[Surface]) -> tuple[Boundaries, tuple[str, ...]]:
     """Irreducible polynomials, each once, with where they come from; why some may be missing."""
-    found: list[tuple[Origin, Projected]] = []
+    projections: list[tuple[Origin, Projected]] = []
     for part in parts:
-        found.append((Origin.SINGULAR, part.over([part.singular])))
-        found += [(Origin.LEAVING, one) for one in part.leaving()]
+        projections.append((Origin.SINGULAR, part.over([part.singular])))
+        projections += [(Origin.LEAVING, border) for border in part.leaving()]
     unfinished: list[str] = []
-    for origin, projected in found:
+    for origin, projected in projections:
         unfinished += projected.unfinished
         if projected.everywhere:
-            told = "equilibria are singular" if origin is Origin.SINGULAR else "solutions leave"
-            unfinished.append(f"{told} over a whole region, or that is not excluded")
-    conditions = [Condition(origin, p) for origin, projected in found for p in projected.polynomials]
+            cause = "equilibria are singular" if origin is Origin.SINGULAR else "solutions leave"
+            unfinished.append(f"{cause} over a whole region, or that is not excluded")
+    conditions = [Condition(origin, p) for origin, projected in projections for p in projected.polynomials]
     return factored(conditions), tuple(dict.fromkeys(unfinished))
 
 
@@ -122,37 +122,41 @@ def _cell(
         sample = inside(made, drawn, region, source) or sample
     place = Shape.REGION, region.id, Point(*(rationals.exact(x) for x in sample))
     try:
-        found = equilibria(system, {**values, names[0]: sample[0], names[1]: sample[1]})
+        sampled = equilibria(system, {**values, names[0]: sample[0], names[1]: sample[1]})
     except Failure:
         return Cell(*place, lack=Lack.INCOMPLETE)
-    if found.families:
+    if sampled.families:
         return Cell(*place, lack=Lack.FAMILIES)
-    if not found.complete:
-        return Cell(*place, Counted(found.equilibria), lack=Lack.INCOMPLETE)
+    if not sampled.complete:
+        return Cell(*place, Counted(sampled.equilibria), lack=Lack.INCOMPLETE)
     surely = Certainty.UNDECIDED if doubtful else Certainty.PROVED
     throughout = (
         not doubtful
         and undamped
-        and all(one.verdict.theorem in BY_INERTIA for one in found.equilibria if one.verdict.stable)
+        and all(
+            equilibrium.verdict.theorem in BY_INERTIA
+            for equilibrium in sampled.equilibria
+            if equilibrium.verdict.stable
+        )
     )
     other = inside(made, drawn, region, source)
     if other is None:
-        return Cell(*place, Counted(found.equilibria, throughout), surely)
+        return Cell(*place, Counted(sampled.equilibria, throughout), surely)
     there = {**values, names[0]: other[0], names[1]: other[1]}
     again = equilibria(system, there)
     confirmed = many_starts(system, there)
     wrong = confirmed > len(again.equilibria) or (
-        not doubtful and again.complete and len(again.equilibria) != len(found.equilibria)
+        not doubtful and again.complete and len(again.equilibria) != len(sampled.equilibria)
     )
     if wrong:
-        return Cell(*place, Counted(found.equilibria, False, confirmed), lack=Lack.WITHDRAWN)
-    return Cell(*place, Counted(found.equilibria, throughout, confirmed), surely)
+        return Cell(*place, Counted(sampled.equilibria, False, confirmed), lack=Lack.WITHDRAWN)
+    return Cell(*place, Counted(sampled.equilibria, throughout, confirmed), surely)
 
 
 def many_starts(system: System, values: Mapping[str, Fraction]) -> int:
     """How many equilibria Newton's method finds from many starting points, each proved in a box of its own."""
-    found = equilibria(system, values, limits=_NOT_EXACTLY)
-    return len(found.equilibria)
+    sampled = equilibria(system, values, limits=_NOT_EXACTLY)
+    return len(sampled.equilibria)
 
 
 def inside(made: Arrangement, drawn: Drawn, region: Region, source: Random) -> tuple[Fraction, Fraction] | None:
@@ -208,9 +212,9 @@ class Surface(Varied):
 
     def over(self, further: Sequence[Polynomial], inside: bool = True) -> Projected:
         """The curves over which ``further`` vanish at equilibria; ``inside``: where nothing divides by zero."""
-        given = [self.ring.fraction(x)[0] for x in further]
-        table = self.table(given)
-        equations = [table.polynomial(x) for x in (*self.search.equations, *given) if not x.is_zero()]
+        numerators = [self.ring.fraction(x)[0] for x in further]
+        table = self.table(numerators)
+        equations = [table.polynomial(x) for x in (*self.search.equations, *numerators) if not x.is_zero()]
         nonzero = self.search.nonzero if inside else self.search.singular_where
         usable = [table.polynomial(x) for x in nonzero if table.holds(x)]
         return self._projected(table, [*equations, *table.relations()], usable)
@@ -233,8 +237,10 @@ class Surface(Varied):
         elif not self.mass.is_constant():
             # all along a surface: other equilibria meet it where they are singular
             projecteds.append(replace(self.over([self.mass]), everywhere=False))
-        for one in self.at_infinity():
-            projecteds.append(Projected((), False, (INFINITY_OPEN,)) if one is None else self._projected(*one, ()))
+        for system in self.at_infinity():
+            projecteds.append(
+                Projected((), False, (INFINITY_OPEN,)) if system is None else self._projected(*system, ())
+            )
         return projecteds
 
 
@@ -252,10 +258,10 @@ class _Eliminating(_Solver):
         """Single points divide no open set."""
 
     def _family(self, basis: list[Any], branch: _Branch) -> None:
-        found = self._alone(basis, ()) or self._alone(basis, branch.nonzero)
-        if not found:
+        eliminants = self._alone(basis, ()) or self._alone(basis, branch.nonzero)
+        if not eliminants:
             self.everywhere = True
-        self.projected += found[:1]
+        self.projected += eliminants[:1]
 
     def _alone(self, basis: Sequence[Any], nonzero: Sequence[Any]) -> list[Any]:
         """The elements of the ideal in the kept unknowns alone, short ones first."""
@@ -271,8 +277,8 @@ class _Eliminating(_Solver):
             for x in nonzero:
                 inverse = inverse * _moved(x, order, lexicographic)
             generators.append(inverse - 1)
-        found = self._bounded_basis(generators, lexicographic)
-        backs = [_moved_back(x, order, self.context) for x in found if x.degrees()[0] <= 0]
+        reduced_basis = self._bounded_basis(generators, lexicographic)
+        backs = [_moved_back(x, order, self.context) for x in reduced_basis if x.degrees()[0] <= 0]
         return sorted((x for x in backs if self._is_alone(x)), key=len)
 
     def _is_alone(self, x: Any) -> bool:
@@ -286,7 +292,9 @@ def surfaces(
 
     Raises KeyError for a missing number, NoClosedForm, SingularPoint.
     """
-    found = [Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches]
-    if angles := [name for surface in found for name in surface.in_angles]:
+    candidates = [
+        Surface(search) for searches in searches_over(system, parameters, values, limits) for search in searches
+    ]
+    if angles := [name for surface in candidates for name in surface.in_angles]:
         raise NoClosedForm("[[name]] stands in a root or a function", name=angles[0])
-    return tuple(surface for surface in found if not surface.empty)
+    return tuple(surface for surface in candidates if not surface.empty)

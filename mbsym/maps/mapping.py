@@ -62,16 +62,16 @@ def exact_map(
     there = section(analysis, axes, settings)
     kept = kept_in(analysis, there)
     watch("boundaries", 0, 1)
-    found = mapped(there, kept, bounded(analysis, there, kept), of, watch)
-    return with_nonlinear(with_onsets(found, SoftBorders(analysis, there), watch), analysis, watch)
+    diagram = mapped(there, kept, bounded(analysis, there, kept), of, watch)
+    return with_nonlinear(with_onsets(diagram, SoftBorders(analysis, there), watch), analysis, watch)
 
 
 def kept_in(analysis: Analysis, there: Section) -> Admissibility:
     """What points of a section have to keep.  Raises Unfit where none does."""
-    kept = admissibility(analysis, there)
-    if kept.broken:
-        raise Unfit([Complaint(Fault.OUTSIDE, "", demand.condition.about) for demand in kept.broken])
-    return kept
+    admissible = admissibility(analysis, there)
+    if admissible.broken:
+        raise Unfit([Complaint(Fault.OUTSIDE, "", demand.condition.about) for demand in admissible.broken])
+    return admissible
 
 
 def bounded(analysis: Analysis, there: Section, kept: Admissibility) -> Boundaries:
@@ -138,26 +138,26 @@ def by_first_term(found: AnyMap, analysis: Analysis) -> AnyMap:
     return replace(found, regions=regions, arcs=arcs, corners=corners)
 
 
-def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
+def with_onsets(diagram: Map, onsets: SoftBorders, watch: Watch) -> Map:
     """The map with what terms of higher order say of arcs and corners where a pair of roots is imaginary.
 
     They say it where stability is lost: of the cells beside one has roots to the right, the other none.
     """
-    if found.of is not Of.STABILITY or found.interrupted:
-        return found
+    if diagram.of is not Of.STABILITY or diagram.interrupted:
+        return diagram
 
     def told(cell: Cell) -> Cell:
         if not cell.imaginary:
             return cell
-        near = found.beside(cell) if cell.shape is Shape.ARC else found.around(cell)
+        near = diagram.beside(cell) if cell.shape is Shape.ARC else diagram.around(cell)
         why = lost([None if x is None else x.right for x in near])
         if why:
             return replace(cell, soft=SoftOrHard(Onset.NEITHER, why))
-        if isinstance(found.ground, Arrangement) and cell.shape is Shape.ARC:
-            return replace(cell, soft=onsets.along(found.ground, found.place(cell)))
+        if isinstance(diagram.ground, Arrangement) and cell.shape is Shape.ARC:
+            return replace(cell, soft=onsets.along(diagram.ground, diagram.place(cell)))
         return replace(cell, soft=onsets.at(cell.sample))
 
-    arcs, corners = list(found.arcs), list(found.corners)
+    arcs, corners = list(diagram.arcs), list(diagram.corners)
     interrupted = False
     try:
         for cells in (arcs, corners):
@@ -167,24 +167,24 @@ def with_onsets(found: Map, onsets: SoftBorders, watch: Watch) -> Map:
                 cells[k] = told(cell)
     except KeyboardInterrupt:
         interrupted = True
-    return replace(found, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
+    return replace(diagram, arcs=tuple(arcs), corners=tuple(corners), interrupted=interrupted, onsets=onsets)
 
 
-def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
+def with_nonlinear(diagram: Map, analysis: Analysis, watch: Watch) -> Map:
     """The map with what the nonlinear system shows where the first approximation and the energy are open.
 
     Of one coordinate whose K vanishes in the whole section the first term of V decides.  Else it is what the one judge
     says of rational samples alone: only where the axes and all that is given are parameters with numbers, and at the
     first ``MOST_ASKED`` of such points.
     """
-    there, system = found.section, analysis.system
-    if found.of is not Of.STABILITY or found.interrupted or there is None or there.constant is not None:
-        return found
-    found = by_first_term(found, analysis)
-    names = {axis.name for axis in found.axes}
+    there, system = diagram.section, analysis.system
+    if diagram.of is not Of.STABILITY or diagram.interrupted or there is None or there.constant is not None:
+        return diagram
+    diagram = by_first_term(diagram, analysis)
+    names = {axis.name for axis in diagram.axes}
     related = {item.name for item in system.relations} | {name for name, _ in analysis.equilibrium.solved}
     if {*system.parameter_names} - related != {*there.numbers, *names} - related:
-        return found
+        return diagram
     judge, left = OneJudge(analysis), MOST_ASKED
 
     def asked(cell: Cell) -> Cell:
@@ -195,8 +195,8 @@ def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
         if not left:
             return cell
         left -= 1
-        values = {axis.name: rationals.fraction(x) for axis, x in zip(found.axes, point, strict=True)}
-        watch("terms of higher order", cell.number, len(found.regions))
+        values = {axis.name: rationals.fraction(x) for axis, x in zip(diagram.axes, point, strict=True)}
+        watch("terms of higher order", cell.number, len(diagram.regions))
         try:
             verdict = judge.decided(cell.judged.verdict, {**there.numbers, **values})
         except Failure:
@@ -204,10 +204,10 @@ def with_nonlinear(found: Map, analysis: Analysis, watch: Watch) -> Map:
         return cell if verdict.word.open else replace(cell, nonlinear=verdict)
 
     try:
-        regions, arcs, corners = (tuple(map(asked, part)) for part in (found.regions, found.arcs, found.corners))
+        regions, arcs, corners = (tuple(map(asked, part)) for part in (diagram.regions, diagram.arcs, diagram.corners))
     except KeyboardInterrupt:
-        return replace(found, interrupted=True)
-    return replace(found, regions=regions, arcs=arcs, corners=corners)
+        return replace(diagram, interrupted=True)
+    return replace(diagram, regions=regions, arcs=arcs, corners=corners)
 
 
 def mapped(
@@ -263,10 +263,14 @@ def withdrawn(cells: list[Cell], part: int, checked: Check) -> list[Cell]:
 
     What is wrong with the arrangement as a whole takes all verdicts with it.
     """
-    found = [(finding.region, finding.arc, finding.corner) for finding in checked.findings]
-    lone = all(one.breach is None for one in checked.findings) and all(any(k is not None for k in x) for x in found)
-    doubted = {one[part] for one in found}
-    return [one.withdrawn if one.said is not None and (one.number in doubted or not lone) else one for one in cells]
+    locations = [(finding.region, finding.arc, finding.corner) for finding in checked.findings]
+    lone = all(mistake.breach is None for mistake in checked.findings) and all(
+        any(k is not None for k in x) for x in locations
+    )
+    doubted = {location[part] for location in locations}
+    return [
+        cell.withdrawn if cell.said is not None and (cell.number in doubted or not lone) else cell for cell in cells
+    ]
 
 
 def without_constant(there: Section, found: Boundaries) -> Boundaries:
@@ -326,7 +330,9 @@ class Judge:
 
     def _at(self, shape: Shape, number: int, point: Any) -> Cell:
         place = beside(point, self.section.constant)
-        broken = tuple(one for one in self.kept.demands if not one.kept(_sign(place, one.condition.polynomial)))
+        broken = tuple(
+            demand for demand in self.kept.demands if not demand.kept(_sign(place, demand.condition.polynomial))
+        )
         if broken:
             return Cell(shape, number, point, lack=Lack.OUTSIDE, broken=broken)
         if any(_sign(place, x) == 0 for x in self.section.undefined):

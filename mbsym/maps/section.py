@@ -127,14 +127,14 @@ class Law:
         ring = self._balance.scene.ring
         zeros = {name: Fraction(0) for name, sign in zip(self._axes, signs, strict=True) if sign == 0}
         known = {name: x for name, x in zeros.items() if name in self._balance.scene.system.parameter_names}
-        told = [
+        assumptions = [
             (ring.generator("parameter", name) * sign, ">")
             for name, sign in zip(self._axes, signs, strict=True)
             if sign
         ]
         try:
             there = self._balance.at(self._given | known)
-            return replace(there, signs=self._balance.signs.assuming(told)).law.bounded
+            return replace(there, signs=self._balance.signs.assuming(assumptions)).law.bounded
         except ValueError:  # no parameters have these signs
             return False
 
@@ -151,18 +151,18 @@ def section(analysis: Analysis, axes: Sequence[Axis], settings: Mapping[str, Fra
     (``constant``).
     Raises Unfit with all complaints, Unavailable where there is no first approximation to judge.
     """
-    found: list[int] = []
+    irrational: list[int] = []
     try:
-        return _section(analysis, axes, settings, None, found)
+        return _section(analysis, axes, settings, None, irrational)
     except Unfit as unfit:
         constant = None
         varied = {*(axis.name for axis in axes), *settings}  # of these the description's value is not the one here
-        described = not any(analysis.ring.generators[k].name in varied for k in found)
+        described = not any(analysis.ring.generators[k].name in varied for k in irrational)
         if described and len(axes) <= MOST_BESIDE and unfit.irrational:
-            constant = constant_of(analysis.system, analysis.ring, found)
+            constant = constant_of(analysis.system, analysis.ring, irrational)
         if constant is None:
             raise
-        return _section(analysis, axes, settings, constant, found)
+        return _section(analysis, axes, settings, constant, irrational)
 
 
 def _section(
@@ -176,13 +176,13 @@ def _section(
     with analysis.strictly():
         linear, motion = analysis.judgeable, analysis.equilibrium
     scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
-    given = numbers_given(analysis, chosen, settings, motion)
+    numbers = numbers_given(analysis, chosen, settings, motion)
     complaints: list[Complaint] = []
     context = context_of(chosen, constant)
     solved = {name: value.polynomial for name, value in motion.solved}
-    images = Images(scene, chosen, context, given, solved, constant)
+    images = Images(scene, chosen, context, numbers, solved, constant)
     parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
-    known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
+    known = {name: x for name, x in numbers.items() if name in analysis.system.parameter_names}
     balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
     undefined: list[Polynomial] = []
     systems = []
@@ -206,8 +206,8 @@ def _section(
         law.everywhere,
         law,
         tuple(undefined),
-        given,
-        {name: value for name, value in given.items() if name in used or name in settings},
+        numbers,
+        {name: value for name, value in numbers.items() if name in used or name in settings},
         images,
         constant,
     )
@@ -223,15 +223,15 @@ def unmade(
     with analysis.strictly():
         linear, motion = analysis.judgeable, analysis.equilibrium
     scene, chosen = analysis.parameters_scene, [axis.name for axis in axes]
-    given = numbers_given(analysis, chosen, settings, motion)
+    numbers = numbers_given(analysis, chosen, settings, motion)
     context = context_of(chosen, None)
-    images = Images(scene, chosen, context, given, {name: value.polynomial for name, value in motion.solved}, None)
+    images = Images(scene, chosen, context, numbers, {name: value.polynomial for name, value in motion.solved}, None)
     _motion_exists(motion, images)
-    known = {name: x for name, x in given.items() if name in analysis.system.parameter_names}
+    known = {name: x for name, x in numbers.items() if name in analysis.system.parameter_names}
     balance, law = analysis.balance.at(known), Law(analysis.balance, chosen, known)
     parts = prepared_parts(scene, analysis.balance, linear, motion, analysis.signs)
     names = tuple(part.coordinates for part in parts)
-    plain = Section(tuple(axes), context, (), names, law.everywhere, law, (), given, given, images)
+    plain = Section(tuple(axes), context, (), names, law.everywhere, law, (), numbers, numbers, images)
     return plain, tuple(part.at(balance) for part in parts)
 
 
@@ -352,7 +352,11 @@ class Unfit(Failure):
     code = "section"
 
     def __init__(self, complaints: Sequence[Complaint]) -> None:
-        super().__init__("; ".join(f"{one.name}: {one.fault.value} {one.about}".rstrip() for one in complaints))
+        super().__init__(
+            "; ".join(
+                f"{complaint.name}: {complaint.fault.value} {complaint.about}".rstrip() for complaint in complaints
+            )
+        )
         self.complaints = tuple(complaints)
 
     @property
@@ -365,12 +369,12 @@ def numbers_given(
     analysis: Analysis, chosen: Sequence[str], settings: Mapping[str, Fraction], motion: Equilibrium
 ) -> dict[str, Fraction]:
     """The numbers of what is no axis.  Raises Unfit for names that do not fit together."""
-    given = {name: value for name, value in settings.items() if name not in chosen}
-    complaints = [*_determined(analysis.system, motion, [*chosen, *given]), *_against_signs(analysis, given)]
-    complaints += _dependent(analysis.parameters_scene, [*chosen, *given])
+    numbers = {name: value for name, value in settings.items() if name not in chosen}
+    complaints = [*_determined(analysis.system, motion, [*chosen, *numbers]), *_against_signs(analysis, numbers)]
+    complaints += _dependent(analysis.parameters_scene, [*chosen, *numbers])
     if complaints:
         raise Unfit(complaints)
-    return _remaining(analysis.system, chosen, given, motion) | given
+    return _remaining(analysis.system, chosen, numbers, motion) | numbers
 
 
 def _determined(system: System, motion: Equilibrium, chosen: Sequence[str]) -> list[Complaint]:
@@ -383,11 +387,11 @@ def _determined(system: System, motion: Equilibrium, chosen: Sequence[str]) -> l
     return [*complaints, *(Complaint(Fault.SOLVED, name, solved[name]) for name in chosen if name in solved)]
 
 
-def _against_signs(analysis: Analysis, given: Mapping[str, Fraction]) -> list[Complaint]:
+def _against_signs(analysis: Analysis, numbers: Mapping[str, Fraction]) -> list[Complaint]:
     """Numbers that contradict a declared sign, or one that the definition of a symbol shows."""
     words = analysis.signs.words
     against_signs = []
-    for name, value in given.items():
+    for name, value in numbers.items():
         word = words[analysis.ring.index("parameter", name)]
         relation = RELATION_OF_SIGN.get(word)
         if relation is not None and not holds(value, relation):
@@ -441,18 +445,24 @@ def _slope(top: Polynomial, below: Polynomial, k: int, point: Sequence[Any]) -> 
 
 
 def _remaining(
-    system: System, chosen: Sequence[str], given: Mapping[str, Fraction], motion: Equilibrium
+    system: System, chosen: Sequence[str], numbers: Mapping[str, Fraction], motion: Equilibrium
 ) -> dict[str, Fraction]:
     """The description's own numbers, but for parameters that stand in symbols that are given."""
     meaning = {item.name: names(item.value) for item in system.notation}
     meaning |= {item.name: names(item.value) for item in system.relations}
     spoken: set[str] = set()
-    pending = [x for name in (*chosen, *given) if name in meaning for x in meaning[name]]
+    pending = [x for name in (*chosen, *numbers) if name in meaning for x in meaning[name]]
     while pending:
         name = pending.pop()
         if name not in spoken:
             spoken.add(name)
             pending += meaning.get(name, ())
-    taken = {*chosen, *given, *spoken, *(item.name for item in system.relations), *(name for name, _ in motion.solved)}
+    taken = {
+        *chosen,
+        *numbers,
+        *spoken,
+        *(item.name for item in system.relations),
+        *(name for name, _ in motion.solved),
+    }
     values = ((item.name, rational(item.value)) for item in system.parameters if item.value is not None)
     return {name: value for name, value in values if value is not None and name not in taken}

@@ -226,7 +226,10 @@ class _Slicing:
             if not any(q.gcd(p) == p / p.leading_coefficient() for q in here)
         ]
         lying = [
-            one for p, conditions in zip(flat, self.boundaries.conditions, strict=True) if p == 0 for one in conditions
+            condition
+            for p, conditions in zip(flat, self.boundaries.conditions, strict=True)
+            if p == 0
+            for condition in conditions
         ]
         return Boundaries(
             (*here, *(p for p, _ in further)),
@@ -236,7 +239,7 @@ class _Slicing:
 
     def _second(self, z: Any, line: Line) -> Any:
         """Another value between the same critical ones."""
-        interval = next(one for one in line.intervals if one.sample == z)
+        interval = next(span for span in line.intervals if span.sample == z)
         last = line.high if interval.ends[1] is None else line.zeros[interval.ends[1]].number
         return between_simply(z, last)
 
@@ -284,8 +287,8 @@ def at_level(there: Section, admissibility: Admissibility, z: Number) -> tuple[S
     last = z if constant is None else plane.gen(2)
 
     def flat(p: Any) -> Any:
-        found = flattened(p, last, plane)
-        return found if constant is None else constant.reduced(found)
+        image = flattened(p, last, plane)
+        return image if constant is None else constant.reduced(image)
 
     def known(p: Any) -> Any:
         """The number that a polynomial is in the whole slice, or one of its sign; None where it depends on the axes."""
@@ -314,12 +317,12 @@ def at_level(there: Section, admissibility: Admissibility, z: Number) -> tuple[S
     demands, broken = [], []
     for demand in admissibility.demands:
         polynomial = flat(demand.condition.polynomial)
-        told = replace(demand, condition=replace(demand.condition, polynomial=polynomial))
+        flat_demand = replace(demand, condition=replace(demand.condition, polynomial=polynomial))
         value = known(polynomial)
         if value is None:
-            demands.append(told)
-        elif not told.kept(value):
-            broken.append(told)
+            demands.append(flat_demand)
+        elif not flat_demand.kept(value):
+            broken.append(flat_demand)
     return cut, Admissibility(tuple(demands), tuple(broken), admissibility.left_out)
 
 
@@ -352,14 +355,14 @@ def _better(layers: Sequence[Layer], shown: int, layer: Layer) -> int:
     return layer.number if layers[shown].critical and not layer.critical else shown
 
 
-def _same(one: Layer, other: Layer) -> bool:
+def _same(first: Layer, other: Layer) -> bool:
     """Whether two slices are one picture."""
-    if one.plane is None or other.plane is None:
-        told = [[x.condition.about for x in layer.broken] for layer in (one, other)]
-        return one.lack is other.lack and one.lack is not None and told[0] == told[1]
-    if one.plane.interrupted or other.plane.interrupted or not (one.confirmed and other.confirmed):
+    if first.plane is None or other.plane is None:
+        reasons = [[x.condition.about for x in layer.broken] for layer in (first, other)]
+        return first.lack is other.lack and first.lack is not None and reasons[0] == reasons[1]
+    if first.plane.interrupted or other.plane.interrupted or not (first.confirmed and other.confirmed):
         return False
-    return corresponding(seen(one.plane), seen(other.plane))
+    return corresponding(seen(first.plane), seen(other.plane))
 
 
 # What a picture of a map shows, as a graph: areas of one look, the lines drawn between them, points where they meet.
@@ -368,63 +371,63 @@ def _same(one: Layer, other: Layer) -> bool:
 # lines are one where only such a curve crosses them.
 
 
-def seen(found: Map) -> Graph:
+def seen(diagram: Map) -> Graph:
     """Areas, lines and points with their looks; lines have edges to the areas beside them and to their end points."""
-    there = found.arrangement
+    there = diagram.arrangement
     areas, lines = Joined(len(there.regions)), Joined(len(there.arcs))
-    shown = [found.drawn(arc) for arc in found.arcs]
-    for arc, kept in zip(there.arcs, shown, strict=True):
+    shown = [diagram.drawn(arc) for arc in diagram.arcs]
+    for arc, visible in zip(there.arcs, shown, strict=True):
         below, above = arc.regions
-        if not kept and below is not None and above is not None:
+        if not visible and below is not None and above is not None:
             areas.join(below, above)
-    told = [_line(found, arc) for arc in found.arcs]
+    looks = [_line(diagram, arc) for arc in diagram.arcs]
     points: list[tuple[object, list[int]]] = []
-    for corner, cell in zip(there.corners, found.corners, strict=True):
+    for corner, cell in zip(there.corners, diagram.corners, strict=True):
         ends = [k for k in corner.arcs if shown[k] for end in there.arcs[k].corners if end == corner.id]
-        differs = stands_out(found, cell)
+        differs = stands_out(diagram, cell)
         plain = not differs and corner.kind is not CornerKind.SINGULAR
-        if plain and len(ends) == 2 and told[ends[0]] == told[ends[1]]:
+        if plain and len(ends) == 2 and looks[ends[0]] == looks[ends[1]]:
             lines.join(*ends)
         elif ends or differs:
-            points.append((("point", corner.kind is CornerKind.EDGE, found.look(cell) if differs else None), ends))
-    return _graph(found, areas, lines, [k for k, kept in enumerate(shown) if kept], told, points)
+            points.append((("point", corner.kind is CornerKind.EDGE, diagram.look(cell) if differs else None), ends))
+    return _graph(diagram, areas, lines, [k for k, visible in enumerate(shown) if visible], looks, points)
 
 
-def stands_out(found: Map, corner: Cell) -> bool:
+def stands_out(diagram: Map, corner: Cell) -> bool:
     """Whether an isolated point has another verdict than the region around it."""
-    if corner.judged is None or found.place(corner).kind is not CornerKind.ISOLATED:
+    if corner.judged is None or diagram.place(corner).kind is not CornerKind.ISOLATED:
         return False
-    return any(x is not None and x.judged is not None and found.look(x) != found.look(corner)
-               for x in found.around(corner))  # fmt: skip
+    return any(x is not None and x.judged is not None and diagram.look(x) != diagram.look(corner)
+               for x in diagram.around(corner))  # fmt: skip
 
 
-def _line(found: Map, arc: Cell) -> object:
+def _line(diagram: Map, arc: Cell) -> object:
     """How an arc is drawn."""
-    alone = not found.separates(arc)
-    return found.place(arc).factors, found.look(arc) if alone else None
+    alone = not diagram.separates(arc)
+    return diagram.place(arc).factors, diagram.look(arc) if alone else None
 
 
 def _graph(
-    found: Map,
+    diagram: Map,
     areas: Joined,
     lines: Joined,
-    kept: list[int],
-    told: list[object],
+    visible: list[int],
+    looks: list[object],
     points: list[tuple[object, list[int]]],
 ) -> Graph:
     labels: list[object] = []
     nodes: dict[tuple[str, int], int] = {}
-    for k, cell in enumerate(found.regions):
+    for k, cell in enumerate(diagram.regions):
         if areas(k) == k:
             nodes["area", k] = len(labels)
-            labels.append(("area", found.look(cell)))
+            labels.append(("area", diagram.look(cell)))
     beside: dict[int, set[int]] = {}
-    for k in kept:
+    for k in visible:
         if lines(k) not in beside:
             nodes["line", lines(k)] = len(labels)
-            labels.append(("line", told[lines(k)]))
+            labels.append(("line", looks[lines(k)]))
         sides = beside.setdefault(lines(k), set())
-        sides |= {areas(x.number) for x in found.beside(found.arcs[k]) if x is not None}
+        sides |= {areas(x.number) for x in diagram.beside(diagram.arcs[k]) if x is not None}
     edges = [(nodes["line", k], nodes["area", r]) for k, sides in beside.items() for r in sorted(sides)]
     for label, meeting in points:
         edges += [(nodes["line", lines(k)], len(labels)) for k in meeting]

@@ -107,7 +107,7 @@ class SoftOrHard:
 
 def lost(beside: Sequence[int | None]) -> Missing | None:
     """None where stability is lost between cells with so many roots to the right (None: not known); or why not."""
-    known = {one for one in beside if one is not None}
+    known = {count for count in beside if count is not None}
     if 0 in known and len(known) > 1:
         return None
     return Missing.ONE_SIDE if None in beside or not beside else Missing.NO_LOSS
@@ -134,7 +134,7 @@ class SoftBorders:
                 return Missing.CONDITIONS
             _, cyclic = ignorable(self.analysis)
             scene = self.analysis.parameters_scene
-            found = expansion(scene, system, motion, 4, cyclic)
+            series = expansion(scene, system, motion, 4, cyclic)
         except (Failure, ZeroDivisionError):
             return Missing.EXPANSION
         axes = [axis.name for axis in self.section.axes]
@@ -143,7 +143,7 @@ class SoftBorders:
         if constant is not None and constant.text in system.parameter_names and not constant.images:
             # the irrational value of the third axis of slices
             constant = replace(constant, images={scene.ring.index("parameter", constant.text): fmpq_poly([0, 1])})
-        return found, Images(scene, axes, there.context, there.numbers, solved, constant)
+        return series, Images(scene, axes, there.context, there.numbers, solved, constant)
 
     def at(self, place: Any) -> SoftOrHard:
         """At an exact point (of a line: an exact number) at which a pair of roots is imaginary."""
@@ -157,7 +157,7 @@ class SoftBorders:
     def _at(self, numbers: Sequence[Any]) -> SoftOrHard:
         expanded = self._expanded
         assert not isinstance(expanded, Missing)
-        found, images = expanded
+        series, images = expanded
         constant = self.section.constant
         point = [*numbers, *([] if constant is None else [constant.number.enclosure(PRECISION)])]
 
@@ -166,7 +166,7 @@ class SoftBorders:
             return acb(rationals.value_at(top, point, arb)) / acb(rationals.value_at(bottom, point, arb))
 
         try:
-            field = state_field(Numbers(found, carry, lambda x: 1 / x, acb(0), acb(1)))
+            field = state_field(Numbers(series, carry, lambda x: 1 / x, acb(0), acb(1)))
         except (Failure, ZeroDivisionError):
             return SoftOrHard(Onset.OPEN, Missing.EXPANSION)
         return _told(judged_enclosed(*field, ("pair",)))
@@ -182,7 +182,7 @@ class SoftBorders:
         if arc.pieces[0].vertical:
             with ctx.workprec(PRECISION):
                 return replace(there, stretches=self._up(made, arc))
-        curve = next(k for k, one in enumerate(made.curves) if set(one.of) & set(arc.factors))
+        curve = next(k for k, candidate in enumerate(made.curves) if set(candidate.of) & set(arc.factors))
         with ctx.workprec(PRECISION):
             if curve not in self._along:
                 self._along[curve] = self._formula(made.curves[curve].polynomial, arc)
@@ -208,7 +208,7 @@ class SoftBorders:
         """a on a curve along an axis; None where it outgrows its budgets, or the curve is another one."""
         expanded = self._expanded
         assert not isinstance(expanded, Missing)
-        found, images = expanded
+        series, images = expanded
         tower = Tower([axis.name for axis in self.section.axes])
         gens = [tower.parameter(name).top for name in tower.parameters]
         values = dict(zip(tower.parameters, arc.point.enclosures(PRECISION), strict=True))
@@ -222,7 +222,7 @@ class SoftBorders:
             return 0.0 if value.contains(0) else float(abs(value).mid())
 
         try:
-            field, positions = state_field(Numbers(found, carry, tower.reciprocal, tower.zero, tower.one))
+            field, positions = state_field(Numbers(series, carry, tower.reciprocal, tower.zero, tower.one))
             whole = on_curve(tower, field, positions, size)
             return _Along(whole, curve, axis) if _lies_on(whole, curve) else None
         except (Failure, ZeroDivisionError):
@@ -258,7 +258,9 @@ class _Along:
         self.curve, self.axis = curve, axis
         self.top, self.bottom = (_plane(x, curve) for x in (whole.coefficient.top, whole.coefficient.bottom))
         watched = [self.top, self.bottom]
-        watched += [_plane(x, curve) for one in (whole.slope, whole.constant) for x in (one.top, one.bottom)]
+        watched += [
+            _plane(x, curve) for element in (whole.slope, whole.constant) for x in (element.top, element.bottom)
+        ]
         self.critical = list(self._abscissas(watched))
 
     def _abscissas(self, watched: Sequence[Any]) -> Iterator[Any]:
@@ -280,13 +282,13 @@ class _Along:
     def between(self, low: Any, high: Any) -> list[Any]:
         """The critical abscissas between two exact numbers, in order, each once."""
         whole = fmpq_poly([1])
-        for one in self.critical:
-            whole *= one
+        for factor in self.critical:
+            whole *= factor
         if whole.degree() < 1:
             return []
         square_free = primitive(whole / whole.gcd(whole.derivative()))
-        found = [sample_of(root) for root in roots_between(square_free, lower(low), upper(high))]
-        return [x for x in found if compare(low, x) < 0 and compare(x, high) < 0]
+        samples = [sample_of(root) for root in roots_between(square_free, lower(low), upper(high))]
+        return [x for x in samples if compare(low, x) < 0 and compare(x, high) < 0]
 
     def sign(self, x: Any, y: Any) -> int:
         """Of a at enclosed numbers; 0 where it is not told."""
@@ -304,7 +306,9 @@ def _stretches(
         if kept_stretches is None:
             return None
         if piece.backwards:
-            kept_stretches = [Stretch(one.end, one.start, one.onset) for one in reversed(kept_stretches)]
+            kept_stretches = [
+                Stretch(stretch.end, stretch.start, stretch.onset) for stretch in reversed(kept_stretches)
+            ]
         if (
             stretches
             and stretches[-1].onset is kept_stretches[0].onset
@@ -382,7 +386,7 @@ def _ordinate(curve: Curve, made: Arrangement, x: Any, place: int, count: int) -
     except ValueError:
         return None
     low, high = arb(made.box.y0), arb(made.box.y1)
-    real = sorted((z.real for z in roots if z.imag.contains(0)), key=lambda one: float(one.mid()))
+    real = sorted((z.real for z in roots if z.imag.contains(0)), key=lambda root: float(root.mid()))
     inside = [y for y in real if y > low and y < high]
     return inside[place] if len(inside) == count else None
 

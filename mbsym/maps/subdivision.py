@@ -118,7 +118,7 @@ def subdivide(
         for half in halves(current, box):
             made += 1
             heapq.heappush(open_, (level + 1, made, half, hint))
-    done += [Tile(one[2], None) for one in open_]
+    done += [Tile(pending[2], None) for pending in open_]
     return Subdivision(box, tuple(done), end)
 
 

@@ -52,9 +52,9 @@ def verdict_at(section: Section, point: Sequence[Any]) -> Judged:
     values = {k: rationals.fraction(x) for k, x in enumerate(point)}
     parts, one_energy = section.judged([(x > 0) - (x < 0) for x in point])
     verdicts = [exact_verdict(part, values) for part in parts]
-    verdict = combine((one.verdict for one in verdicts), one_energy)
+    verdict = combine((part_verdict.verdict for part_verdict in verdicts), one_energy)
     signature = [inertia(stiffness_at(part, point)) for part in parts]
-    degree, null = sum(one[2] for one in signature), sum(one[1] for one in signature)
+    degree, null = sum(counts[2] for counts in signature), sum(counts[1] for counts in signature)
     right: int | None = 0
     real: int | None = 0
     for point_verdict in verdicts:
@@ -88,24 +88,30 @@ Verdicts = Sequence[Judged | None]
 
 
 def jumps(
-    found: Arrangement | Line, regions: Verdicts, arcs: Verdicts, corners: Verdicts
+    decomposition: Arrangement | Line, regions: Verdicts, arcs: Verdicts, corners: Verdicts
 ) -> tuple[list[int], list[int]]:
     """The arcs and the corners (zeros of a line) whose counts do not fit those of the regions beside them."""
-    if isinstance(found, Line):
-        beside = [[interval.id for interval in found.intervals if zero.id in interval.ends] for zero in found.zeros]
+    if isinstance(decomposition, Line):
+        beside = [
+            [interval.id for interval in decomposition.intervals if zero.id in interval.ends]
+            for zero in decomposition.zeros
+        ]
         return [], list(_misfits(corners, beside, regions))
-    by_arc = {arc.id: [k for k in arc.regions if k is not None] for arc in found.arcs}
+    by_arc = {arc.id: [k for k in arc.regions if k is not None] for arc in decomposition.arcs}
     # an arrangement that breaks a law may lack arcs: that is found elsewhere
-    by_corner = [[k for arc in corner.arcs for k in by_arc.get(arc, ())] for corner in found.corners]
-    by_corner = [near or _around(found, corner.place) for near, corner in zip(by_corner, found.corners, strict=True)]
+    by_corner = [[k for arc in corner.arcs for k in by_arc.get(arc, ())] for corner in decomposition.corners]
+    by_corner = [
+        near or _around(decomposition, corner.place)
+        for near, corner in zip(by_corner, decomposition.corners, strict=True)
+    ]
     return list(_misfits(arcs, [*by_arc.values()], regions)), list(_misfits(corners, by_corner, regions))
 
 
-def _around(found: Arrangement, place: tuple[int, int]) -> list[int]:
+def _around(arrangement: Arrangement, place: tuple[int, int]) -> list[int]:
     """The region around an isolated point."""
     at, j = place
     places = ((at, k) for k in (j, j - 1))
-    return [found.places.intervals[key] for key in places if key in found.places.intervals]
+    return [arrangement.places.intervals[key] for key in places if key in arrangement.places.intervals]
 
 
 def _misfits(points: Verdicts, beside: Sequence[Sequence[int]], regions: Verdicts) -> Iterator[int]:

@@ -179,13 +179,13 @@ def _rotational(algebra: Algebra[S], tensor: Tensor[S], motion: _Motion[S]) -> V
     """J alpha + omega x J omega; first component  J11 alpha1 + (J33 - J22) omega2 omega3
     + J12 (alpha2 - omega1 omega3) + J13 (alpha3 + omega1 omega2) + J23 (omega2^2 - omega3^2),  others cyclically."""
     p, w = motion.products, motion.w_tensor
-    found = []
+    components = []
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         weights = (tensor[i][i], tensor[k][k] - tensor[j][j], tensor[i][j], tensor[i][k], tensor[j][k])
         factors = (motion.angular[i], p[j][k], -w[k][i], w[j][i], p[j][j] - p[k][k])
-        found.append(algebra.dot(weights, factors))
-    return Vector(algebra, (found[0], found[1], found[2]), tensor.frame)
+        components.append(algebra.dot(weights, factors))
+    return Vector(algebra, (components[0], components[1], components[2]), tensor.frame)
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,15 +374,15 @@ class _Articulated(Generic[S]):
         return outwards
 
     def _accelerated(
-        self, joints: list[_Joint[S]], angular: Vector[S], linear: Vector[S], found: dict[str, S]
+        self, joints: list[_Joint[S]], angular: Vector[S], linear: Vector[S], accelerations: dict[str, S]
     ) -> tuple[Vector[S], Vector[S]]:
         algebra = self.algebra
         for joint in reversed(joints):
             pull = joint.force.dot(linear) + joint.moment.dot(angular)
             rate = algebra.reduce(mul(joint.share - pull, joint.inverse))
-            found[joint.name] = rate
+            accelerations[joint.name] = rate
             if joint.slope != algebra.one:
-                found[joint.name] = algebra.times(rate, algebra.reciprocal(joint.slope))
+                accelerations[joint.name] = algebra.times(rate, algebra.reciprocal(joint.slope))
             angular = angular + joint.spin * rate
             linear = linear + joint.velocity * rate
         return angular, linear

@@ -107,8 +107,8 @@ def articulation(scene: Scene[S], apart: bool = False) -> Articulation[S]:
         builder.add(body)
     properties = [mass_properties(scene, name) for name in scene.motions]
     own = dict(zip(builder.frame_of.values(), properties, strict=True))
-    kept = frozenset(builder.frame_of[name] for name in welded(scene.system)) if apart else frozenset[int]()
-    masses = _regrouped(scene.algebra, builder.frames, own, kept)
+    welded_frames = frozenset(builder.frame_of[name] for name in welded(scene.system)) if apart else frozenset[int]()
+    masses = _regrouped(scene.algebra, builder.frames, own, welded_frames)
     return Articulation(scene, tuple(builder.frames), builder.frame_of, masses)
 
 
@@ -179,8 +179,8 @@ class _Builder(Generic[S]):
         self.frame_of[body.name] = len(self.frames) - 1
 
     def _derivatives(self, angle: Expression) -> dict[str, S]:
-        found = sorted(names(angle) & self.coordinates)
-        return {name: self.scene.lower(differentiate(angle, name)) for name in found}
+        coordinates = sorted(names(angle) & self.coordinates)
+        return {name: self.scene.lower(differentiate(angle, name)) for name in coordinates}
 
 
 # --- mass properties ---
@@ -263,12 +263,16 @@ def turned_symmetric(algebra: Algebra[S], turn: Turn[S], matrix: Tensor[S]) -> T
 
 
 def _regrouped(
-    algebra: Algebra[S], frames: list[Frame[S]], properties: Mapping[int, MassProperties[S]], kept: frozenset[int]
+    algebra: Algebra[S],
+    frames: list[Frame[S]],
+    properties: Mapping[int, MassProperties[S]],
+    welded_frames: frozenset[int],
 ) -> tuple[MassProperties[S], ...]:
-    """Mass properties frame by frame after moving to the parents what the joints do not feel; ``kept`` move nothing."""
+    """Mass properties frame by frame after moving to the parents what the joints do not feel;
+    ``welded_frames`` move nothing."""
     masses = [properties.get(number) or nothing(algebra, frame.name) for number, frame in enumerate(frames)]
     for number in reversed(range(len(frames))):
-        if number in kept:
+        if number in welded_frames:
             continue
         frame, own = frames[number], masses[number]
         stays, leaves = split(algebra, frame, own)

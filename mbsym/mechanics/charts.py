@@ -78,7 +78,7 @@ class Chart:
     a system have no configuration in common.
     """
 
-    found: Rest
+    rest: Rest
     joints: tuple[Joint, ...]
     replaced: tuple[bool, ...]
     nonzero: tuple[Polynomial, ...]
@@ -100,7 +100,7 @@ def joints(system: System, turning: Sequence[str], cyclic: Sequence[str] = ()) -
 
     ``turning`` are the coordinates that run at a constant rate, ``cyclic`` those that the equations do not know.
     """
-    found = []
+    replaceable = []
     for body in system.bodies:
         turns = list(body.rotation.turns())
         forms = [linear_form(angle) for _, angle in turns]
@@ -118,13 +118,13 @@ def joints(system: System, turning: Sequence[str], cyclic: Sequence[str] = ()) -
         if len(turns) == 3:
             last = steady[2] or angles[2] in cyclic
             keeps_first = steady[0] or (free and not last)
-            found.append(Joint(body.name, (axes[0], axes[1], axes[2]), angles, signs, free, last, keeps_first))
+            replaceable.append(Joint(body.name, (axes[0], axes[1], axes[2]), angles, signs, free, last, keeps_first))
             continue
         for third in (6 - axes[0] - axes[1], axes[0]):
             if _has_no_twist(system, body, third):
-                found.append(Joint(body.name, (axes[0], axes[1], third), angles, signs, free, True, False))
+                replaceable.append(Joint(body.name, (axes[0], axes[1], third), angles, signs, free, True, False))
                 break
-    return tuple(found[:MOST_JOINTS])
+    return tuple(replaceable[:MOST_JOINTS])
 
 
 def _coordinate(form: LinearForm | None) -> tuple[str, int] | None:
@@ -135,14 +135,14 @@ def _coordinate(form: LinearForm | None) -> tuple[str, int] | None:
     return name, int(sign)
 
 
-def cyclic_angles(found: Rest) -> tuple[str, ...]:
+def cyclic_angles(equations: Rest) -> tuple[str, ...]:
     """The constant coordinates that occur neither in f(q, q', t) nor in M(q), nor in constraints: any value will do."""
-    ring = found.ring
-    known = [*found.forcing, *found.kept, *(x for row in found.rows for x in row.partials)]
-    open_ = [x for x in found.constant if not any(ring.depends_on(f, x) for f in known)]
+    ring = equations.ring
+    known = [*equations.forcing, *equations.kept, *(x for row in equations.rows for x in row.partials)]
+    open_ = [x for x in equations.constant if not any(ring.depends_on(f, x) for f in known)]
     if not open_:
         return ()
-    mass = [x for row in found.mass_matrix() for x in row]
+    mass = [x for row in equations.mass_matrix() for x in row]
     return tuple(name for name in open_ if not any(ring.depends_on(x, name) for x in mass))
 
 
@@ -175,15 +175,15 @@ def _has_no_twist(system: System, body: Body, axis: int) -> bool:
     turned = replace(body, rotation=rotation, coordinates=(*body.coordinates, extra))
     wider = replace(system, bodies=tuple(turned if x is body else x for x in system.bodies))
     try:
-        found = rest(wider)
+        equations = rest(wider)
         place = wider.coordinates.index(extra)
         # A force fixed in the body does no work in the twist, but it turns with it.
-        known = [*found.forcing, *found.kept, *(x for row in found.rows for x in row.partials)]
-        if not found.forcing[place].is_zero() or any(found.ring.dependencies(f, (extra,)) for f in known):
+        known = [*equations.forcing, *equations.kept, *(x for row in equations.rows for x in row.partials)]
+        if not equations.forcing[place].is_zero() or any(equations.ring.dependencies(f, (extra,)) for f in known):
             return False
-        if any(not row.partials[place].is_zero() for row in found.rows):
+        if any(not row.partials[place].is_zero() for row in equations.rows):
             return False
-        row = found.mass_matrix()[place]
+        row = equations.mass_matrix()[place]
     except Failure:
         return False
     return all(x.is_zero() for x in row)
@@ -200,7 +200,7 @@ def charts(first: Rest, described_by: System | None = None) -> tuple[Chart, ...]
         replace(joint, described=described[joint.body][: len(joint.angles)] == joint.axes[: len(joint.angles)])
         for joint in joints(first.system, first.turning, cyclic_angles(first))
     )
-    found = []
+    atlas = []
     for choice in product((False, True), repeat=len(replaceable)):
         current = rest(_with_other_angles(first.system, replaceable, choice)) if any(choice) else first
         nonzero: list[Polynomial] = []
@@ -215,8 +215,8 @@ def charts(first: Rest, described_by: System | None = None) -> tuple[Chart, ...]
                 # What vanishes where the angles are singular: cos x2 for three different axes, else sin x2.
                 turn = current.scene.motions[joint.body].turns[1]
                 nonzero.append(turn.cosine if joint.proper else turn.sine)
-        found.append(Chart(current, replaceable, choice, tuple(nonzero), tuple(restrictions)))
-    return tuple(found)
+        atlas.append(Chart(current, replaceable, choice, tuple(nonzero), tuple(restrictions)))
+    return tuple(atlas)
 
 
 def _with_cyclic_first_angles(first: Rest) -> Rest:
@@ -282,28 +282,28 @@ def _with_axes(system: System, changed: Mapping[str, tuple[int, ...]]) -> System
     return replace(system, bodies=tuple(bodies))
 
 
-def rows(found: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
+def rows(equations: Rest, joint: Joint) -> tuple[tuple[Polynomial, ...], ...]:
     """The body's axes in components of the previous body: the rows of R."""
-    motion = found.scene.motions[joint.body]
-    return direction_cosines(found.ring, motion.turns, motion.body.attached_to, joint.body).rows
+    motion = equations.scene.motions[joint.body]
+    return direction_cosines(equations.ring, motion.turns, motion.body.attached_to, joint.body).rows
 
 
-def features(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
+def features(equations: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     """Direction cosines that tell the joint's steady configurations apart, whatever the angles."""
-    seen = rows(found, joint)
-    kept = [seen[joint.axes[2] - 1]] if joint.last_free else list(seen)
-    return tuple(x for row in kept for x in (row[joint.axes[0] - 1 : joint.axes[0]] if joint.first_free else row))
+    seen = rows(equations, joint)
+    selected = [seen[joint.axes[2] - 1]] if joint.last_free else list(seen)
+    return tuple(x for row in selected for x in (row[joint.axes[0] - 1 : joint.axes[0]] if joint.first_free else row))
 
 
-def moments(found: Rest, joint: Joint) -> tuple[Polynomial, ...]:
+def moments(equations: Rest, joint: Joint) -> tuple[Polynomial, ...]:
     """The components of ``moment_components`` that there are, in the axes of the body and in those of the previous one.
 
     They vanish with f where the angles are regular: they say nothing that f does not say, only more shortly.
     """
-    return tuple(x for part in moment_components(found, joint) for x in part if x is not None)
+    return tuple(x for part in moment_components(equations, joint) for x in part if x is not None)
 
 
-def moment_components(found: Rest, joint: Joint) -> tuple[tuple[Polynomial | None, ...], ...]:
+def moment_components(equations: Rest, joint: Joint) -> tuple[tuple[Polynomial | None, ...], ...]:
     """The moment that three angles stand for: in the axes of the body, and in those of the previous one.
 
     With the unit vectors w_i of the turns,  f_i = w_i . tau,  so
@@ -311,14 +311,14 @@ def moment_components(found: Rest, joint: Joint) -> tuple[tuple[Polynomial | Non
     and f and tau vanish together where the angles are regular.  A component for which the division does not come out is
     None.  In axes that turn with a free angle the components would contain it: there are none in those.
     """
-    ring, motion = found.ring, found.scene.motions[joint.body]
+    ring, motion = equations.ring, equations.scene.motions[joint.body]
     turns, before = motion.turns, motion.body.attached_to
     if len(joint.angles) != 3 or len(turns) != 3:
         return (), ()
     lengths = [ring.number(sign) for sign in joint.signs]
     after = [axis_vector(ring, x.axis, length, x.frame) for x, length in zip(turns, lengths, strict=True)]
     ahead = [v.in_parallel(turn.source) for v, turn in zip(after, turns, strict=True)]
-    f = [found.at_rest[found.system.coordinates.index(name)] for name in joint.angles]
+    f = [equations.at_rest[equations.system.coordinates.index(name)] for name in joint.angles]
     parts: list[tuple[Polynomial | None, ...]] = []
     for free, w in (
         (joint.last_free, [forward(turns[k + 1 :], axis, joint.body) for k, axis in enumerate(after)]),

@@ -165,8 +165,8 @@ class _Composite(Generic[S]):
     def rows(self) -> tuple[tuple[S, ...], ...]:
         names, zero = self.system.coordinates, self.algebra.zero
         reduce = self.algebra.reduce
-        found = {key: reduce(value) for key, value in self.entries.items()}
-        return tuple(tuple(found.get(self._key(i, j), zero) for j in names) for i in names)
+        entries = {key: reduce(value) for key, value in self.entries.items()}
+        return tuple(tuple(entries.get(self._key(i, j), zero) for j in names) for i in names)
 
     def _key(self, i: str, j: str) -> tuple[str, str]:
         return (i, j) if self.order[i] <= self.order[j] else (j, i)

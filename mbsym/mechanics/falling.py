@@ -39,15 +39,15 @@ from mbsym.model.system import INERTIAL, System, acceleration_name, velocity_nam
 
 def falling_frames(system: System) -> dict[str, tuple[NewtonianGravity, ...]]:
     """The frames O1 whose motion, and that of the centres, no coordinate changes, with the fields about them."""
-    found: dict[str, tuple[NewtonianGravity, ...]] = {}
+    fields: dict[str, tuple[NewtonianGravity, ...]] = {}
     for load in system.newtonian_fields:
         if load.about != load.centre:
-            found[load.about] = (*found.get(load.about, ()), load)
+            fields[load.about] = (*fields.get(load.about, ()), load)
     return {
         about: loads
-        for about, loads in found.items()
+        for about, loads in fields.items()
         if about != INERTIAL
-        and not any(other in system.path(about)[:-1] for other in found)
+        and not any(other in system.path(about)[:-1] for other in fields)
         and _prescribed(system, about)
         and all(about not in system.path(load.centre) and _prescribed(system, load.centre) for load in loads)
     }

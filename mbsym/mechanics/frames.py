@@ -36,22 +36,22 @@ class Turn(Generic[S]):
     second_rate: S
     source: str
     frame: str
-    given: Tensor[S] | None = None
+    matrix: Tensor[S] | None = None
 
     def out(self, v: Vector[S]) -> Vector[S]:
         """C_a(x) v, from the axes of the source to those after the turn.  Raises FramesDiffer."""
         if v.frame != self.source:
             raise FramesDiffer(self.source, v.frame)
-        if self.given is not None:
-            return self.given @ v
+        if self.matrix is not None:
+            return self.matrix @ v
         return _turned(self.axis, self.sine, self.cosine, v, self.frame)
 
     def back(self, v: Vector[S]) -> Vector[S]:
         """C_a(x)^T v, from the axes after the turn to those of the source.  Raises FramesDiffer."""
         if v.frame != self.frame:
             raise FramesDiffer(self.frame, v.frame)
-        if self.given is not None:
-            return self.given.T @ v
+        if self.matrix is not None:
+            return self.matrix.T @ v
         return _turned(self.axis, -self.sine, self.cosine, v, self.source)
 
 
@@ -111,13 +111,13 @@ def cosines(algebra: Algebra, e: Sequence[Scalar]) -> list[list[Scalar]]:
     two = algebra.number(2)
     scalar, vector = e[0], e[1:]
     square = scalar * scalar - dot(vector, vector)
-    found: list[list[Any]] = [[two * (vector[i] * vector[j]) for j in range(3)] for i in range(3)]
+    rows: list[list[Any]] = [[two * (vector[i] * vector[j]) for j in range(3)] for i in range(3)]
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        found[i][i] = found[i][i] + square
-        found[i][j] = found[i][j] + two * (scalar * vector[k])
-        found[j][i] = found[j][i] - two * (scalar * vector[k])
-    return found
+        rows[i][i] = rows[i][i] + square
+        rows[i][j] = rows[i][j] + two * (scalar * vector[k])
+        rows[j][i] = rows[j][i] - two * (scalar * vector[k])
+    return rows
 
 
 def rates(algebra: Algebra, e: Sequence[Scalar], spin: Sequence[Scalar]) -> list[Scalar]:

@@ -150,10 +150,10 @@ class Scene(Generic[S]):
 
     def _turns(self, body: Body) -> list[Turn[S]]:
         """The turns that there are; the axes between two of them have a name of their own."""
-        given = [(axis, angle) for axis, angle in body.rotation.turns() if angle != ZERO]
-        frames = [body.attached_to, *(f"{body.name} after turn {k}" for k in range(1, len(given))), body.name]
+        rotations = [(axis, angle) for axis, angle in body.rotation.turns() if angle != ZERO]
+        frames = [body.attached_to, *(f"{body.name} after turn {k}" for k in range(1, len(rotations))), body.name]
         turns = []
-        for (axis, angle), source, frame in zip(given, frames, frames[1:], strict=False):
+        for (axis, angle), source, frame in zip(rotations, frames, frames[1:], strict=False):
             first = self.rate(angle)
             second = self.rate(first)
             sine, cosine = self.lower.angle(angle)

@@ -22,8 +22,8 @@ from mbsym.model.system import MotionEntry, System
 
 def motion_values(system: System) -> dict[str, tuple[Expression, Expression]]:
     """(value, rate) for every coordinate; zero where the description names none."""
-    given = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
-    return {name: given.get(name, (ZERO, ZERO)) for name in system.coordinates}
+    specified = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
+    return {name: specified.get(name, (ZERO, ZERO)) for name in system.coordinates}
 
 
 #: What was found scene by scene: it is asked for again and again.
@@ -52,8 +52,8 @@ def unperturbed(scene: Scene) -> dict[int, Polynomial]:
     ring: Ring = scene.ring
     images: dict[int, Polynomial] = {}
     spinning = turning(scene)
-    for one in scene.system.inputs:
-        images |= _standing(scene, "prescribed", one.name, one.held)
+    for system_input in scene.system.inputs:
+        images |= _standing(scene, "prescribed", system_input.name, system_input.held)
     for name, (value, rate) in motion_values(scene.system).items():
         speed = scene.lower(rate)
         images[ring.index("velocity", name)] = speed
@@ -66,14 +66,14 @@ def unperturbed(scene: Scene) -> dict[int, Polynomial]:
 
 def places(scene: Scene, initial: bool = False) -> list[dict[int, Polynomial]]:
     """``unperturbed`` where a motion is given, and the same of the ``initial`` position, where the ring has them."""
-    system, found = scene.system, []
-    given = [(x.coordinate, x.position) for x in system.initial if initial]
-    begun = tuple(MotionEntry(name, position, ZERO) for name, position in given if position is not None)
+    system, images = scene.system, []
+    positions = [(x.coordinate, x.position) for x in system.initial if initial]
+    begun = tuple(MotionEntry(name, position, ZERO) for name, position in positions if position is not None)
     for entries in filter(None, (system.motion, begun)):
         with suppress(Failure):
             there = Scene(replace(system, motion=entries), scene.ring, scene.environment, scene.ring, bodies=False)
-            found.append(unperturbed(there))
-    return found
+            images.append(unperturbed(there))
+    return images
 
 
 def vanishing(ring: Ring, x: Polynomial, places: Iterable[Mapping[int, Polynomial]]) -> list[bool]:
@@ -86,18 +86,18 @@ def in_step(ring: Ring, rates: Mapping[str, Polynomial]) -> dict[str, tuple[str,
 
     Two wheels of one size, two pendulums that turn over together: the angle between them does not vary.
     """
-    found: dict[str, tuple[str, int]] = {}
+    multiples: dict[str, tuple[str, int]] = {}
     own: list[str] = []
     turning = [(name, rate) for name, rate in rates.items() if name in ring.angles and not rate.is_zero()]
     for name, rate in sorted(turning, key=lambda item: abs(item[1].leading_coefficient())):
         for other in own:
             ratio = rate.leading_coefficient() / rates[other].leading_coefficient()
             if ratio.q == 1 and ring.is_zero(rate - ratio * rates[other]):
-                found[name] = (other, int(ratio))
+                multiples[name] = (other, int(ratio))
                 break
         else:
             own.append(name)
-    return found
+    return multiples
 
 
 def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict[int, Polynomial]:
@@ -106,7 +106,9 @@ def carried(scene: Scene, rates: Mapping[str, Polynomial] | None = None) -> dict
     What is prescribed counts among them.  ``rates`` are those of the motion where they are not all given.
     """
     system = scene.system
-    values = motion_values(system) | {one.name: (one.initial or ZERO, one.rate) for one in system.prescribed}
+    values = motion_values(system) | {
+        motion.name: (motion.initial or ZERO, motion.rate) for motion in system.prescribed
+    }
     driven, images = [prescribed.name for prescribed in system.prescribed], relations(scene)
     if rates is None:
         if scene not in _CARRIED:

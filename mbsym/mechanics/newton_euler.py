@@ -54,9 +54,9 @@ class Accelerations(Generic[S]):
         two = algebra.number(2)
         at = at + spin.cross(relative_velocity) * two
         self.origin[name] = forward(motion.turns, at + second, name)
-        given = scene.given.get(name)
-        if given is not None:
-            self.spin[name], self.angular[name] = given.angular_velocity, given.angular_acceleration
+        rotation = scene.given.get(name)
+        if rotation is not None:
+            self.spin[name], self.angular[name] = rotation.angular_velocity, rotation.angular_acceleration
             return
         for turn in motion.turns:
             rate = axis_vector(algebra, turn.axis, turn.rate, turn.frame)

@@ -197,12 +197,12 @@ class Placement:
     @cached_property
     def joined(self) -> dict[str, list[str]]:
         """By a name the bodies whose place or turns against the body before them depend on it, from the base on."""
-        found: dict[str, list[str]] = {}
+        dependents: dict[str, list[str]] = {}
         for body in self.system.bodies:
             turns = (names(angle) for _, angle in body.rotation.turns())
             for name in set().union(*map(names, body.connection_point), *turns):
-                found.setdefault(name, []).append(body.name)
-        return found
+                dependents.setdefault(name, []).append(body.name)
+        return dependents
 
     def _rodrigues(self, k: int, s: Series, c: Series) -> list[Triple]:
         """e e^T + c (1 - e e^T) + s [e x], e the k-th unit vector."""
@@ -453,7 +453,7 @@ class Oracle:
     def momentum_rates(self) -> Wrenches:
         """The sums of m r_C'' and of r_C x m r_C'' + dH_C/dt."""
         two = self.numbers.number(2)
-        found = {}
+        wrenches = {}
         for body in self.system.bodies:
             mass = self.moving.lower(body.mass).a
             tensor = self.moving.inertia(body)
@@ -472,18 +472,18 @@ class Oracle:
             moment = cross([x.a for x in centre], force)
             if change is not None:
                 moment = [a + b for a, b in zip(moment, change, strict=True)]
-            found[body.name] = force, moment
-        return self._gathered(found)
+            wrenches[body.name] = force, moment
+        return self._gathered(wrenches)
 
     def weights(self, load: loads.UniformGravity) -> Wrenches:
         """The sums of m g and of r_C x m g; the same load is asked for again and again."""
         if load not in self._weights:
-            found, field = {}, [x.a for x in self.rest.lower.vector(load.acceleration)]
+            wrenches, field = {}, [x.a for x in self.rest.lower.vector(load.acceleration)]
             for body in self.system.bodies:
                 mass = self.rest.lower(body.mass).a
                 force = [mass * x for x in field]
-                found[body.name] = force, cross([x.a for x in self.rest.mass_centre(body)], force)
-            self._weights[load] = self._gathered(found)
+                wrenches[body.name] = force, cross([x.a for x in self.rest.mass_centre(body)], force)
+            self._weights[load] = self._gathered(wrenches)
         return self._weights[load]
 
     def _gathered(self, own: Wrenches) -> Wrenches:
@@ -626,11 +626,11 @@ def _newtonian_in_size(load: loads.NewtonianGravity, place: Placement, order: in
     two, half = algebra.number(2), algebra.number(Fraction(1, 2))
 
     def product(a: list[Series], b: list[Series]) -> list[Series]:
-        found = [algebra.zero] * (order + 1)
+        coefficients = [algebra.zero] * (order + 1)
         for i, first in enumerate(a):
             for j, second in enumerate(b[: order + 1 - i]):
-                found[i + j] = found[i + j] + first * second
-        return found
+                coefficients[i + j] = coefficients[i + j] + first * second
+        return coefficients
 
     total = algebra.zero
     for body in _attracted(load, place):

@@ -182,26 +182,30 @@ def forward_dynamics(
         besides = {name: program.input(force) for name, force in pushed.items()}
         total = {name: value + besides.get(name, program.zero) for name, value in needed.generalized.items()}
         needed = replace(needed, generalized=total)
-    given = constants(system)
-    found: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}
+    constant_names = constants(system)
+    solutions: dict[str, tuple[tuple[Node, ...], tuple[Node, ...]]] = {}
     operations: dict[str, int] = {}
     estimated: set[str] = set()
     possible = articulated.applies(frames)
     if method not in (None, *METHODS) or (method == ARTICULATED and not possible):
         raise ValueError(f"this method of forward dynamics does not apply: {method}")
     if possible and method != FACTORISED:
-        found[ARTICULATED] = articulated.solve(frames, needed)
-        operations[ARTICULATED] = program.operations([x for part in found[ARTICULATED] for x in part], given)
+        solutions[ARTICULATED] = articulated.solve(frames, needed)
+        operations[ARTICULATED] = program.operations(
+            [x for part in solutions[ARTICULATED] for x in part], constant_names
+        )
     if method != ARTICULATED:
-        least = factorisation.counted(_pattern(frames)) if found else 0
-        if found and least > operations[ARTICULATED]:
+        least = factorisation.counted(_pattern(frames)) if solutions else 0
+        if solutions and least > operations[ARTICULATED]:
             operations[FACTORISED] = least
             estimated.add(FACTORISED)
         else:
-            found[FACTORISED] = factorisation.solve(program, mass_matrix(frames), forcing(frames, needed))
-            operations[FACTORISED] = program.operations([x for part in found[FACTORISED] for x in part], given)
-    chosen = min(found, key=lambda name: operations[name])
-    accelerations, pivots = found[chosen]
+            solutions[FACTORISED] = factorisation.solve(program, mass_matrix(frames), forcing(frames, needed))
+            operations[FACTORISED] = program.operations(
+                [x for part in solutions[FACTORISED] for x in part], constant_names
+            )
+    chosen = min(solutions, key=lambda name: operations[name])
+    accelerations, pivots = solutions[chosen]
     return ForwardDynamics(program, inputs, accelerations, pivots, chosen, operations, frozenset(estimated))
 
 

@@ -55,7 +55,7 @@ def reactions(scene: Scene, bodies: Sequence[str], rows: Sequence[tuple[int, int
     needed = _transmitted(scene, inertia_wrenches(scene), actions(scene))
     nothing = {name: (scene.zero(name), scene.zero(name)) for name in scene.motions}
     tied = [_transmitted(scene, nothing, [constraint_action(scene, *row)]) for row in rows]
-    return tuple(Reaction(name, *needed[name], tuple(one[name] for one in tied)) for name in bodies)
+    return tuple(Reaction(name, *needed[name], tuple(transmitted[name] for transmitted in tied)) for name in bodies)
 
 
 def _transmitted(scene: Scene, wrenches: dict[str, Pair], supplied: Sequence[Action]) -> dict[str, Pair]:

@@ -48,24 +48,26 @@ class Standard:
 def standard_parameters(scene: Scene[S]) -> tuple[Standard, ...]:
     """Ten of each body that has mass or inertia, body by body."""
     weighty = (
-        name for name, one in scene.motions.items() if one.inertia is not None or not scene.algebra.vanishes(one.mass)
+        name
+        for name, motion in scene.motions.items()
+        if motion.inertia is not None or not scene.algebra.vanishes(motion.mass)
     )
     return tuple(Standard(name, kind) for name in weighty for kind in KINDS)
 
 
 def values(scene: Scene[S]) -> dict[Standard, S]:
     """The parameters that the description gives its bodies."""
-    found = {}
+    parameter_values = {}
     for standard_parameter in standard_parameters(scene):
         own = mass_properties(scene, standard_parameter.body)
         if standard_parameter.kind == "m":
-            found[standard_parameter] = own.mass
+            parameter_values[standard_parameter] = own.mass
         elif standard_parameter.kind in KINDS[6:9]:
-            found[standard_parameter] = own.first_moment[KINDS.index(standard_parameter.kind) - 6]
+            parameter_values[standard_parameter] = own.first_moment[KINDS.index(standard_parameter.kind) - 6]
         else:
             i, j = _PAIRS[KINDS.index(standard_parameter.kind)]
-            found[standard_parameter] = own.tensor[i][j]
-    return {standard: scene.algebra.reduce(value) for standard, value in found.items()}
+            parameter_values[standard_parameter] = own.tensor[i][j]
+    return {standard: scene.algebra.reduce(value) for standard, value in parameter_values.items()}
 
 
 #: A parameter of an elementary frame: its number in the articulation, and which of KINDS.
@@ -79,9 +81,9 @@ def regrouped(system: Articulation[S]) -> dict[Standard, dict[Slot, S]]:
     tensor with Jcc at (b, b) and (c, c); of a slide the tensor; all of what is fixed.  What reaches the ground has no
     effect.
     """
-    algebra, found = system.algebra, dict[Standard, dict[Slot, S]]()
+    algebra, combinations = system.algebra, dict[Standard, dict[Slot, S]]()
     for standard_parameter in standard_parameters(system.scene):
-        shares = found[standard_parameter] = {}
+        shares = combinations[standard_parameter] = {}
         number = system.frame_of[standard_parameter.body]
         own = _unit(algebra, standard_parameter.kind, system.frames[number].name)
         while number >= 0:
@@ -95,7 +97,7 @@ def regrouped(system: Articulation[S]) -> dict[Standard, dict[Slot, S]]:
             if frame.fixed_offset:
                 own = shifted(algebra, own, frame.offset)
             number = frame.parent
-    return found
+    return combinations
 
 
 def _unit(algebra: Algebra[S], kind: str, frame: str) -> MassProperties[S]:
@@ -174,11 +176,11 @@ class Energies(Generic[S]):
         return algebra.times(half, share) if i == j else share, algebra.zero
 
 
-def column(scene: Scene[S], found: Accelerations[S], standard: Standard) -> tuple[S, ...]:
+def column(scene: Scene[S], accelerations: Accelerations[S], standard: Standard) -> tuple[S, ...]:
     """The column of Y that belongs to a parameter, at the state and accelerations of the scene's environment."""
     algebra, body = scene.algebra, standard.body
-    spin, angular = scene.motions[body].angular_velocity, found.angular[body]
-    origin = found.origin[body] + scene.to_axes(base_acceleration(scene), body)
+    spin, angular = scene.motions[body].angular_velocity, accelerations.angular[body]
+    origin = accelerations.origin[body] + scene.to_axes(base_acceleration(scene), body)
     unit = algebra.one
     force = moment = scene.zero(body)
     if standard.kind == "m":

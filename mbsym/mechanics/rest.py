@@ -87,8 +87,10 @@ def at_numbers(system: System, values: Mapping[str, Value]) -> System:
             numbers[name] = _folded(substitute(pending.pop(name), numbers))
     turning = tuple(replace(entry, value=ZERO) for entry in system.motion)
     bare = replace(held(system), parameters=(), relations=(), assumptions=(), notation=(), initial=(), motion=turning)
-    found: System = put(replace(bare, time_scale=None), numbers)
-    return replace(found, loads=tuple(load for x in found.loads if (load := x.simplified()) is not None))
+    numeric_system: System = put(replace(bare, time_scale=None), numbers)
+    return replace(
+        numeric_system, loads=tuple(load for x in numeric_system.loads if (load := x.simplified()) is not None)
+    )
 
 
 def _folded(expression: Expression) -> Expression:
@@ -150,13 +152,13 @@ class Rest:
         ring, names = self.ring, self.system.coordinates
         moving = [*self.turning, *(item.name for item in self.system.prescribed), "t"]
         still = {ring.index("velocity", name): ring.zero for name in names}
-        found = []
+        tied = []
         for row in self.rows:
             parts = [*([] if row.position is None else [row.position]), *row.partials]
-            found += [name for x in parts for name in ring.dependencies(x, moving)]
-            found += [name for name in self.turning if not row.partials[names.index(name)].is_zero()]
-            found += [str(row.name.label)] if not ring.substitute(row.velocity, still).is_zero() else []
-        return tuple(dict.fromkeys(found))
+            tied += [name for x in parts for name in ring.dependencies(x, moving)]
+            tied += [name for name in self.turning if not row.partials[names.index(name)].is_zero()]
+            tied += [str(row.name.label)] if not ring.substitute(row.velocity, still).is_zero() else []
+        return tuple(dict.fromkeys(tied))
 
     @property
     def constant(self) -> tuple[str, ...]:
@@ -194,7 +196,7 @@ def rest(system: System) -> Rest:
     for name in system.coordinates:
         environment[acceleration_name(name)] = ring.zero
     scene = Scene(system, ring, environment, ring)
-    found = residuals(scene)
+    equations = residuals(scene)
     rates = {ring.index("velocity", name): ring.zero for name in system.coordinates}
     turning = []
     for entry in system.motion:
@@ -202,7 +204,7 @@ def rest(system: System) -> Rest:
         rates[ring.index("velocity", entry.coordinate)] = rate
         if not rate.is_zero():
             turning.append(entry.coordinate)
-    forcing = tuple(-found[name] for name in system.coordinates)
+    forcing = tuple(-equations[name] for name in system.coordinates)
     at_rest = tuple(ring.substitute(x, dict(rates)) for x in forcing)
     rows: tuple[Row, ...] = ()
     if system.constraints:

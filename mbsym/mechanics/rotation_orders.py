@@ -52,13 +52,13 @@ def _orders(body: Body, spin: str) -> list[tuple[tuple[int, Expression], ...]]:
 
     What spins, or the first turn at rest, keeps its axis.
     """
-    turns = given = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
+    turns = declared = tuple(zip(body.rotation.axes, body.rotation.angles, strict=True))
     if len({axis for axis, _ in turns}) < len(turns) == 3:
         first = next(turn for turn in turns if angle_name(turn[1]) == spin)
         others = [angle for _, angle in turns if angle_name(angle) != spin]
         left = [axis for axis in (1, 2, 3) if axis != first[0]]
         turns = (first, *zip(left, others, strict=True))
-    orders = [order for order in permutations(turns) if order != given]
+    orders = [order for order in permutations(turns) if order != declared]
     return sorted(orders, key=lambda order: [angle_name(angle) for _, angle in order].index(spin))
 
 

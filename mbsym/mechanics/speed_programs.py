@@ -60,7 +60,7 @@ def speed_program(form: SpeedForm) -> SpeedProgram:
 
 def orthonormal(system: System) -> tuple[tuple[tuple[str, ...], ...], ...]:
     """Of every body told by unit vectors or a quaternion the components of the vectors whose products are kept."""
-    return tuple(tuple(one.components for one in body.orientation) for body in system.bodies if body.orientation)
+    return tuple(tuple(vector.components for vector in body.orientation) for body in system.bodies if body.orientation)
 
 
 def restoring(program: Program, system: System) -> dict[str, Node]:

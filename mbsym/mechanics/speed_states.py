@@ -31,18 +31,18 @@ def completed(oracle: Oracle) -> State:
 def variables(oracle: Oracle) -> dict[str, Series]:
     """Speeds and components of unit vectors as series in time, of which the first two coefficients count."""
     system = oracle.system
-    found: dict[str, Series] = {}
+    series: dict[str, Series] = {}
     for body in system.bodies:
         if not body.orientation:
             continue
         own, frame = oracle.moving.axes[body.name], oracle.moving.axes[body.attached_to]
         for vector in body.orientation:
             if isinstance(vector, Quaternion):
-                found |= dict(zip(vector.components, _quaternion(oracle, own, frame), strict=True))
+                series |= dict(zip(vector.components, _quaternion(oracle, own, frame), strict=True))
                 continue
             for i, name in enumerate(vector.components):
-                found[name] = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
-    return found | {speed.name: _speed(oracle, speed) for speed in system.speeds}
+                series[name] = _sum(own[k][i] * frame[k][vector.axis - 1] for k in range(3))
+    return series | {speed.name: _speed(oracle, speed) for speed in system.speeds}
 
 
 def _quaternion(oracle: Oracle, own: Any, frame: Any) -> list[Series]:
@@ -56,8 +56,8 @@ def _quaternion(oracle: Oracle, own: Any, frame: Any) -> list[Series]:
 
 
 def _sum(items: Any) -> Any:
-    found = list(items)
-    return sum(found[1:], start=found[0])
+    terms = list(items)
+    return sum(terms[1:], start=terms[0])
 
 
 def _speed(oracle: Oracle, speed: Speed) -> Series:
@@ -105,5 +105,5 @@ def slopes(oracle: Oracle, speed: Speed) -> list[Scalar]:
 
 
 def _dual(oracle: Oracle, value: Scalar, moves: bool, rate: Scalar | None = None) -> Any:
-    one = oracle.numbers.one if rate is None else rate
-    return Dual(value, one if moves else oracle.numbers.zero)
+    seed = oracle.numbers.one if rate is None else rate
+    return Dual(value, seed if moves else oracle.numbers.zero)

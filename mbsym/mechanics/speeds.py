@@ -95,8 +95,8 @@ class SpeedForm:
         velocities = [x for (x,) in solved(ring, [[row[k] for k in chosen] for row in rows], [[x] for x in targets])]
         self.velocities: dict[str, Polynomial] = {self.coordinates[k]: velocity[k] for k in left}
         self.velocities |= {self.coordinates[k]: x for k, x in zip(chosen, velocities, strict=True)}
-        kept = {self.coordinates[k] for k in left}
-        self.speeds = tuple(self._speeds(kept))
+        retained = {self.coordinates[k] for k in left}
+        self.speeds = tuple(self._speeds(retained))
         self.positions = tuple(self._variable(name) for name in self._position_names())
 
     # --- u = S q' + s0 ------------------------------------------------------------------------------------------------
@@ -118,30 +118,32 @@ class SpeedForm:
     @cached_property
     def _in_velocities(self) -> list[Polynomial]:
         """Every speed in q', for bodies that are told by vectors and do not turn on what they hang on."""
-        ring, given = self.ring, self._given(self.ring, self._plain, only_vectors=True)
+        ring, rotations = self.ring, self._given(self.ring, self._plain, only_vectors=True)
         for body in self.oriented:
-            scene = Scene(self.system, ring, self._plain, ring, given=given)
+            scene = Scene(self.system, ring, self._plain, ring, given=rotations)
             motion = scene.motions[body.name]
             carried = motion.angular_velocity - motion.relative_angular_velocity
-            given[body.name] = Given(carried, given[body.name].angular_acceleration, given[body.name].cosines)
-        return self._told(given)
+            rotations[body.name] = Given(
+                carried, rotations[body.name].angular_acceleration, rotations[body.name].cosines
+            )
+        return self._told(rotations)
 
     @cached_property
     def in_coordinates(self) -> list[Polynomial]:
         """Every speed in (q, q', t), the angles that unit vectors replace among q."""
         return self._told({})
 
-    def _told(self, given: Mapping[str, Given]) -> list[Polynomial]:
-        """Every speed, where the bodies of ``given`` turn as that says."""
+    def _told(self, rotations: Mapping[str, Given]) -> list[Polynomial]:
+        """Every speed, where the bodies of ``rotations`` turn as that says."""
         declared = self.system.speeds
-        forms = dict(zip((x.name for x in declared), self._forms(declared, given), strict=True))
+        forms = dict(zip((x.name for x in declared), self._forms(declared, rotations), strict=True))
         return [forms.get(u.name, self.ring.context.gen(u.index)) for u in self.speeds]
 
     @cached_property
     def plainly(self) -> dict[str, Polynomial]:
         """Every speed and every position but the components of quaternions, by name, in (q, q', t)."""
-        found = {x.name: self.in_angles(self.ring.context.gen(x.index)) for x in self.positions}
-        return found | dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
+        polynomials = {x.name: self.in_angles(self.ring.context.gen(x.index)) for x in self.positions}
+        return polynomials | dict(zip((u.name for u in self.speeds), self.in_coordinates, strict=True))
 
     def variables_in_coordinates(self, program: Program) -> dict[str, Node]:
         """Every declared speed and every component of a unit vector or quaternion, by name, in (q, q', t).
@@ -173,8 +175,8 @@ class SpeedForm:
         turns = [(axis, *lower.angle(divide(angle, number(2)))) for axis, angle in body.rotation.turns()]
         return dict(zip(quaternion.components, quaternions.of_turns(algebra, turns), strict=True))
 
-    def _forms(self, speeds: Sequence[Speed], given: Mapping[str, Given]) -> list[Polynomial]:
-        scene = Scene(self.system, self.ring, self._plain, self.ring, bodies=bool(speeds), given=given)
+    def _forms(self, speeds: Sequence[Speed], rotations: Mapping[str, Given]) -> list[Polynomial]:
+        scene = Scene(self.system, self.ring, self._plain, self.ring, bodies=bool(speeds), given=rotations)
         spins = [dict(zip(OMEGA, scene.motions[speed.body].angular_velocity, strict=True)) for speed in speeds]
         return [Lowering(self.ring, {**self._plain, **spin})(x.form) for x, spin in zip(speeds, spins, strict=True)]
 
@@ -204,11 +206,11 @@ class SpeedForm:
                 best = min(best, other, key=itemgetter(0))
         return best[1]
 
-    def _speeds(self, kept: set[str]) -> list[Variable]:
+    def _speeds(self, retained: set[str]) -> list[Variable]:
         speeds = []
         for body in self.system.bodies:
             speeds += [self._variable(speed.name) for speed in body.speeds]
-            speeds += [self._velocity(name) for name in body.coordinates if name in kept]
+            speeds += [self._velocity(name) for name in body.coordinates if name in retained]
         return speeds
 
     def _position_names(self) -> list[str]:
@@ -229,14 +231,14 @@ class SpeedForm:
 
     def velocity(self, name: str) -> Polynomial:
         """What a generalised force on a coordinate or speed of that name works on, in (s, u, t)."""
-        found = self.velocities.get(name)
-        return self.ring.generator("coordinate", name) if found is None else found
+        polynomial = self.velocities.get(name)
+        return self.ring.generator("coordinate", name) if polynomial is None else polynomial
 
     # --- scenes ------------------------------------------------------------------------------------------------------
 
     def _given(self, algebra: Algebra, values: Mapping[str, Scalar], only_vectors: bool) -> dict[str, Given]:
         """What is a variable of its own: all of an angular velocity, and direction cosines."""
-        found = {}
+        rotations = {}
         for body in self.system.bodies:
             own = {speed.component: speed.name for speed in self.system.speeds if speed.body == body.name}
             if not {1, 2, 3} <= own.keys() or (only_vectors and not body.orientation):
@@ -244,8 +246,8 @@ class SpeedForm:
             spin = Vector(algebra, (values[own[1]], values[own[2]], values[own[3]]), body.name)
             a, b, c = (values[velocity_name(own[k])] for k in (1, 2, 3))
             cosines = direction_cosines_of(algebra, body, values) if body.orientation else None
-            found[body.name] = Given(spin, Vector(algebra, (a, b, c), body.name), cosines)
-        return found
+            rotations[body.name] = Given(spin, Vector(algebra, (a, b, c), body.name), cosines)
+        return rotations
 
     def scene(self, bodies: bool = True) -> Scene:
         """The system over the ring with everything in (s, u, u'); without ``bodies`` formulas can be lowered only."""
@@ -262,8 +264,8 @@ class SpeedForm:
             own = (self.velocities[name], self.accelerations[name])
             first, second = own if carry is None else (carry(own[0]), carry(own[1]))
             environment |= {velocity_name(name): first, acceleration_name(name): second}
-        given = self._given(algebra, values, only_vectors=False)
-        return Scene(self.system, algebra, environment, self.ring, bodies=bodies, given=given, in_speeds=True)
+        rotations = self._given(algebra, values, only_vectors=False)
+        return Scene(self.system, algebra, environment, self.ring, bodies=bodies, given=rotations, in_speeds=True)
 
     @cached_property
     def _gone(self) -> frozenset[str]:
@@ -276,17 +278,17 @@ class SpeedForm:
     def rates(self) -> dict[str, Polynomial]:
         """s' by name."""
         ring, polynomials = self.ring, dict(self.velocities)
-        given = self._given(ring, self._plain, only_vectors=False)
-        scene = Scene(self.system, ring, self._in_speeds, ring, bodies=bool(self.oriented), given=given)
+        rotations = self._given(ring, self._plain, only_vectors=False)
+        scene = Scene(self.system, ring, self._in_speeds, ring, bodies=bool(self.oriented), given=rotations)
         for body in self.oriented:
             spin = scene.motions[body.name].relative_angular_velocity
-            for one in body.orientation:
-                values = [self._plain[name] for name in one.components]
-                if isinstance(one, Quaternion):
+            for vector in body.orientation:
+                values = [self._plain[name] for name in vector.components]
+                if isinstance(vector, Quaternion):
                     rates = [ring.reduce(x) for x in quaternions.rates(ring, values, list(spin))]
                 else:
                     rates = list(Vector(ring, (values[0], values[1], values[2]), body.name).cross(spin))
-                polynomials |= dict(zip(one.components, rates, strict=True))
+                polynomials |= dict(zip(vector.components, rates, strict=True))
         return polynomials
 
     @cached_property
@@ -327,8 +329,8 @@ class SpeedForm:
         with these in its place.  A polynomial vanishes where |e| = 1 if and only if |e|^2 - 1 divides it; behind roots
         and reciprocals that hold e a zero may hide.
         """
-        found = self.ring.is_zero(self.in_angles(x))
-        return None if found is False and self._hides(x) else found
+        verdict = self.ring.is_zero(self.in_angles(x))
+        return None if verdict is False and self._hides(x) else verdict
 
     def in_angles(self, x: Polynomial) -> Polynomial:
         """x with the unit vectors in terms of the angles that they replace, and modulo |e|^2 - 1 of quaternions."""
@@ -391,12 +393,14 @@ class SpeedForm:
     def occurring(self, formulas: Sequence[Polynomial]) -> tuple[Variable, ...]:
         """The positions on which formulas depend, and those on which their derivatives depend."""
         ring, names = self.ring, [position.name for position in self.positions]
-        found: set[str] = set()
+        dependencies: set[str] = set()
         new = {name for x in formulas for name in ring.dependencies(x, names)}
         while new:
-            found |= new
-            new = {name for one in new for name in ring.dependencies(self.rates[one], names)} - found
-        return tuple(position for position in self.positions if position.name in found)
+            dependencies |= new
+            new = {
+                name for position_name in new for name in ring.dependencies(self.rates[position_name], names)
+            } - dependencies
+        return tuple(position for position in self.positions if position.name in dependencies)
 
 
 def _is_own(speed: Speed, body: Body) -> bool:

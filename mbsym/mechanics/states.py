@@ -44,13 +44,15 @@ def drawn(system: System, ring: Ring, source: random.Random, fine: int = 1) -> d
                 values[parameter.name] = -values[parameter.name]
         if not system.assumptions or is_allowed(system, Rationals({}, {}), values):
             return values
-    given = {one.name: rational(one.value) for one in system.parameters}
-    return values | {name: rationals.exact(x) for name, x in given.items() if x is not None}
+    declared_values = {symbol.name: rational(symbol.value) for symbol in system.parameters}
+    return values | {name: rationals.exact(x) for name, x in declared_values.items() if x is not None}
 
 
 def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any]) -> bool:
     """Whether declared signs and assumptions are kept; the relations between parameters are no matter here."""
-    if not all(has_sign(values[one.name], one.sign) for one in system.parameters if one.name in values):
+    if not all(
+        has_sign(values[parameter.name], parameter.sign) for parameter in system.parameters if parameter.name in values
+    ):
         return False
     if not system.assumptions:
         return True
@@ -59,7 +61,10 @@ def is_allowed(system: System, numbers: Algebra[Any], values: Mapping[str, Any])
         for symbol in system.notation:
             values[symbol.name] = Lowering(numbers, values)(symbol.value)
         lower = Lowering(numbers, values)
-        return all(holds(lower(one.left) - lower(one.right), one.relation) for one in system.assumptions)
+        return all(
+            holds(lower(assumption.left) - lower(assumption.right), assumption.relation)
+            for assumption in system.assumptions
+        )
     except NOT_THERE:
         return True
 
@@ -77,7 +82,7 @@ def _tangents(system: System, ring: Ring, source: random.Random, fine: int = 1) 
     tangents = {
         name: fmpq(source.randint(-9 * fine, 9 * fine) or fine, source.randint(fine, 9 * fine)) for name in ring.angles
     }
-    if not any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation):
+    if not any(isinstance(vector, Quaternion) for body in system.bodies for vector in body.orientation):
         return tangents
     quarters = {name: x / 10 for name, x in tangents.items()}  # no quarter turn of 45 degrees
     return {name: 2 * x / (1 - x * x) for name, x in quarters.items()}

@@ -68,11 +68,16 @@ def is_free_about_the_origin(system: System) -> bool:
 def _attitude(body: Body) -> tuple[str, str, str] | None:
     """The three coordinates that turn a body in space, if its joint is made of them."""
     axes = body.rotation.axes
-    found = [angle_name(angle) for angle in body.rotation.angles]
+    coordinates = [angle_name(angle) for angle in body.rotation.angles]
     turns_freely = len(axes) == 3 and axes[0] != axes[1] != axes[2]
-    if not turns_freely or None in found or len(set(found)) != 3 or not {*found} <= {*body.coordinates}:
+    if (
+        not turns_freely
+        or None in coordinates
+        or len(set(coordinates)) != 3
+        or not {*coordinates} <= {*body.coordinates}
+    ):
         return None
-    return (str(found[0]), str(found[1]), str(found[2]))
+    return (str(coordinates[0]), str(coordinates[1]), str(coordinates[2]))
 
 
 def _same_in_every_direction(system: System, root: Body, angles: Sequence[str]) -> bool:
@@ -114,41 +119,41 @@ class Reflection:
     same_forces: bool
 
 
-def reflections(found: Rest) -> tuple[Reflection, ...]:
+def reflections(rest: Rest) -> tuple[Reflection, ...]:
     """The pairs of polar coordinates of a system, proved in the ring; a length that belongs to two angles once."""
-    ring, names = found.ring, found.system.coordinates
+    ring, names = rest.ring, rest.system.coordinates
     angles = [x for x in names if ring.angles.get(x) == 1]
     made = []
-    for length in (x for x in found.constant if x not in ring.angles):
+    for length in (x for x in rest.constant if x not in ring.angles):
         for angle in angles:
             try:
-                if _moves_nothing(found, length, angle) and _same_places(found, length, angle):
-                    made.append(Reflection(length, angle, _same_forces(found, length, angle)))
+                if _moves_nothing(rest, length, angle) and _same_places(rest, length, angle):
+                    made.append(Reflection(length, angle, _same_forces(rest, length, angle)))
                     break
             except NOT_THERE:
                 continue
     return tuple(made)
 
 
-def reflected(found: Rest, x: Polynomial, length: str, angle: str) -> Polynomial:
+def reflected(rest: Rest, x: Polynomial, length: str, angle: str) -> Polynomial:
     """x at -r, theta + pi, -r'."""
-    ring = found.ring
+    ring = rest.ring
     places = (("coordinate", length), ("velocity", length), ("sine", angle), ("cosine", angle))
     return ring.substitute(x, {ring.index(*place): -ring.generator(*place) for place in places})
 
 
-def _moves_nothing(found: Rest, length: str, angle: str) -> bool:
+def _moves_nothing(rest: Rest, length: str, angle: str) -> bool:
     """Whether the row of ``angle`` in the mass matrix vanishes where the length does, and not everywhere."""
-    ring = found.ring
-    row = found.mass_matrix()[found.system.coordinates.index(angle)]
+    ring = rest.ring
+    row = rest.mass_matrix()[rest.system.coordinates.index(angle)]
     zero = {ring.index("coordinate", length): ring.zero}
     return all(ring.substitute(x, dict(zero)).is_zero() for x in row) and any(not x.is_zero() for x in row)
 
 
-def _same_places(found: Rest, length: str, angle: str) -> bool:
+def _same_places(rest: Rest, length: str, angle: str) -> bool:
     """Whether no mass centre moves in the reflection, and no body that has an inertia turns."""
-    ring, scene = found.ring, found.scene
-    for body in found.system.bodies:
+    ring, scene = rest.ring, rest.scene
+    for body in rest.system.bodies:
         motion = scene.motions[body.name]
         if motion.mass == 0 and motion.inertia is None:
             continue
@@ -156,17 +161,17 @@ def _same_places(found: Rest, length: str, angle: str) -> bool:
         if motion.inertia is not None:
             axes = [axis_vector(ring, k, ring.one, body.name) for k in (1, 2)]
             seen += [x for axis in axes for x in scene.to_axes(axis, INERTIAL)]
-        if any(ring.is_zero(reflected(found, x, length, angle) - x) is not True for x in seen):
+        if any(ring.is_zero(reflected(rest, x, length, angle) - x) is not True for x in seen):
             return False
     return True
 
 
-def _same_forces(found: Rest, length: str, angle: str) -> bool:
+def _same_forces(rest: Rest, length: str, angle: str) -> bool:
     signs = {length: -1}
-    ring = found.ring
+    ring = rest.ring
     return all(
-        ring.is_zero(reflected(found, f, length, angle) - signs.get(name, 1) * f) is True
-        for name, f in zip(found.system.coordinates, found.forcing, strict=True)
+        ring.is_zero(reflected(rest, f, length, angle) - signs.get(name, 1) * f) is True
+        for name, f in zip(rest.system.coordinates, rest.forcing, strict=True)
     )
 
 

@@ -85,7 +85,7 @@ def time_derivative(expression: Expression, system: System, frozen: bool = False
 
 def _names(expression: Expression) -> set[str]:
     """The names that occur; a part shared by many parents is looked at once."""
-    found: set[str] = set()
+    occurring: set[str] = set()
     seen: set[int] = set()
     pending = [expression]
     while pending:
@@ -94,8 +94,8 @@ def _names(expression: Expression) -> set[str]:
             seen.add(id(node))
             pending.extend(children(node))
             if isinstance(node, Name):
-                found.add(node.name)
-    return found
+                occurring.add(node.name)
+    return occurring
 
 
 def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> dict[str, int]:
@@ -105,31 +105,33 @@ def angle_denominators(system: System, arguments: Iterable[Expression] = ()) -> 
 
     A coordinate's unperturbed value takes the coordinate's place, so its names count with the same coefficients.
     """
-    found: dict[str, int] = {}
+    denominators: dict[str, int] = {}
     at_rest = {entry.coordinate: entry.value for entry in system.motion}
-    at_rest |= {one.name: one.held for one in system.inputs}
+    at_rest |= {signal.name: signal.held for signal in system.inputs}
 
     def note(argument: Expression) -> None:
         form = linear_form(argument)
         if form is None:
             return
         for name, coefficient in form.coefficients:
-            found[name] = lcm(found.get(name, 1), coefficient.denominator)
+            denominators[name] = lcm(denominators.get(name, 1), coefficient.denominator)
             if name in at_rest:
                 inner = linear_form(at_rest[name])
                 for other, factor in inner.coefficients if inner is not None else ():
-                    found[other] = lcm(found.get(other, 1), (factor * coefficient).denominator)
+                    denominators[other] = lcm(denominators.get(other, 1), (factor * coefficient).denominator)
 
     for argument in (*angles_of(system), *arguments):
         note(argument)
     for relation in reversed(system.relations):  # what an angle is related to stands under its sine then
         form = linear_form(relation.value)
-        if relation.name in found and form is not None and not form.constant:
+        if relation.name in denominators and form is not None and not form.constant:
             for other, factor in form.coefficients:
-                found[other] = lcm(found.get(other, 1), (factor / found[relation.name]).denominator)
+                denominators[other] = lcm(
+                    denominators.get(other, 1), (factor / denominators[relation.name]).denominator
+                )
     driven = (*(item.name for item in system.prescribed), *system.input_names)
     declared = [*system.coordinates, *driven, *system.parameter_names, "t"]
-    return {name: found[name] for name in declared if name in found}
+    return {name: denominators[name] for name in declared if name in denominators}
 
 
 def angles_of(system: System) -> Iterator[Expression]:
@@ -148,14 +150,14 @@ def half_angles(system: System) -> list[Expression]:
     values = {entry.coordinate: entry.value for entry in system.motion if entry.rate == ZERO}
     zeros = dict.fromkeys(system.coordinates, ZERO) if values else {}
     turning = {entry.coordinate for entry in system.motion if entry.rate != ZERO}
-    found = []
+    halves = []
     for body in system.bodies if zeros else ():
-        if any(isinstance(one, Quaternion) for one in body.orientation):
+        if any(isinstance(vector, Quaternion) for vector in body.orientation):
             for _, angle in body.rotation.turns():
                 value = substitute(angle, zeros | values)
                 if value != ZERO and not names(angle) & turning:
-                    found.append(divide(value, number(2)))
-    return found
+                    halves.append(divide(value, number(2)))
+    return halves
 
 
 def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set[tuple[Fraction, Fraction]]:
@@ -163,10 +165,10 @@ def constant_angles(system: System, arguments: Iterable[Expression] = ()) -> set
 
     Those that an unperturbed motion brings are among them; multiples of pi/2, whose sines are whole numbers, are not.
     """
-    values = (*(entry.value for entry in system.motion), *(one.held for one in system.inputs))
+    values = (*(entry.value for entry in system.motion), *(signal.held for signal in system.inputs))
     forms = (linear_form(x) for x in (*angles_of(system), *arguments, *values))
-    found = {(form.turns % 2, form.constant) for form in forms if form is not None}
-    return {(turns, radians) for turns, radians in found if radians or turns.denominator > 2}
+    constants = {(form.turns % 2, form.constant) for form in forms if form is not None}
+    return {(turns, radians) for turns, radians in constants if radians or turns.denominator > 2}
 
 
 def has_linear_angles(system: System) -> bool:
@@ -224,7 +226,9 @@ ASSUMPTION_WORK = 100_000
 
 def _assumed(system: System, ring: Ring) -> Iterator[Any]:
     """What is declared or assumed to be positive, as polynomials: sqrt((a - b)**2) is b - a under a < b."""
-    yield from (-ring.generator("parameter", one.name) for one in system.parameters if one.sign == "negative")
+    yield from (
+        -ring.generator("parameter", parameter.name) for parameter in system.parameters if parameter.sign == "negative"
+    )
     lower = Lowering(ring, ring_environment(system, ring))
     for assumption in system.assumptions:
         if assumption.relation in ("<", ">") and all(map(_is_polynomial, (assumption.left, assumption.right))):

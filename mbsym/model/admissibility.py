@@ -252,9 +252,9 @@ def _product(first: _Monomials, second: _Monomials) -> _Monomials | None:
     if len(first) * len(second) > _MAX_MONOMIALS:
         return None
     total: _Monomials = {}
-    for one, a in first.items():
+    for monomial, a in first.items():
         for other, b in second.items():
-            degrees = dict(one)
+            degrees = dict(monomial)
             for name, degree in other:
                 degrees[name] = degrees.get(name, 0) + degree
             key = tuple(sorted((name, degree) for name, degree in degrees.items() if degree))

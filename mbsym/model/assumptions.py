@@ -57,7 +57,7 @@ def contradictory(system: System) -> Assumption | None:
     None where there is none, or none is proved.
     """
     known = [*_declared(system), *_equations(system)]
-    added = [_inequalities(one.left, one.relation, one.right) for one in system.assumptions]
+    added = [_inequalities(premise.left, premise.relation, premise.right) for premise in system.assumptions]
     if _impossible([*known, *chain.from_iterable(added)]) is False:  # what all keep together, some do
         return None
     for assumption, inequalities in zip(system.assumptions, added, strict=True):
@@ -153,14 +153,14 @@ def _growth(known: set[_Inequality]) -> dict[str, int]:
 def _without(name: str, lower: _Inequality, upper: _Inequality) -> _Inequality:
     """The sum of the two in which a name drops out: positive in ``lower``, negative in ``upper``."""
     first, second = -upper.of(name), lower.of(name)
-    total = {one: first * value for one, value in lower.coefficients}
-    for one, value in upper.coefficients:
-        total[one] = total.get(one, Fraction(0)) + second * value
-    kept = tuple(sorted((one, value) for one, value in total.items() if value))
+    total = {variable: first * value for variable, value in lower.coefficients}
+    for variable, value in upper.coefficients:
+        total[variable] = total.get(variable, Fraction(0)) + second * value
+    coefficients = tuple(sorted((variable, value) for variable, value in total.items() if value))
     constant = first * lower.constant + second * upper.constant
-    scale = abs(kept[0][1]) if kept else Fraction(1)
-    kept = tuple((one, value / scale) for one, value in kept)
-    return _Inequality(kept, constant / scale, lower.strict or upper.strict)
+    scale = abs(coefficients[0][1]) if coefficients else Fraction(1)
+    coefficients = tuple((variable, value / scale) for variable, value in coefficients)
+    return _Inequality(coefficients, constant / scale, lower.strict or upper.strict)
 
 
 # Comparisons of numbers with zero, as assumptions state them and as the declared signs of parameters mean them.

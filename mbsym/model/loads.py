@@ -342,14 +342,14 @@ class GeneralizedForce(_Free):
         return tuple(force for _, force in self.components)
 
     def without(self, held: Container[str]) -> Self | None:
-        kept = tuple((name, force) for name, force in self.components if name not in held)
+        remaining = tuple((name, force) for name, force in self.components if name not in held)
         written = None if self.as_written is None else self.as_written.without(held)
-        return replace(self, components=kept, as_written=written) if kept else None
+        return replace(self, components=remaining, as_written=written) if remaining else None
 
     def simplified(self) -> Self | None:
-        kept = tuple((name, force) for name, force in self.components if rational(force) != 0)
+        remaining = tuple((name, force) for name, force in self.components if rational(force) != 0)
         written = None if self.as_written is None else self.as_written.simplified()
-        return replace(self, components=kept, as_written=written) if kept else None
+        return replace(self, components=remaining, as_written=written) if remaining else None
 
     def measured(self) -> Iterator[Measured]:
         for name, force in self.components:

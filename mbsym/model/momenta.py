@@ -19,9 +19,9 @@ def momentum_names(system: System) -> dict[str, str]:
     taken = {*system.coordinates, *system.parameter_names, *system.variables, *system.input_names}
     taken |= {item.name for item in system.prescribed} | {item.name for item in system.notation}
     taken |= {item.name for item in system.abbreviations} | {item.name for item in system.outputs}
-    found = {}
+    momenta = {}
     for name in system.coordinates:
         free = next(x for x in (f"p_{name}", *(f"p{k}_{name}" for k in range(1, 100))) if x not in taken)
-        found[name] = free
+        momenta[name] = free
         taken.add(free)
-    return found
+    return momenta

@@ -48,4 +48,8 @@ def oscillating_variables(system: System) -> tuple[str, ...]:
 def names_in(system: System) -> set[str]:
     """Every name that stands for something in the description."""
     records = (system.prescribed, system.notation, system.abbreviations, system.inputs, system.outputs, system.tables)
-    return {*oscillating_variables(system), *system.parameter_names, *(one.name for some in records for one in some)}
+    return {
+        *oscillating_variables(system),
+        *system.parameter_names,
+        *(entry.name for some in records for entry in some),
+    }

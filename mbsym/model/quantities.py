@@ -123,9 +123,9 @@ def units_by_name(system: System, more: Iterable[tuple[str, str | None]] = ()) -
         *system.input_names,
         *(output.name for output in system.outputs),
     )
-    found = chain(((name, unit_of(system, name)) for name in names), more)
+    pairs = chain(((name, unit_of(system, name)) for name in names), more)
     units: dict[str, str] = {}
-    for name, unit in found:
+    for name, unit in pairs:
         if unit is not None:
             units.setdefault(name, unit or "1")
     return units

@@ -12,13 +12,13 @@ INTEGRALS = "integrals"
 
 @dataclass(frozen=True)
 class Asked:
-    """A step: ``names`` of variables, ``given`` what some of them are, ``by`` what they are eliminated: names.
+    """A step: ``names`` of variables, ``definitions`` what some of them are, ``by`` what they are eliminated: names.
 
     Without ``by`` it is a change of variables, and what is no variable is a letter that stands in it.
     """
 
     names: tuple[str, ...]
-    given: Mapping[str, Expression]
+    definitions: Mapping[str, Expression]
     by: tuple[str, ...]
 
 

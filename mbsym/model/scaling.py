@@ -54,8 +54,8 @@ class Scaling:
     @property
     def units(self) -> tuple[str, ...]:
         factors = [scaled.factor for scaled in (self.time, *self.variables) if scaled is not None]
-        found = (node.name for factor in factors for node in walk(factor) if isinstance(node, Name))
-        return tuple(dict.fromkeys(name for name in found if name not in CONSTANTS))
+        occurring = (node.name for factor in factors for node in walk(factor) if isinstance(node, Name))
+        return tuple(dict.fromkeys(name for name in occurring if name not in CONSTANTS))
 
 
 def factor_of(value: Expression, name: str) -> Expression | None:

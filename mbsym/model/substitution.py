@@ -86,10 +86,10 @@ def driven(system: System, laws: Mapping[str, Expression]) -> System:
     """
     if not system.inputs:
         return replace(system, outputs=()) if system.outputs else system
-    images = {one.name: laws.get(one.name, one.held) for one in system.inputs}
+    images = {signal.name: laws.get(signal.name, signal.held) for signal in system.inputs}
     loads = (put(load, images, folded) for load in system.loads)
-    kept = tuple(load for one in loads if (load := one.simplified()) is not None)
-    return replace(system, loads=kept, inputs=(), outputs=())
+    remaining = tuple(load for substituted in loads if (load := substituted.simplified()) is not None)
+    return replace(system, loads=remaining, inputs=(), outputs=())
 
 
 def held(system: System) -> System:
@@ -99,7 +99,7 @@ def held(system: System) -> System:
 
 def with_held(inputs: tuple[Input, ...], values: Mapping[str, Expression]) -> tuple[Input, ...]:
     """The inputs with their constant values on the unperturbed motion, where these are given."""
-    return tuple(replace(one, held=values.get(one.name, ZERO)) for one in inputs)
+    return tuple(replace(signal, held=values.get(signal.name, ZERO)) for signal in inputs)
 
 
 # A system with expressions in place of coordinates that its relations give.
@@ -117,9 +117,9 @@ def without_explicit_relations(system: System) -> System:
         system = replace(alone, abbreviations=system.abbreviations, notation=system.notation)
     while (explicit := _explicit(system)) is not None:
         relation, name, value = explicit
-        kept = tuple(constraint for constraint in system.constraints if constraint is not relation)
+        remaining = tuple(constraint for constraint in system.constraints if constraint is not relation)
         free = [coordinate for coordinate in system.coordinates if coordinate != name]
-        system = _told_by(replace(system, constraints=kept), name, value, free)
+        system = _told_by(replace(system, constraints=remaining), name, value, free)
     return replace(system, dependent=()) if system.dependent else system
 
 
@@ -128,14 +128,14 @@ def displaced(system: System, name: str, direction: Mapping[str, Fraction]) -> S
     system = _motions_alone(system)
     values = {entry.coordinate: (entry.value, entry.rate) for entry in system.motion}
     still = ZERO, ZERO
-    for one, c in direction.items():
-        if c and one != name:
+    for coordinate, c in direction.items():
+        if c and coordinate != name:
             along = multiply(number(c), Name(name))
-            pairs = zip(values.get(one, still), values.get(name, still), strict=True)
+            pairs = zip(values.get(coordinate, still), values.get(name, still), strict=True)
             value, rate = (subtract(x, multiply(number(c), y)) for x, y in pairs)
-            others = tuple(entry for entry in system.motion if entry.coordinate != one)
-            system = _told_by(system, one, add(Name(one), along), system.coordinates)
-            system = replace(system, motion=(*others, MotionEntry(one, value, rate)))
+            others = tuple(entry for entry in system.motion if entry.coordinate != coordinate)
+            system = _told_by(system, coordinate, add(Name(coordinate), along), system.coordinates)
+            system = replace(system, motion=(*others, MotionEntry(coordinate, value, rate)))
     return system
 
 
@@ -165,7 +165,7 @@ def _explicit(system: System) -> tuple[Relation, str, Expression] | None:
 
 def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) -> System:
     """The system in the coordinates ``free``, with the value of another one, or of one of them, put in everywhere."""
-    rate = Derivation({one: Name(velocity_name(one)) for one in free})(value)
+    rate = Derivation({free_name: Name(velocity_name(free_name)) for free_name in free})(value)
     images = {name: value, velocity_name(name): rate}
 
     def acting(load: Load) -> Load:
@@ -176,22 +176,28 @@ def _told_by(system: System, name: str, value: Expression, free: Sequence[str]) 
             case CoordinateDamper(coordinate, coefficient) if coordinate == name:
                 return Rayleigh(divide(multiply(coefficient, power(rate, number(2))), number(2)))
             case GeneralizedForce(components):
-                forces = dict.fromkeys(free, ZERO) | {one: force for one, force in components if one != name}
-                for one in free:
-                    forces[one] = add(
-                        forces[one], multiply(dict(components).get(name, ZERO), differentiate(value, one))
+                forces = dict.fromkeys(free, ZERO) | {
+                    free_name: force for free_name, force in components if free_name != name
+                }
+                for free_name in free:
+                    forces[free_name] = add(
+                        forces[free_name], multiply(dict(components).get(name, ZERO), differentiate(value, free_name))
                     )
                 return GeneralizedForce(tuple(forces.items()))
         return load
 
     bodies = tuple(
-        replace(body, coordinates=tuple(one for one in body.coordinates if one in free), relative_velocity=None)
+        replace(
+            body,
+            coordinates=tuple(free_name for free_name in body.coordinates if free_name in free),
+            relative_velocity=None,
+        )
         for body in system.bodies
     )
     there = replace(
         system,
         bodies=bodies,
-        loads=tuple(kept for load in system.loads if (kept := acting(load).simplified()) is not None),
+        loads=tuple(simplified for load in system.loads if (simplified := acting(load).simplified()) is not None),
         motion=tuple(entry for entry in system.motion if entry.coordinate in free),
         initial=tuple(entry for entry in system.initial if entry.coordinate in free),
     )

@@ -320,7 +320,7 @@ class System(GuessesNames):
 
     @property
     def input_names(self) -> tuple[str, ...]:
-        return tuple(one.name for one in self.inputs)
+        return tuple(signal.name for signal in self.inputs)
 
     @property
     def newtonian_fields(self) -> tuple[NewtonianGravity, ...]:
@@ -363,10 +363,12 @@ def with_values(system: System, overrides: Mapping[str, Expression]) -> System:
 
 def overruled(system: System, overrides: Iterable[str]) -> set[str]:
     """Parameters that a relation gives and that are made of what is overridden: their own values no longer hold."""
-    given, found = {*overrides}, set[str]()
+    overridden, dependents = {*overrides}, set[str]()
     for _ in system.relations:
-        found |= {x.name for x in system.relations if x.name not in given and names(x.value) & (given | found)}
-    return found
+        dependents |= {
+            x.name for x in system.relations if x.name not in overridden and names(x.value) & (overridden | dependents)
+        }
+    return dependents
 
 
 # A small parameter: what is expanded in its powers, and which variables are fast, which oscillates.

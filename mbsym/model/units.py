@@ -76,19 +76,19 @@ class Units:
 
     def of(self, name: str) -> str | None:
         """The unit of a name as declared, else in base units; None where it does not follow.  1 is no unit: ""."""
-        for one in self.declared:
-            if one.name == name:
-                return "" if one.text == "1" else one.text
-        found = dict(self.inferred).get(name)
-        return None if found is None else self.text(found)
+        for declaration in self.declared:
+            if declaration.name == name:
+                return "" if declaration.text == "1" else declaration.text
+        exponents = dict(self.inferred).get(name)
+        return None if exponents is None else self.text(exponents)
 
     def rate_of(self, name: str, order: int = 1) -> str | None:
         """The unit of the derivative of that order with respect to time; None where it does not follow."""
-        found = dict(self.inferred).get(name)
+        exponents = dict(self.inferred).get(name)
         radians = self.of(name) == "rad"
-        if found is None:
+        if exponents is None:
             return None
-        text = self.text(times(found, TIME, -order))
+        text = self.text(times(exponents, TIME, -order))
         return None if text is None else f"rad{text.removeprefix('1')}" if radians else text
 
     def text(self, of: Dimension) -> str | None:

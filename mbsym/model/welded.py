@@ -16,11 +16,11 @@ def welded(system: System) -> dict[str, str]:
     """Each body that is welded to another, with the one that carries it: the first on its way to the base that moves
     against the one that it hangs on itself, or the inertial frame."""
     still = still_names(system)
-    found: dict[str, str] = {}
+    carriers: dict[str, str] = {}
     for body in system.bodies:
         if _fixed(body, still):
-            found[body.name] = found.get(body.attached_to, body.attached_to)
-    return found
+            carriers[body.name] = carriers.get(body.attached_to, body.attached_to)
+    return carriers
 
 
 def lumped(system: System) -> dict[str, str]:

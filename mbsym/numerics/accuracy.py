@@ -148,27 +148,27 @@ class NoEstimate:
 
 def estimated(
     dynamics: Dynamics,
-    found: Trajectory,
+    trajectory: Trajectory,
     method: Method,
     scalar: str,
     completed: Callable[[Method], Method] = lambda method: method,
     limit: float = inf,
 ) -> ErrorEstimate | NoEstimate:
-    """The error of a run of ``method``, whose setting and times ``found`` holds, by a better one.
+    """The error of a run of ``method``, whose setting and times ``trajectory`` holds, by a better one.
 
     ``completed`` makes of another method one that integrates the same coordinates and shows whole states.  All better
     runs together, and the run beside them, may cost about as much as ``limit`` (``mbsym.numerics.planning.prices``).
     """
-    if not found.whole or found.times[-1] == found.times[0]:
+    if not trajectory.whole or trajectory.times[-1] == trajectory.times[0]:
         return NoEstimate(Lacking.NOT_WHOLE)
-    if len(found.times) < 2:
+    if len(trajectory.times) < 2:
         return NoEstimate(Lacking.NOTHING)
     why, left = Lacking.FINEST, limit
     try:
-        for better, kind, setting in _candidates(dynamics, found, method, scalar, completed):
-            budget = _Budget(dynamics, left, float(found.times[-1]), better.traits.name == "dop853")
+        for better, kind, setting in _candidates(dynamics, trajectory, method, scalar, completed):
+            budget = _Budget(dynamics, left, float(trajectory.times[-1]), better.traits.name == "dop853")
             try:
-                comparison = _compared(dynamics, found, (method, scalar), (better, kind, setting), budget)
+                comparison = _compared(dynamics, trajectory, (method, scalar), (better, kind, setting), budget)
             except Unusable:
                 continue
             except _TooDear:
@@ -183,9 +183,9 @@ def estimated(
                 why, left = Lacking.TOO_LONG if why is Lacking.FINEST else why, left - budget.spent
                 continue
             estimate = ErrorEstimate(Against(better.traits.name, kind, setting), comparison, _rounding(scalar))
-            return _witnessed(dynamics, found, (method, scalar), estimate, completed, (left, budget.spent))
+            return _witnessed(dynamics, trajectory, (method, scalar), estimate, completed, (left, budget.spent))
         if why is Lacking.FINEST:
-            return _precisely(dynamics, found, method, scalar)
+            return _precisely(dynamics, trajectory, method, scalar)
     except KeyboardInterrupt:
         return NoEstimate(Lacking.INTERRUPTED)
     return NoEstimate(why)
@@ -222,7 +222,7 @@ class _Budget:
 
 def _compared(
     dynamics: Dynamics,
-    found: Trajectory,
+    trajectory: Trajectory,
     own: tuple[Method, str],
     better: tuple[Method, str, Setting],
     budget: _Budget,
@@ -231,21 +231,21 @@ def _compared(
     method, scalar = own
     other, kind, setting = better
     with np.errstate(all="ignore"):
-        runs = method.start(dynamics, found.setting, scalar), other.start(dynamics, setting, kind)
+        runs = method.start(dynamics, trajectory.setting, scalar), other.start(dynamics, setting, kind)
         budget.start(((runs[0], method.traits.name, scalar), (runs[1], other.traits.name, kind)))
         return compared(
             *runs,
-            float(found.times[-1]),
+            float(trajectory.times[-1]),
             (*dynamics.system.coordinates, *dynamics.system.velocities),
             lambda times, states: sizes_of_scene(dynamics, times, states),
-            (found.times, found.states),
+            (trajectory.times, trajectory.states),
             watch=budget.reached,
         )
 
 
 def _witnessed(
     dynamics: Dynamics,
-    found: Trajectory,
+    trajectory: Trajectory,
     own: tuple[Method, str],
     estimate: ErrorEstimate,
     completed: Callable[[Method], Method],
@@ -257,12 +257,12 @@ def _witnessed(
     believed.  One that cannot be had for what is allowed, or that does not come to the end, says nothing.
     """
     name = own[0].traits.name
-    took_part = {name, *(change.method for change in found.work.changes)}
+    took_part = {name, *(change.method for change in trajectory.work.changes)}
     alone = name in METHODS and estimate.against.method not in took_part  # of parts each has its own method
     if alone or estimate.parted is not None:
         return estimate
     for name in WITNESSES.get(estimate.against.method, ()):
-        heard = _testimony(dynamics, found, own, estimate, completed(METHODS[name]), costs)
+        heard = _testimony(dynamics, trajectory, own, estimate, completed(METHODS[name]), costs)
         if heard is not None:
             return heard
     return estimate
@@ -270,14 +270,14 @@ def _witnessed(
 
 def _testimony(
     dynamics: Dynamics,
-    found: Trajectory,
+    trajectory: Trajectory,
     own: tuple[Method, str],
     estimate: ErrorEstimate,
     witness: Method,
     costs: tuple[float, float],
 ) -> ErrorEstimate | None:
     """The estimate where a witness agrees, that of the witness where it does not; None where it says nothing."""
-    (method, scalar), better, (limit, spent), end = own, estimate.against, costs, float(found.times[-1])
+    (method, scalar), better, (limit, spent), end = own, estimate.against, costs, float(trajectory.times[-1])
     places = np.concatenate([[0.0], uneven(0.0, end, PLACES), [end]])
     scales = np.array([q.scale for q in estimate.quantities])
     budget = _Budget(
@@ -285,7 +285,7 @@ def _testimony(
     )
     setting, before = better.setting, inf
     try:
-        run = method.start(dynamics, found.setting, scalar)
+        run = method.start(dynamics, trajectory.setting, scalar)
         states = filled(run, places)
         while True:
             truth = _filled(witness, dynamics, setting, better.scalar, places, budget)
@@ -318,17 +318,17 @@ def _filled(witness: Method, dynamics: Dynamics, setting: Setting, scalar: str, 
     return filled(run, places, LOOKS, budget.reached)
 
 
-def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
+def _precisely(dynamics: Dynamics, trajectory: Trajectory, method: Method, scalar: str) -> ErrorEstimate | NoEstimate:
     """The error of a run that no other method can judge, by an extrapolation in 160 bits at some places."""
     if not dynamics.features.none:  # an extrapolation would pass what is narrow, and knows nothing of switches
         return NoEstimate(Lacking.FINEST)
-    end = float(found.times[-1])
-    rows = np.unique(np.linspace(0, len(found.times) - 1, min(len(found.times), PLACES)).astype(int))
-    places = np.union1d(uneven(0.0, end, PLACES), found.times[rows])
-    own = method.start(dynamics, found.setting, scalar)
+    end = float(trajectory.times[-1])
+    rows = np.unique(np.linspace(0, len(trajectory.times) - 1, min(len(trajectory.times), PLACES)).astype(int))
+    places = np.union1d(uneven(0.0, end, PLACES), trajectory.times[rows])
+    own = method.start(dynamics, trajectory.setting, scalar)
     try:
         states = np.column_stack([own.state, own.fill(places[1:])])
-        states[:, np.searchsorted(places, found.times[rows])] = found.states[:, rows]
+        states[:, np.searchsorted(places, trajectory.times[rows])] = trajectory.states[:, rows]
         truth = solved_at(dynamics, places, PRECISELY, PRECISE_COST)
     except Breakdown as ended:
         return NoEstimate(Lacking.FINEST if ended.kind == Cause.STEP_LIMIT else Lacking.BREAKS_DOWN)
@@ -340,43 +340,43 @@ def _precisely(dynamics: Dynamics, found: Trajectory, method: Method, scalar: st
 
 def _candidates(
     dynamics: Dynamics,
-    found: Trajectory,
+    trajectory: Trajectory,
     method: Method,
     scalar: str,
     completed: Callable[[Method], Method],
 ) -> Iterator[tuple[Method, str, Setting]]:
     """Runs that are better, the best of them first."""
-    setting, end = found.setting, float(found.times[-1])
+    setting, end = trajectory.setting, float(trajectory.times[-1])
     operations = max(1, dynamics.right_hand_side.operations)
     limit, longest = max(20_000, AFFORDABLE // (14 * operations)), end / PARTS
     if setting.longest is not None:  # where that rules the steps of both, they would be the same run
         longest = min(longest, SHORTER * setting.longest)
     explicit = completed(METHODS["dop853"])
-    wanted = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
+    tolerance = AGAINST_FIXED if setting.tolerance is None else setting.tolerance * TIGHTER
     own = max(setting.tolerance or 0.0, method.traits.finest(scalar))
 
     def finer(better: Method) -> bool:
-        return max(wanted, better.traits.finest(scalar)) <= LEAST_RATIO * own
+        return max(tolerance, better.traits.finest(scalar)) <= LEAST_RATIO * own
 
-    turned = any(METHODS[change.method].traits.implicit for change in found.work.changes)
+    turned = any(METHODS[change.method].traits.implicit for change in trajectory.work.changes)
     stiff = (method.traits.implicit or turned) and not method.traits.fixed and scalar == FLOAT64
     if stiff and finer(METHODS[STIFF]):  # explicit steps would be too many
-        yield completed(METHODS[STIFF]), scalar, Setting(wanted, None, setting.step_limit, longest)
+        yield completed(METHODS[STIFF]), scalar, Setting(tolerance, None, setting.step_limit, longest)
     more = [kind for kind in (EXTENDED, FLOAT64) if available(kind) and _rounding(kind) < _rounding(scalar)]
     if more and operations <= LONG:
         # Explicit steps in more digits; where stability asks for too many of them, the limit ends it.
-        yield explicit, more[0], Setting(max(wanted, 40 * _rounding(more[0])), None, limit, longest)
+        yield explicit, more[0], Setting(max(tolerance, 40 * _rounding(more[0])), None, limit, longest)
     if setting.step is not None:
         yield (
             method,
             scalar,
-            replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * found.work.steps)),
+            replace(setting, step=min(setting.step / 4, longest), step_limit=max(4 * limit, 8 * trajectory.work.steps)),
         )
         return
     if finer(method):
-        yield method, scalar, Setting(wanted, None, setting.step_limit, longest)
+        yield method, scalar, Setting(tolerance, None, setting.step_limit, longest)
     elif finer(explicit):
-        yield explicit, scalar, Setting(wanted, None, limit, longest)
+        yield explicit, scalar, Setting(tolerance, None, limit, longest)
 
 
 def _rounding(scalar: str) -> float:

@@ -39,8 +39,8 @@ def accelerations(dynamics: Dynamics, times: Any, states: Any) -> Any:
     """
     moments = np.vstack([np.asarray(times, dtype=float), np.asarray(states, dtype=float)])
     with np.errstate(all="ignore"):
-        found = np.asarray(compiled_kernel(dynamics, "right_hand_side")(moments), dtype=float)
-    return found if dynamics.in_states else found[len(states) // 2 :]
+        rates = np.asarray(compiled_kernel(dynamics, "right_hand_side")(moments), dtype=float)
+    return rates if dynamics.in_states else rates[len(states) // 2 :]
 
 
 def between(times: Any, states: Any, rates: Any, pieces: Any) -> tuple[Any, Any]:
@@ -55,8 +55,8 @@ def between(times: Any, states: Any, rates: Any, pieces: Any) -> tuple[Any, Any]
     part = np.arange(len(interval)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     s = part / pieces[interval]
     h = np.diff(times)
-    found = np.empty((2 * n, len(interval) + 1))
-    found[:, -1] = states[:, -1]
+    refined = np.empty((2 * n, len(interval) + 1))
+    refined[:, -1] = states[:, -1]
     for i in range(n):
         q, v, a = states[i], states[n + i], rates[i]
         smooth = _smooth(h, q, v, a)
@@ -65,12 +65,12 @@ def between(times: Any, states: Any, rates: Any, pieces: Any) -> tuple[Any, Any]
         straight[0], straight[1] = q[:-1], np.diff(q)
         # Powers of s: the polynomial of each interval, its derivative, or a straight line.
         powers = np.where(smooth, _BASIS.T @ np.where(smooth, ends, 0.0), straight)[:, interval]
-        found[i, :-1] = _at(powers, s)
+        refined[i, :-1] = _at(powers, s)
         slope = powers[1:] * np.arange(1, 6)[:, None] / h[interval]
         line = v[interval] + s * np.diff(v)[interval]
-        found[n + i, :-1] = np.where(smooth[interval], _at(slope, s), line)
-        found[[i, n + i], :-1] = np.where(part == 0, states[[i, n + i]][:, interval], found[[i, n + i], :-1])
-    return np.append(times[interval] + s * h[interval], times[-1]), found
+        refined[n + i, :-1] = np.where(smooth[interval], _at(slope, s), line)
+        refined[[i, n + i], :-1] = np.where(part == 0, states[[i, n + i]][:, interval], refined[[i, n + i], :-1])
+    return np.append(times[interval] + s * h[interval], times[-1]), refined
 
 
 def _smooth(h: Any, q: Any, v: Any, a: Any) -> Any:

@@ -95,11 +95,11 @@ def followed_bodies(scenario: Scenario, frame: str = INERTIAL) -> Callable[[Any,
 def _evaluated(kernel: Kernel, names: tuple[str, ...], frame: str, times: Any, states: Any, rates: Any) -> BodyMotions:
     moments = np.vstack([times, np.asarray(states, dtype=float), np.asarray(rates, dtype=float)])
     with np.errstate(all="ignore"):
-        found = np.array(kernel(moments), dtype=float)
+        outputs = np.array(kernel(moments), dtype=float)
     each = 3 + 9 + 3 + 1
     m, count = moments.shape[1], len(names)
-    own = found[: each * count].reshape(count, each, m)
-    moving = found[each * count + 1 :].reshape(2, count, 3, m)
+    own = outputs[: each * count].reshape(count, each, m)
+    moving = outputs[each * count + 1 :].reshape(2, count, 3, m)
     return BodyMotions(
         names=names,
         frame=frame,
@@ -110,7 +110,7 @@ def _evaluated(kernel: Kernel, names: tuple[str, ...], frame: str, times: Any, s
         angular_velocities=own[:, 12:15],
         axes=own[:, 3:12].reshape(count, 3, 3, m),
         kinetic=own[:, 15],
-        force_function=found[each * count],
+        force_function=outputs[each * count],
     )
 
 
@@ -153,8 +153,8 @@ def speed_columns(scenario: Scenario, times: Any, states: Any) -> dict[str, Any]
     inputs = ("t", *system.coordinates, *system.velocities)
     kernel = kernels({"speeds": Code(fresh, inputs, tuple(nodes))})["speeds"]
     with np.errstate(all="ignore"):
-        found = kernel(np.vstack([times, np.asarray(states, dtype=float)]))
-    return dict(zip(formulas, found, strict=True))
+        columns = kernel(np.vstack([times, np.asarray(states, dtype=float)]))
+    return dict(zip(formulas, columns, strict=True))
 
 
 def input_columns(scenario: Scenario, times: Any, positions: Any, velocities: Any) -> dict[str, Any]:
@@ -162,11 +162,11 @@ def input_columns(scenario: Scenario, times: Any, positions: Any, velocities: An
     if not scenario.inputs:
         return {}
     program = bound(scenario)
-    used = set().union(*(names(one.law) for one in scenario.inputs))
+    used = set().union(*(names(signal.law) for signal in scenario.inputs))
     lower = Lowering(program, {name: program.input(name) for name in (*sorted(used), "pi")})
-    nodes = tuple(lower(one.law) for one in scenario.inputs)
+    nodes = tuple(lower(signal.law) for signal in scenario.inputs)
     inputs = ("t", *scenario.system.coordinates, *scenario.system.velocities)
     points = np.vstack([times, np.asarray(positions, dtype=float), np.asarray(velocities, dtype=float)])
     values = arrays.kernel(Code(program, inputs, nodes))(points)
     shaped = (np.broadcast_to(value, np.shape(times)) for value in values)
-    return dict(zip((one.name for one in scenario.inputs), shaped, strict=True))
+    return dict(zip((signal.name for signal in scenario.inputs), shaped, strict=True))

@@ -114,10 +114,10 @@ class LinearModel:
             exact, bits = self._exact(name, scenario)
             sizes = scales(name, exact, masses, self.alike)
             pairs = {s: compared(self._values(name, s, inputs), exact, full, sizes) for s, full in FULL.items()}
-            kept, worst = ({s: pair[i] for s, pair in pairs.items()} for i in (0, 1))
+            correct, worst = ({s: pair[i] for s, pair in pairs.items()} for i in (0, 1))
             norm = max((abs(float(x.mid())) for x in exact), default=0.0)
             condition = self._condition(name, scenario, sizes)
-            found[name] = Digits(kept, worst, kept[FLOAT64], condition, bits, norm)
+            found[name] = Digits(correct, worst, correct[FLOAT64], condition, bits, norm)
         eigenvalues = self._eigenvalue_digits(scenario)
         if eigenvalues is not None:
             found["eigenvalues"] = eigenvalues
@@ -205,13 +205,13 @@ class LinearModel:
         exact = self.exact_eigenvalues(scenario)
         if exact is None:
             return None
-        kept = {}
+        correct = {}
         size = max(abs(x).mid() for x in exact)
         for scalar, full in FULL.items():
             values = self.eigenvalues(scenario, scalar)
-            kept[scalar] = 0.0 if values is None else _matched(values, exact, size, full)
+            correct[scalar] = 0.0 if values is None else _matched(values, exact, size, full)
         condition = self._eigenvalue_condition(scenario, exact, size)
-        return Digits(kept, kept, kept[FLOAT64], condition, 256, float(size))
+        return Digits(correct, correct, correct[FLOAT64], condition, 256, float(size))
 
     def _eigenvalue_condition(self, scenario: Scenario, exact: Sequence[Any], size: Any) -> float:
         """max_i sum_j |d lambda_i/dp_j p_j| / max |lambda|, over the parameters: no unit and no formula enters.
@@ -285,16 +285,16 @@ class LinearModel:
                 low, high = places[k], places[k + 1]
                 while high - low > low / 10**20:
                     middle = (low + high) / 2
-                    found = word(middle)
+                    verdict = word(middle)
                     wide = high - low > 4 * BESIDE * middle
-                    side = word(middle * (1 + BESIDE)) if wide or found == Word.UNDECIDED else found
-                    if side != found:
+                    side = word(middle * (1 + BESIDE)) if wide or verdict == Word.UNDECIDED else verdict
+                    if side != verdict:
                         if word(middle * (1 - BESIDE)) != side:
                             return middle, middle  # on the border
-                        found = side  # a point inside at which roots coincide, and things are otherwise there alone
-                    if found not in (below, above):
+                        verdict = side  # a point inside at which roots coincide, and things are otherwise there alone
+                    if verdict not in (below, above):
                         return middle, middle
-                    low, high = (middle, high) if found == below else (low, middle)
+                    low, high = (middle, high) if verdict == below else (low, middle)
                 return low, high
         return None
 

@@ -16,13 +16,13 @@ STILL = 1e-9
 def frames(system: System) -> list[str]:
     """The inertial frame, and further in those that carry everything and that no coordinate moves."""
     moving = {*system.coordinates, *system.velocities}
-    found = [INERTIAL]
+    chain = [INERTIAL]
     while True:
-        carried = [body for body in system.bodies if body.attached_to == found[-1]]
+        carried = [body for body in system.bodies if body.attached_to == chain[-1]]
         if len(carried) != 1 or carried[0].mass != ZERO or carried[0].inertia is not None:
-            return found
+            return chain
         (body,) = carried
         alone = not any(other.attached_to == body.name for other in system.bodies)
         if alone or any(moving & names(x) for x in expressions((body.rotation, body.connection_point))):
-            return found
-        found.append(body.name)
+            return chain
+        chain.append(body.name)

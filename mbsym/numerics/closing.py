@@ -31,6 +31,12 @@ from mbsym.numerics.states import dynamics_of, scenario_in_states, scenario_in_v
 #: Steps of Newton's method and of the descent to the least gap, of the way along the constraints, of the refinement.
 STEPS, ALONG, REFINED = 200, 60, 40
 
+#: The least part of a step of Newton's method that is tried.
+LEAST_PART = 1 / 64
+
+#: So many ways aside of the start are tried where no whole step of Newton's method leads to the constraints.
+MOST_BESIDE = 8
+
 #: A gap of a row is closed below this part of the row's slope times the coordinates' sizes.
 CLOSED = 1e-11
 
@@ -125,15 +131,15 @@ class NothingMoves(Constrained):
         super().__init__(Message(text, state=shown), remedy=remedy)
 
 
-def moving(found: Closed) -> Closed:
+def moving(closure: Closed) -> Closed:
     """What was closed.  Raises NothingMoves where its constraints hold it."""
-    constraints = _constraints(found.scenario)
+    constraints = _constraints(closure.scenario)
     if constraints is None or constraints.freedom or not constraints.steady:
-        return found
-    state = np.array([float(x) for x in found.scenario.state])
+        return closure
+    state = np.array([float(x) for x in closure.scenario.state])
     if len(constraints.independent(0.0, state)) == constraints.size:  # else it may move from a singular position
-        raise NothingMoves(found.scenario)
-    return found
+        raise NothingMoves(closure.scenario)
+    return closure
 
 
 def begun(scenario: Scenario, fixed: Collection[str] = (), declared: bool = True) -> Closed:
@@ -142,8 +148,8 @@ def begun(scenario: Scenario, fixed: Collection[str] = (), declared: bool = True
     ``declared``: those that a description with speeds declares; else coordinates and their velocities.  Raises
     NotClosed, Failure.
     """
-    found = closed(fitted(scenario, declared), fixed)
-    return replace(found, scenario=shown(found.scenario, declared))
+    closure = closed(fitted(scenario, declared), fixed)
+    return replace(closure, scenario=shown(closure.scenario, declared))
 
 
 def fitted(scenario: Scenario, declared: bool) -> Scenario:
@@ -181,26 +187,26 @@ def closed(scenario: Scenario, fixed: Collection[str] = ()) -> Closed:
     if exact.satisfied(scenario.state):
         return Closed(scenario, fixed=held)
     start = np.array([float(x) for x in scenario.state])
-    given = {
+    stated = {
         *(name for name in system.coordinates if system.dependent and name not in system.dependent),
         *(name for name in system.velocities if scenario.unstated and name not in scenario.unstated),
     }
     searches = [_Search(constraints, names, held)]
-    if given:
-        searches.insert(0, _Search(constraints, names, tuple(name for name in names if name in given or name in held)))
+    if stated:
+        searches.insert(0, _Search(constraints, names, tuple(name for name in names if name in stated or name in held)))
     position, closest = _first(searches, lambda search: search.position(start))
     there = np.concatenate([position, start[p:]])
     state = _first(searches, lambda search: search.velocity(there))
-    found = _first(searches, lambda search: exact.refined(scenario.state, state, search))
-    sizes = constraints.sizes([float(x) for x in found]).tolist()
+    refined = _first(searches, lambda search: exact.refined(scenario.state, state, search))
+    sizes = constraints.sizes([float(x) for x in refined]).tolist()
     moves = [
         Move(name, float(old), float(new))
-        for name, old, new, size in zip(names, scenario.state, found, sizes, strict=True)
+        for name, old, new, size in zip(names, scenario.state, refined, sizes, strict=True)
         if abs(old - new) > MOVED * size
     ]
-    moved = {name for name, old, new in zip(names, scenario.state, found, strict=True) if old != new}
+    moved = {name for name, old, new in zip(names, scenario.state, refined, strict=True) if old != new}
     typed = {name: value for name, value in scenario.typed.items() if name not in moved}
-    new = replace(scenario, positions=tuple(found[:p]), velocities=tuple(found[p:]), typed=typed)
+    new = replace(scenario, positions=tuple(refined[:p]), velocities=tuple(refined[p:]), typed=typed)
     return Closed(new, tuple(moves), closest, held, scenario.unstated)
 
 
@@ -248,58 +254,92 @@ class _Search:
         """A position on the constraints, and whether it is the closest one to ``start``.  Raises NotClosed."""
         if not self.h:
             return start[: self.p].copy(), True
-        found = self._descended(start)
-        better, closest = self._along(found, start)
+        feasible, straight = self._descended(start)
+        better, closest = self._along(feasible, start)
+        if straight:
+            return better[: self.p], closest
+        # A mechanism closes in several ways; the one that was found may be folded up far away from another.
+        sizes = self.constraints.extents(start)
+        far = np.linalg.norm(self.constraints.towards(0.0, start, better) / sizes)
+        free = np.where(self.free[False], sizes, 0.0) / 2
+        ways = np.vstack([free, np.diag(free)[self.free[False]][:MOST_BESIDE]])
+        for way in (*ways, *-ways):
+            try:
+                beside, _ = self._descended(self.constraints.displaced(0.0, start, way))
+            except NotClosed:
+                continue
+            other, stationary = self._along(beside, start)
+            distance = np.linalg.norm(self.constraints.towards(0.0, start, other) / sizes)
+            if distance < (1 - 1e-6) * far:
+                better, closest, far = other, stationary, distance
         return better[: self.p], closest
 
-    def _descended(self, start: Any) -> Any:
-        """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed."""
-        found, damping = start.copy(), 0.0
-        f, rows, weights = self.rows(found, False)
+    def _descended(self, start: Any) -> tuple[Any, bool]:
+        """Newton's method with steps that shorten the gap, damped (Levenberg-Marquardt) where it cannot be closed.
+
+        A part t of a step y is taken after which f + t J y is left but for t |J y|/4: a longer one would lead far away,
+        where the constraints are other ones.  Beside the position: whether whole steps led there.
+        """
+        iterate, damping, straight = start.copy(), 0.0, True
+        f, rows, weights = self.rows(iterate, False)
         for _ in range(STEPS):
-            if self._small(f, rows, found) and damping == 0.0:
+            if self._small(f, rows, iterate) and damping == 0.0:
                 break
-            moved = self.constraints.displaced(0.0, found, weights @ _shortest(rows, -f, damping))
-            new, new_rows, new_weights = self.rows(moved, False)
-            if np.all(np.isfinite(new)) and np.linalg.norm(new) < np.linalg.norm(f):
-                found, f, rows, weights = moved, new, new_rows, new_weights
+            step, part, gap = _shortest(rows, -f, damping), 1.0, np.linalg.norm(f)
+            change = rows @ step
+            while True:
+                moved = self.constraints.displaced(0.0, iterate, weights @ (part * step))
+                new, new_rows, new_weights = self.rows(moved, False)
+                linear = bool(np.linalg.norm(new - f - part * change) <= part * np.linalg.norm(change) / 4)
+                if linear or part < LEAST_PART:
+                    break
+                part, straight = part / 2, False
+            if np.all(np.isfinite(new)) and np.linalg.norm(new) < gap and linear:
+                iterate, f, rows, weights = moved, new, new_rows, new_weights
                 damping = 0.0 if damping < 1e-6 else damping / 10
-            elif self._small(f, rows, found):
+            elif self._small(f, rows, iterate):
                 break
             else:
                 damping = max(1e-4, 10 * damping)
                 if damping > 1e12:
                     break
-        if not self._small(f, rows, found):
+        if not self._small(f, rows, iterate):
             gaps = [Gap(name, abs(float(x))) for name, x in zip(self.constraints.names, f, strict=False)]
-            raise NotClosed(found, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.p + 1]])
-        return found
+            raise NotClosed(iterate, gaps, [x for x in self.fixed if x in self.constraints.inputs[1 : self.p + 1]])
+        return iterate, straight
 
-    def _along(self, found: Any, start: Any) -> tuple[Any, bool]:
+    def _along(self, iterate: Any, start: Any) -> tuple[Any, bool]:
         """From a position on the constraints to the closest one to ``start``, as long as that leads closer."""
-        reached = found
         for _ in range(ALONG):
-            f, rows, weights = self.rows(found, False)
-            back = np.linalg.lstsq(weights, self.constraints.towards(0.0, found, start), rcond=None)[0]
+            _, rows, weights = self.rows(iterate, False)
+            back = self._lengths(weights, iterate, start)
             tangent = back - _shortest(rows, rows @ back)
-            moved = self.constraints.displaced(0.0, found, weights @ (tangent + _shortest(rows, -f)))
-            if not np.all(np.isfinite(moved)):
-                return reached, False
             if np.linalg.norm(tangent) <= 1e-9 * (np.linalg.norm(back) + 1e-30) or not np.any(back):
-                return self._settled(moved, reached), True
-            found = moved
-            if self._small(f, rows, found):
-                reached = found
-        return self._settled(found, reached), False
+                return self._settled(iterate, iterate), True
+            part = 1.0
+            while True:
+                moved = self.constraints.displaced(0.0, iterate, weights @ (part * tangent))
+                closer = self._settled(moved, iterate) if np.all(np.isfinite(moved)) else iterate
+                if np.linalg.norm(self._lengths(weights, closer, start)) < np.linalg.norm(back):
+                    break
+                part /= 2
+                if part < LEAST_PART:  # what is left of the way shortens it by less than roundings
+                    return iterate, bool(np.linalg.norm(tangent) <= 1e-6 * np.linalg.norm(back))
+            iterate = closer
+        return iterate, False
+
+    def _lengths(self, weights: Any, state: Any, start: Any) -> Any:
+        """The way from a state back to ``start``, in lengths measured by M."""
+        return np.linalg.lstsq(weights, self.constraints.towards(0.0, state, start), rcond=None)[0]
 
     def _settled(self, state: Any, otherwise: Any) -> Any:
         """A few steps of Newton's method; ``otherwise`` where they do not end on the constraints."""
-        found = state.copy()
+        iterate = state.copy()
         for _ in range(6):
-            f, rows, weights = self.rows(found, False)
-            found = self.constraints.displaced(0.0, found, weights @ _shortest(rows, -f))
-        f, rows, _ = self.rows(found, False)
-        return found if self._small(f, rows, found) else otherwise
+            f, rows, weights = self.rows(iterate, False)
+            iterate = self.constraints.displaced(0.0, iterate, weights @ _shortest(rows, -f))
+        f, rows, _ = self.rows(iterate, False)
+        return iterate if self._small(f, rows, iterate) else otherwise
 
     def _small(self, f: Any, rows: Any, state: Any) -> bool:
         partials = np.abs(self.constraints.at(0.0, state).gradients)
@@ -308,17 +348,17 @@ class _Search:
 
     def velocity(self, state: Any) -> Any:
         """The state with the closest velocities that satisfy J q' + j = 0.  Raises NotClosed."""
-        found = state.copy()
+        corrected = state.copy()
         for _ in range(3):
-            g, rows, weights = self.rows(found, True)
-            found[self.p :] += weights @ _shortest(rows, -g)
-        g, _, _ = self.rows(found, True)
-        partials = np.abs(self.constraints.at(0.0, found).partials)
-        slopes = self.constraints.slopes(partials, self.constraints.sizes(found)[self.p :])
+            g, rows, weights = self.rows(corrected, True)
+            corrected[self.p :] += weights @ _shortest(rows, -g)
+        g, _, _ = self.rows(corrected, True)
+        partials = np.abs(self.constraints.at(0.0, corrected).partials)
+        slopes = self.constraints.slopes(partials, self.constraints.sizes(corrected)[self.p :])
         if not np.all(np.abs(g) <= CLOSED * slopes):
             gaps = [Gap(name, abs(float(x)), True) for name, x in zip(self.constraints.names, g, strict=True)]
-            raise NotClosed(found, gaps, self.fixed)
-        return found
+            raise NotClosed(corrected, gaps, self.fixed)
+        return corrected
 
 
 def _shortest(rows: Any, right: Any, damping: float = 0.0) -> Any:
@@ -328,8 +368,8 @@ def _shortest(rows: Any, right: Any, damping: float = 0.0) -> Any:
     left, sizes, turned = np.linalg.svd(rows, full_matrices=False)
     known = sizes > RANK * sizes[0]
     inverse = np.where(known, sizes / np.where(known, sizes**2 + damping * sizes[0] ** 2, 1.0), 0.0)
-    found: Any = turned.T @ (inverse * (left.T @ right))
-    return found
+    solution: Any = turned.T @ (inverse * (left.T @ right))
+    return solution
 
 
 class _Exact:
@@ -361,10 +401,10 @@ class _Exact:
             least = arb(2) ** (32 - PRECISION)
             return all(abs(x) <= least * (1 + float(s)) for x, s in zip(self.residuals(state), slopes, strict=True))
 
-    def refined(self, given: Sequence[Fraction], state: Any, search: _Search) -> tuple[Fraction, ...]:
+    def refined(self, initial: Sequence[Fraction], state: Any, search: _Search) -> tuple[Fraction, ...]:
         """The state with as many bits as numbers have; values that did not move keep what was given."""
         found = [Fraction(x) for x in state.tolist()]
-        found = [old if float(old) == float(new) else new for old, new in zip(given, found, strict=True)]
+        found = [old if float(old) == float(new) else new for old, new in zip(initial, found, strict=True)]
         h, p = self._constraints.holonomic, self._constraints.places
         for _ in range(REFINED):
             if self.satisfied(found):

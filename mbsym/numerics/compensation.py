@@ -86,7 +86,7 @@ def states_about(scenario: Scenario, inputs: Sequence[str]) -> list[list[float]]
     angles = angle_denominators(system)
     fastest = max((abs(float(x)) for x in scenario.velocities), default=0.0)
     rate = fastest or max((abs(float(x)) for _, x in scenario.prescribed.values()), default=0.0) or 1.0
-    found = []
+    states = []
     for turn in (0, 1, 2):
         moved = dict(start)
         for k, name in enumerate(system.coordinates):
@@ -94,8 +94,8 @@ def states_about(scenario: Scenario, inputs: Sequence[str]) -> list[list[float]]
             part = 0.61 * turn * (1 + 0.37 * k)
             moved[name] += size * part
             moved[velocity_name(name)] += size * rate * part * 0.7
-        found.append([moved[name] for name in inputs])
-    return found
+        states.append([moved[name] for name in inputs])
+    return states
 
 
 def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequence[int]) -> Compensation | None:
@@ -104,8 +104,8 @@ def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequenc
     live = program.live(code.outputs)
     if len(live) > MOST_OPERATIONS:
         return None
-    wanted = [code.outputs[i].number for i in outputs]
-    if _bounded([_running(program, live, code.inputs, state, wanted) for state in states], wanted):
+    output_numbers = [code.outputs[i].number for i in outputs]
+    if _bounded([_running(program, live, code.inputs, state, output_numbers) for state in states], output_numbers):
         return None
     try:
         looked = [_values(code, live, state) for state in states]
@@ -114,12 +114,12 @@ def compensation(code: Code, states: Sequence[Sequence[float]], outputs: Sequenc
     values = [known for known in looked if known is not None]
     if not values:
         return None
-    chosen = _sensitive(program, live, values, wanted)
+    chosen = _sensitive(program, live, values, output_numbers)
     if not chosen:
         return None
     better = Code(program, code.inputs, tuple(compensated(program, code.outputs, chosen)))
-    kept = [state for state, known in zip(states, looked, strict=True) if known is not None]
-    before, after = (_digits(one, kept, values, wanted, outputs) for one in (code, better))
+    usable = [state for state, known in zip(states, looked, strict=True) if known is not None]
+    before, after = (_digits(candidate, usable, values, output_numbers, outputs) for candidate in (code, better))
     if before >= ENOUGH or after < before + GAIN:
         return None
     return Compensation(better, before, after, len(chosen), better.operations / max(1, code.operations))
@@ -137,12 +137,12 @@ def compensated_code(scenario: Scenario, code: Code, outputs: Sequence[int]) -> 
 Bounds = tuple[dict[int, float], dict[int, float]]
 
 
-def _bounded(found: Sequence[Bounds | None], wanted: Sequence[int]) -> bool:
+def _bounded(bounds: Sequence[Bounds | None], output_numbers: Sequence[int]) -> bool:
     """Whether running error bounds show every output to keep its digits at all states."""
-    known = [one for one in found if one is not None]
-    if len(known) < len(found):
+    known = [bound for bound in bounds if bound is not None]
+    if len(known) < len(bounds):
         return False
-    for k in wanted:
+    for k in output_numbers:
         largest = max((abs(v[k]) for v, _ in known), default=0.0)
         if not isfinite(largest):
             return False
@@ -152,7 +152,7 @@ def _bounded(found: Sequence[Bounds | None], wanted: Sequence[int]) -> bool:
 
 
 def _running(
-    program: Program, live: Sequence[int], inputs: Sequence[str], state: Sequence[float], wanted: Sequence[int]
+    program: Program, live: Sequence[int], inputs: Sequence[str], state: Sequence[float], output_numbers: Sequence[int]
 ) -> Bounds | None:
     """Values and running error bounds of the wanted numbers; None where there is no number.
 
@@ -192,11 +192,11 @@ def _running(
                 v[number], e[number] = -a, ea
                 continue
             else:
-                return dict.fromkeys(wanted, 1.0), dict.fromkeys(wanted, 0.0)
+                return dict.fromkeys(output_numbers, 1.0), dict.fromkeys(output_numbers, 0.0)
             v[number], e[number] = x, error + UNIT * abs(x)
     except (ArithmeticError, ValueError):
         return None
-    return {k: v[k] for k in wanted}, {k: e[k] for k in wanted}
+    return {k: v[k] for k in output_numbers}, {k: e[k] for k in output_numbers}
 
 
 # --- with many bits --------------------------------------------------------------------------------------------------
@@ -208,10 +208,10 @@ def _values(code: Code, live: Sequence[int], state: Sequence[float]) -> dict[int
     with ctx.workprec(BITS):
         inputs = {name: _ball(x) for name, x in zip(code.inputs, state, strict=True)}
         nodes = [program.node(number) for number in live]
-        found = program.evaluate(nodes, inputs, Balls(inputs))
-        if not all(x.is_finite() for x in found):
+        balls = program.evaluate(nodes, inputs, Balls(inputs))
+        if not all(x.is_finite() for x in balls):
             return None
-        return dict(zip(live, found, strict=True))
+        return dict(zip(live, balls, strict=True))
 
 
 def _ball(x: float) -> Any:
@@ -220,13 +220,13 @@ def _ball(x: float) -> Any:
 
 
 def _sensitive(
-    program: Program, live: Sequence[int], values: Sequence[Mapping[int, Any]], wanted: Sequence[int]
+    program: Program, live: Sequence[int], values: Sequence[Mapping[int, Any]], output_numbers: Sequence[int]
 ) -> set[int]:
     """Operations whose rounding moves an output by more than ``SENSITIVE`` parts of its size."""
     chosen: set[int] = set()
     floats = [{number: float(x.mid()) for number, x in known.items()} for known in values]
-    largest = {output: max(abs(known[output]) for known in floats) for output in wanted}
-    moved = [output for output in dict.fromkeys(wanted) if largest[output] > 0]
+    largest = {output: max(abs(known[output]) for known in floats) for output in output_numbers}
+    moved = [output for output in dict.fromkeys(output_numbers) if largest[output] > 0]
     for known in floats:
         allowed = SENSITIVE * np.array([max(abs(known[output]), SMALL * largest[output]) for output in moved])
         for number, slopes in _slopes(program, live, known, moved):
@@ -240,10 +240,10 @@ def _slopes(
 ) -> Iterator[tuple[int, Any]]:
     """df/dv_k of all outputs, an array for every instruction that any depends on, in one way backwards."""
     own = {output: place for place, output in enumerate(outputs)}
-    found: dict[int, Any] = {}
+    adjoints: dict[int, Any] = {}
     with np.errstate(all="ignore"):
         for number in reversed(live):
-            slopes = found.pop(number, None)
+            slopes = adjoints.pop(number, None)
             if number in own:
                 slopes = np.zeros(len(outputs)) if slopes is None else slopes
                 slopes[own[number]] += 1.0
@@ -253,7 +253,7 @@ def _slopes(
             operation, operands, _ = program.instructions[number]
             for operand, inner in zip(operands, _partials(operation, [v[k] for k in operands], v[number]), strict=True):
                 part = slopes * inner if isfinite(inner) else np.where(slopes, slopes * inner, 0.0)
-                found[operand] = found[operand] + part if operand in found else part
+                adjoints[operand] = adjoints[operand] + part if operand in adjoints else part
 
 
 def _partials(operation: str, x: Sequence[float], value: float) -> tuple[float, ...]:
@@ -281,18 +281,18 @@ def _digits(
     code: Code,
     states: Sequence[Sequence[float]],
     values: Sequence[Mapping[int, Any]],
-    wanted: Sequence[int],
+    output_numbers: Sequence[int],
     outputs: Sequence[int],
 ) -> float:
     """The fewest digits of any output at any of the states."""
     run, fewest = stepwise(code, FLOAT64), FULL
-    largest = {k: max(abs(float(known[k].mid())) for known in values) for k in wanted}
+    largest = {k: max(abs(float(known[k].mid())) for known in values) for k in output_numbers}
     for state, known in zip(states, values, strict=True):
         with np.errstate(all="ignore"):
-            found = np.asarray(run(np.array(state)), dtype=float)
-        for i, k in zip(outputs, wanted, strict=True):
+            computed = np.asarray(run(np.array(state)), dtype=float)
+        for i, k in zip(outputs, output_numbers, strict=True):
             size = max(abs(float(known[k].mid())), SMALL * largest[k])
-            error = _apart(float(found[i]), known[k]) / size if size > 0 else 0.0
+            error = _apart(float(computed[i]), known[k]) / size if size > 0 else 0.0
             fewest = min(fewest, -log10(error) if 0 < error < inf else (FULL if error == 0 else 0.0))
     return max(0.0, fewest)
 

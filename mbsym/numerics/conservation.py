@@ -235,10 +235,10 @@ def on_constraints(dynamics: Dynamics, terms: Sequence[Node], points: Any) -> tu
     """
     program = dynamics.right_hand_side.program
     with np.errstate(all="ignore"):
-        found = arrays.kernel(Code(program, dynamics.inputs, tuple(terms)))(np.asarray(points, dtype=float))
-    if not np.all(np.isfinite(found)):
+        parts = arrays.kernel(Code(program, dynamics.inputs, tuple(terms)))(np.asarray(points, dtype=float))
+    if not np.all(np.isfinite(parts)):
         return Standing.UNDECIDED, Doubt.NOT_FINITE
-    rate, size = float(np.max(np.abs(np.sum(found, axis=0)))), float(np.max(np.sum(np.abs(found), axis=0)))
+    rate, size = float(np.max(np.abs(np.sum(parts, axis=0)))), float(np.max(np.sum(np.abs(parts), axis=0)))
     if rate > SEEN * size:
         return Standing.CHANGING, None
     return (Standing.VERIFIED, None) if rate <= UNSEEN * size else (Standing.UNDECIDED, Doubt.TINY)
@@ -260,12 +260,14 @@ def judged(
     """
     seen = [[float(x) for x in state] for state in np.asarray(points, dtype=float).T]
     decided = 0
-    for place, state in enumerate([*seen, *(list(map(float, one)) for one in near), *_beside(dynamics, held)]):
+    for place, state in enumerate(
+        [*seen, *(list(map(float, neighbour)) for neighbour in near), *_beside(dynamics, held)]
+    ):
         with ctx.workprec(BITS):
-            found = terms(state)
-            if not all(term.is_finite() for term in found):
+            parts = terms(state)
+            if not all(term.is_finite() for term in parts):
                 continue
-            total, size = sum(found, arb(0)), sum((abs(term) for term in found), arb(0))
+            total, size = sum(parts, arb(0)), sum((abs(term) for term in parts), arb(0))
             if not total.contains(0):
                 if not rounded or abs(total) > NOTHING * size:
                     return Standing.CHANGING, None
@@ -284,12 +286,12 @@ def _beside(dynamics: Dynamics, held: Collection[str]) -> list[list[float]]:
     sizes = 2.0 ** np.floor(np.log2(about(dynamics, 0.0, start).sizes[:, 0]))
     names = dynamics.system.coordinates
     free = [True] * len(start) if dynamics.in_states else [name not in held for name in names] * 2
-    found = []
+    neighbours = []
     for _ in range(BESIDE):
         time, *parts = random.randint(0, 1024) / 256, *(random.randint(-64, 64) / 256 for _ in start)
         moved = [x + part * (size + abs(x)) * k for x, part, size, k in zip(start, parts, sizes, free, strict=True)]
-        found.append([time, *moved])
-    return found
+        neighbours.append([time, *moved])
+    return neighbours
 
 
 def between_switches(
@@ -302,19 +304,19 @@ def between_switches(
     ``inside`` steps on each side of the switches, in which what is not known of them is as in the rows.
     """
     rows = np.asarray(states, dtype=float)
-    found: list[list[float]] = []
+    points: list[list[float]] = []
     for time, state in inside:
         if times[0] <= time <= times[-1]:
             beside = [float(np.interp(time, times, row)) for row in rows]
-            found.append([time, *(b if np.isnan(x) else float(x) for x, b in zip(state, beside, strict=True))])
-    for one, later in pairwise(switches):
-        row = int(np.searchsorted(times, one))
-        if 0 < row < len(times) and later <= times[row] and len(found) < MOST_BETWEEN + len(inside):
-            middle = 0.5 * (one + later)
+            points.append([time, *(b if np.isnan(x) else float(x) for x, b in zip(state, beside, strict=True))])
+    for earlier, later in pairwise(switches):
+        row = int(np.searchsorted(times, earlier))
+        if 0 < row < len(times) and later <= times[row] and len(points) < MOST_BETWEEN + len(inside):
+            middle = 0.5 * (earlier + later)
             share = (middle - times[row - 1]) / (times[row] - times[row - 1])
             state = np.asarray(states[:, row - 1], float) * (1 - share) + np.asarray(states[:, row], float) * share
-            found.append([float(middle), *map(float, state)])
-    return found
+            points.append([float(middle), *map(float, state)])
+    return points
 
 
 def visited(times: Any, states: Any, values: Any) -> Any:
@@ -361,7 +363,7 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
     system, ring = dynamics.system, dynamics.ring
     declared = [*system.parameter_names, *(item.name for item in system.prescribed), *dynamics.inputs, "pi"]
     environment = {name: program.input(name) for name in declared}
-    found: list[Invariant] = []
+    numeric: list[Invariant] = []
     taken = set(known)
     for integral in integrals:
         try:
@@ -375,8 +377,8 @@ def invariants(dynamics: Dynamics, integrals: Sequence[Integral], known: Sequenc
         parts = (program.product(slope, velocity) for slope, velocity in zip(slopes, velocities, strict=True))
         code = Code(program, dynamics.inputs, (node, *parts))
         unit = integral_unit(system, integral.kind, integral.of)
-        found.append(Invariant(integral.name, column, integral.status is Certainty.PROVED, code, unit))
-    return tuple(found)
+        numeric.append(Invariant(integral.name, column, integral.status is Certainty.PROVED, code, unit))
+    return tuple(numeric)
 
 
 def along(known: Sequence[Invariant]) -> Callable[[Any], dict[str, Any]]:
@@ -391,9 +393,9 @@ def values(known: Sequence[Invariant], times: Any, states: Any) -> list[tuple[An
         return []
     compiled = kernels({f"f{i}": item.code for i, item in enumerate(known)})
     points = np.vstack([times, np.asarray(states, dtype=float)])
-    found = []
+    histories = []
     for i in range(len(known)):
         rows = compiled[f"f{i}"](points)
         size = float(np.max(np.sum(np.abs(rows[1:]), axis=0))) or float(np.max(np.abs(rows[0]))) or 1.0
-        found.append((rows[0], size))
-    return found
+        histories.append((rows[0], size))
+    return histories

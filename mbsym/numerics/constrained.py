@@ -108,11 +108,11 @@ class Flow:
 
     def displaced(self, t: float, state: Any, way: Any) -> Any:
         """The state moved by Y way."""
-        found, p = np.array(state, dtype=float), self._shape[0]
-        found[:p] += self.turned(t, found) @ way
+        moved, p = np.array(state, dtype=float), self._shape[0]
+        moved[:p] += self.turned(t, moved) @ way
         for _ in range(RESTORED):
-            found[:p] += self._restored(np.concatenate(([t], found)))
-        return found
+            moved[:p] += self._restored(np.concatenate(([t], moved)))
+        return moved
 
 
 class Constraints:
@@ -128,17 +128,19 @@ class Constraints:
         system = scenario.system
         self.places, self.size = len(system.coordinates), len(system.velocities)
         self.inputs = ("t", *system.coordinates, *system.velocities)
-        found = conditions(system, ring) if form is None else conditions_in_states(form)
-        self.flow = None if form is None else Flow(form, found.program, found.turned, bound(scenario), self.inputs)
-        self._at_rest, self._rest_program = found.at_rest, found.program
-        self._listed(scenario, found.program, found.rows)
+        equations = conditions(system, ring) if form is None else conditions_in_states(form)
+        self.flow = (
+            None if form is None else Flow(form, equations.program, equations.turned, bound(scenario), self.inputs)
+        )
+        self._at_rest, self._rest_program = equations.at_rest, equations.program
+        self._listed(scenario, equations.program, equations.rows)
         # A row that seems to say nothing at some place is looked at in the ring, which is dearer.
         source = np.random.default_rng(3)
         place = self.at(0.3, source.uniform(0.3, 0.9, self.places + self.size))
         nothing = np.max(np.abs(place.partials), axis=1) <= 1e-10 * self.slopes(np.abs(place.partials), 1.0)
-        empty = empty_rows(system, ring, [row for row, none in zip(found.rows, nothing, strict=True) if none], form)
+        empty = empty_rows(system, ring, [row for row, none in zip(equations.rows, nothing, strict=True) if none], form)
         if empty:
-            self._listed(scenario, found.program, [row for row in found.rows if row.name not in empty])
+            self._listed(scenario, equations.program, [row for row in equations.rows if row.name not in empty])
         self._masses = arrays.kernel(masses)
 
     def _listed(self, scenario: Scenario, program: Program, rows: Sequence[Row]) -> None:
@@ -176,11 +178,11 @@ class Constraints:
 
     def displaced(self, t: float, state: Any, way: Any) -> Any:
         """The state with its position moved by Y way (n,)."""
-        found = np.array(state, dtype=float)
+        moved = np.array(state, dtype=float)
         if self.flow is not None:
-            return self.flow.displaced(t, found, way)
-        found[: self.places] += way
-        return found
+            return self.flow.displaced(t, moved, way)
+        moved[: self.places] += way
+        return moved
 
     def turned(self, t: float, state: Any, way: Any) -> Any:
         """Y way (p,)."""
@@ -210,18 +212,18 @@ class Constraints:
     def sizes(self, state: Any) -> Any:
         """What a state is measured by (p + n,): positions by ``extents``, components of length 1 by 1, velocities by
         max(|v_i|, max_j |v_j| sqrt(M_jj/M_ii))."""
-        found, velocities = np.ones(self.places), np.abs(np.asarray(state, dtype=float)[self.places :])
+        position_sizes, velocities = np.ones(self.places), np.abs(np.asarray(state, dtype=float)[self.places :])
         for place, extent in zip(self.own_places, self.extents(state), strict=True):
             if place is not None:
-                found[place] = extent
+                position_sizes[place] = extent
         inertia = self._inertia(state)
         usual = np.max(velocities * inertia, initial=0.0)
-        return np.concatenate([found, np.maximum(velocities, _shares(usual, inertia))])
+        return np.concatenate([position_sizes, np.maximum(velocities, _shares(usual, inertia))])
 
     def _inertia(self, state: Any) -> Any:
         """sqrt(M_ii) (n,), 0 where it is no number."""
-        found = self._masses(np.concatenate(([0.0], np.asarray(state, dtype=float))))[:: self.size + 1]
-        return np.sqrt(np.where(np.isfinite(found), np.maximum(found, 0.0), 0.0))
+        masses = self._masses(np.concatenate(([0.0], np.asarray(state, dtype=float))))[:: self.size + 1]
+        return np.sqrt(np.where(np.isfinite(masses), np.maximum(masses, 0.0), 0.0))
 
     @cached_property
     def _bounded(self) -> frozenset[int]:
@@ -271,9 +273,9 @@ class Constraints:
     def _ranked(self) -> list[tuple[list[int], Any]]:
         """(independent rows, state) at the positions that are looked at, where most rows are independent."""
         state = np.array([float(x) for x in self._scenario.state])
-        found = [(self.independent(0.0, place), place) for place in self._places(state)]
-        rank = max(len(rows) for rows, _ in found)
-        return [(rows, place) for rows, place in found if len(rows) == rank]
+        candidates = [(self.independent(0.0, place), place) for place in self._places(state)]
+        rank = max(len(rows) for rows, _ in candidates)
+        return [(rows, place) for rows, place in candidates if len(rows) == rank]
 
     @cached_property
     def kept(self) -> tuple[int, ...]:
@@ -352,13 +354,13 @@ class Constraints:
         """J M^-1/2, each row of length 1, or 0 where it vanishes beside those of its constraint."""
         rows = self.at(t, state).partials @ self.weights(t, state)
         lengths = np.linalg.norm(rows, axis=1)
-        found = rows / np.where(lengths > 0, lengths, 1.0)[:, None]
-        found[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
-        return found
+        normalised = rows / np.where(lengths > 0, lengths, 1.0)[:, None]
+        normalised[lengths <= DEPENDENT * self.slopes(lengths[:, None], 1.0)] = 0.0
+        return normalised
 
     def _orthogonalised(self, t: float, state: Any) -> tuple[list[int], float]:
         """The independent rows, and what others leave at least of one of them."""
-        left, found, least = self._of_length_one(t, state), [], 1.0
+        left, independent, least = self._of_length_one(t, state), [], 1.0
         for group in (range(self.holonomic), range(self.holonomic, len(self.names))):
             open_ = list(group)
             while open_:
@@ -369,11 +371,11 @@ class Constraints:
                     break
                 least = min(least, float(sizes[place]))
                 number = open_.pop(place)
-                found.append(number)
-                one = left[number] / np.linalg.norm(left[number])
+                independent.append(number)
+                direction = left[number] / np.linalg.norm(left[number])
                 for _ in range(2):  # twice is enough
-                    left = left - np.outer(left @ one, one)
-        return found, least
+                    left = left - np.outer(left @ direction, direction)
+        return independent, least
 
     def _places(self, state: Any) -> list[Any]:
         """The initial position and some beside it to which the constraints let it move: on its way, if it has one."""
@@ -395,17 +397,17 @@ class Constraints:
 
     def led(self, t: float, state: Any) -> Any | None:
         """A state whose position is led to the constraints by Newton's method, each step the shortest; None if not."""
-        n, found, before = self.size, np.array(state, dtype=float), np.inf
+        n, iterate, before = self.size, np.array(state, dtype=float), np.inf
         for _ in range(STEPS):
-            values, weights = self.at(t, found), self.weights(t, found)
+            values, weights = self.at(t, iterate), self.weights(t, iterate)
             if not np.all(np.isfinite(values.partials)) or not np.all(np.isfinite(weights)):
                 return None
             rows = values.partials[: self.holonomic] @ weights
             step = weights @ np.linalg.lstsq(rows, -values.positions, rcond=1e-10)[0] if self.holonomic else np.zeros(n)
-            found = self.displaced(t, found, step)
-            size = float(np.max(np.abs(step) / self.extents(found), initial=0.0))
+            iterate = self.displaced(t, iterate, step)
+            size = float(np.max(np.abs(step) / self.extents(iterate), initial=0.0))
             if size <= SETTLED or before / 2 <= size <= ROUNDED:
-                return found
+                return iterate
             before = size
         return None
 
@@ -521,8 +523,8 @@ def drift(constraints: Constraints, times: Any, states: Any, sizes: Any) -> Drif
         np.abs(values.velocities) / _positive(scales[1])[:, None],
     ]
     worst = [names[int(np.argmax(np.max(part, axis=1)))] if len(part) else None for part in parts]
-    found = [np.max(part, axis=0) if len(part) else np.zeros(len(times)) for part in parts]
-    return Drift(found[0], found[1], (worst[0], worst[1]))
+    drifts = [np.max(part, axis=0) if len(part) else np.zeros(len(times)) for part in parts]
+    return Drift(drifts[0], drifts[1], (worst[0], worst[1]))
 
 
 def _shares(usual: float, inertia: Any) -> Any:

@@ -95,23 +95,23 @@ class _Start:
         lacking = [name for name, x in self.positions.items() if x is None and name not in self.told]
         self.missing += [f"{name} (its initial position)" for name in lacking]
         speeds = {speed.name for speed in self.system.speeds}
-        given = speeds & self.own.keys()
-        if given:
-            self.missing += [f"{name} (its initial value)" for name in sorted(speeds - given)]
+        declared = speeds & self.own.keys()
+        if declared:
+            self.missing += [f"{name} (its initial value)" for name in sorted(speeds - declared)]
         if self.missing or self.wrong:
             return DeclaredStart(missing=tuple(self.missing), wrong=tuple(self.wrong))
         q = {name: x for name, x in self.positions.items() if x is not None}
-        u, rates = self._speeds(q, bool(given))
-        if given and not self._determined(q):
-            names = ", ".join(sorted(given))
+        u, rates = self._speeds(q, bool(declared))
+        if declared and not self._determined(q):
+            names = ", ".join(sorted(declared))
             text = f"in the initial state the velocities of coordinates do not follow from {names}"
-            self.wrong.append((min(given), f"{text}: choose other speeds, or other axes of 'rotation'"))
+            self.wrong.append((min(declared), f"{text}: choose other speeds, or other axes of 'rotation'"))
         if self.wrong:
             return DeclaredStart(wrong=tuple(self.wrong))
         s = [self._position(x.name, q) for x in self.form.positions]
         left = [velocity_name(name) for name, x in self.velocities.items() if x is None]
         own = {u.name for u in self.form.speeds}
-        unstated = tuple(name for name in left if not given or name in own)
+        unstated = tuple(name for name in left if not declared or name in own)
         return DeclaredStart((*s, *u), tuple(q[name] for name in self.system.coordinates), rates, unstated=unstated)
 
     def _position(self, name: str, q: Mapping[str, arb]) -> arb:
@@ -121,9 +121,9 @@ class _Start:
 
     def _orientation(self, body: Body) -> None:
         """Direction cosines of a body told by its own variables, and the angles that make them."""
-        named = [name for one in body.orientation for name in one.components]
-        given = [name for name in named if name in self.own]
-        if not given:
+        named = [name for vector in body.orientation for name in vector.components]
+        declared = [name for name in named if name in self.own]
+        if not declared:
             self._from_angles(body)
             return
         self.told |= {*body.own_angles}
@@ -137,16 +137,15 @@ class _Start:
         angles = self._angles(body, rows)
         own = [angle.name for _, angle in body.rotation.turns() if isinstance(angle, Name)]
         if angles is None or len(own) != 3:
-            self.wrong.append((given[0], f"the angles of {body.name} are not three coordinates: give these"))
+            self.wrong.append((declared[0], f"the angles of {body.name} are not three coordinates: give these"))
             return
         stated = [name for name in own if self.positions[name] is not None]
         if stated:
             other = _of_angles(body, [self.positions[name] or arb(0) for name in own])
             gap = max(abs(a - b) for x, y in zip(rows, other, strict=True) for a, b in zip(x, y, strict=True))
             if len(stated) < 3 or not gap < ball(AGREEMENT):
-                text = (
-                    f"the orientation of {body.name} is given twice: by {', '.join(stated)} and by {', '.join(given)}"
-                )
+                by = f"{', '.join(stated)} and by {', '.join(declared)}"
+                text = f"the orientation of {body.name} is given twice: by {by}"
                 self.wrong.append((stated[0], f"{text}, and these differ" if len(stated) == 3 else text))
             return
         self.positions |= dict(zip(own, angles, strict=True))
@@ -162,23 +161,23 @@ class _Start:
             return
         program = Program()
         nodes = self.form.variables_in_coordinates(program)
-        wanted = [name for one in body.orientation for name in one.components]
+        components = [name for vector in body.orientation for name in vector.components]
         inputs = values | {velocity_name(name): arb(0) for name in self.system.coordinates}
-        code = Code(program, tuple(inputs), tuple(nodes[name] for name in wanted))
-        self.oriented |= dict(zip(wanted, enclosures(code, tuple(inputs.values()), BITS), strict=True))
+        code = Code(program, tuple(inputs), tuple(nodes[name] for name in components))
+        self.oriented |= dict(zip(components, enclosures(code, tuple(inputs.values()), BITS), strict=True))
 
     def _matrix(self, body: Body) -> list[list[arb]] | None:
         """R^jk of what is given, exactly orthonormal; None where it is none."""
         first = body.orientation[0]
-        vectors = [[self.own[name] for name in one.components] for one in body.orientation]
+        vectors = [[self.own[name] for name in orientation.components] for orientation in body.orientation]
         for i, vector in enumerate(vectors):
             for other in vectors[i:]:
                 product = dot(vector, other)
-                wanted = 1 if other is vector else 0
-                if not abs(product - wanted) < ball(AGREEMENT):
+                expected = 1 if other is vector else 0
+                if not abs(product - expected) < ball(AGREEMENT):
                     name = body.orientation[i].name
                     what = "the norm squared" if other is vector else "a product with another unit vector"
-                    text = f"{what} of {name} is {float(product.mid()):.12g} and has to be {wanted}"
+                    text = f"{what} of {name} is {float(product.mid()):.12g} and has to be {expected}"
                     self.wrong.append((body.orientation[i].components[0], text))
                     return None
         for i, vector in enumerate(vectors):  # Gram and Schmidt: what is left are roundings
@@ -217,7 +216,7 @@ class _Start:
 
     # --- speeds ------------------------------------------------------------------------------------------------------
 
-    def _speeds(self, q: Mapping[str, arb], given: bool) -> tuple[list[arb], tuple[arb, ...] | None]:
+    def _speeds(self, q: Mapping[str, arb], has_speeds: bool) -> tuple[list[arb], tuple[arb, ...] | None]:
         """u, and q' of all coordinates; None where they do not follow from u."""
         system, form, program = self.system, self.form, Program()
         names = [velocity_name(name) for name in system.coordinates]
@@ -229,33 +228,33 @@ class _Start:
         whole = enclosures(code, tuple(values.values()), BITS)
         n = len(known)
         own, matrix = whole[:n], [whole[n + r * n : n + (r + 1) * n] for r in range(n)]
-        if not given:
+        if not has_speeds:
             return own, tuple(stated[name] for name in names)
-        wanted = [self.own.get(u.name, stated.get(u.name, arb(0))) for u in form.speeds]
+        speeds = [self.own.get(u.name, stated.get(u.name, arb(0))) for u in form.speeds]
         still = [
             x - sum((s * stated[v] for s, v in zip(row, names, strict=True)), arb(0))
             for x, row in zip(own, matrix, strict=True)
         ]
-        stretched = [u - x for u, x in zip(wanted, still, strict=True)]
+        stretched = [u - x for u, x in zip(speeds, still, strict=True)]
         named = [name for name, x in self.velocities.items() if x is not None]
         if named and len(named) == n:
-            gap = max((abs(a - b) for a, b in zip(own, wanted, strict=True)), default=arb(0))
-            if not gap < ball(AGREEMENT) * (1 + max(abs(x) for x in wanted)):
+            gap = max((abs(a - b) for a, b in zip(own, speeds, strict=True)), default=arb(0))
+            if not gap < ball(AGREEMENT) * (1 + max(abs(x) for x in speeds)):
                 text = "the initial velocities are given twice, by coordinates and by speeds, and these differ"
                 self.wrong.append((velocity_name(named[0]), text))
-            return wanted, tuple(stated[name] for name in names)
+            return speeds, tuple(stated[name] for name in names)
         both = [name for name in named if velocity_name(name) not in {u.name for u in form.speeds}]
         if both:
             text = f"the initial velocity of {both[0]} follows from the speeds: give one or the other"
             self.wrong.append((velocity_name(both[0]), text))
-            return wanted, None
+            return speeds, None
         try:
             solved = arb_mat(matrix).solve(arb_mat([[x] for x in stretched]))
         except ZeroDivisionError:
-            return wanted, None
+            return speeds, None
         rates = tuple(solved[r, 0] for r in range(n))
         narrow = all(x.rad() < arb(2) ** -200 * (1 + abs(x.mid())) for x in rates)
-        return wanted, rates if narrow else None
+        return speeds, rates if narrow else None
 
     def _nodes(self, program: Program) -> list[Any]:
         """u in (q, q', t), in the order of the speeds."""

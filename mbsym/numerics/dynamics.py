@@ -105,9 +105,9 @@ class Dynamics:
     @cached_property
     def right_hand_side(self) -> Code:
         """(t, q, q') -> (q', q''), 2n outputs."""
-        found = self._solved
+        solution = self._solved
         fresh = self._specialised
-        accelerations = substituted(found.program, found.accelerations, fresh)
+        accelerations = substituted(solution.program, solution.accelerations, fresh)
         return self._code([*(fresh.input(name) for name in self.system.velocities), *accelerations])
 
     @cached_property
@@ -164,8 +164,8 @@ class Dynamics:
 
         With constraints those of J M^-1 J^T follow; one of them vanishes where the constraints lose their rank.
         """
-        found = self._solved
-        return self._code(substituted(found.program, found.pivots, self._specialised))
+        solution = self._solved
+        return self._code(substituted(solution.program, solution.pivots, self._specialised))
 
     @cached_property
     def mass_matrix(self) -> Code:
@@ -199,7 +199,9 @@ class Dynamics:
         """Whether the right-hand side is linear in the state: no entry of the Jacobian is a function of it."""
         program = self.jacobian.program
         used = (program.instructions[number] for number in program.live(self.jacobian.outputs))
-        return all(one.operation != "input" or str(one.payload) not in self.inputs[1:] for one in used)
+        return all(
+            instruction.operation != "input" or str(instruction.payload) not in self.inputs[1:] for instruction in used
+        )
 
     @cached_property
     def _lagrangian(self) -> tuple[Node, Node]:

@@ -106,8 +106,8 @@ def inverse_dynamics(
         raise ValueError("the description has no inputs")
     if system.constraints:
         return inverse_constrained(system, motion, overrides, times)
-    given = scenario(system, overrides, state=False)
-    program, states, needed, applied = _program(system, given, motion)
+    specified = scenario(system, overrides, state=False)
+    program, states, needed, applied = _program(system, specified, motion)
     inputs = [program.input(name) for name in system.input_names]
     slopes = jacobian(program, needed, inputs)
     check_linear(program, system, slopes)
@@ -115,12 +115,12 @@ def inverse_dynamics(
     outputs = (*states, *needed, *applied, *(x for row in slopes for x in row))
     code = Code(program, ("t", *system.input_names), outputs)
     at = np.vstack([times, np.zeros((k, len(times)))])
-    found = kernel(code)(at)
-    if not np.isfinite(found).all():
-        first = times[~np.isfinite(found).all(axis=0)][0]
+    evaluated = kernel(code)(at)
+    if not np.isfinite(evaluated).all():
+        first = times[~np.isfinite(evaluated).all(axis=0)][0]
         raise ValueError(f"at t = {first:.9g} the motion, or what it needs, is infinite or no number")
     finer = np.asarray(kernel(code, "extended")(at), dtype=float)
-    noise = np.abs(finer - found)[3 * n : 4 * n].max(axis=1)
+    noise = np.abs(finer - evaluated)[3 * n : 4 * n].max(axis=1)
     moved, right = finer[: 3 * n], finer[3 * n : 4 * n]
     columns = -finer[5 * n :].reshape(n, k, len(times))
     values, rank = _solved(columns, right)
@@ -194,8 +194,8 @@ def _solved(columns: Array, right: Array) -> tuple[Array, npt.NDArray[np.int64]]
     count = columns.shape[2]
     values, rank = np.zeros((columns.shape[1], count)), np.zeros(count, dtype=np.int64)
     for m in range(count):
-        found, _, rank[m], _ = np.linalg.lstsq(columns[:, :, m], right[:, m], rcond=NOTHING)
-        values[:, m] = found
+        solution, _, rank[m], _ = np.linalg.lstsq(columns[:, :, m], right[:, m], rcond=NOTHING)
+        values[:, m] = solution
     return values, rank
 
 
@@ -222,10 +222,10 @@ def inverse_constrained(
     Raises NotLinear as without constraints; ValueError where the others do not follow, or the motion does not satisfy
     the constraints.
     """
-    given = scenario(system, overrides, state=False)
-    rows = _Rows(system, given)
-    states = rows.followed(_Given(system, given, motion), times)
-    needed, applied, columns, masses = _equations(system, given, states, times)
+    specified = scenario(system, overrides, state=False)
+    rows = _Rows(system, specified)
+    states = rows.followed(_Given(system, specified, motion), times)
+    needed, applied, columns, masses = _equations(system, specified, states, times)
     _, _, _, partials = rows.at(times, states)
     n, k, m = len(system.coordinates), len(system.input_names), len(times)
     values, rank = np.zeros((k, m)), np.zeros(m, dtype=np.int64)
@@ -237,8 +237,8 @@ def inverse_constrained(
         free = _beside(ties)
         scales = np.linalg.norm(own, axis=0)
         scales = np.where(scales > 0, scales, 1.0)
-        found, rank[place] = _smallest(free @ (own / scales), free @ right)
-        values[:, place] = found / scales
+        scaled, rank[place] = _smallest(free @ (own / scales), free @ right)
+        values[:, place] = scaled / scales
         rest = free.T @ (free @ (own @ values[:, place] - right))
         residual[:, place] = lower @ rest
         left = max(left, float(np.linalg.norm(rest)))
@@ -294,31 +294,31 @@ class _Given:
 
     def __call__(self, times: Array) -> dict[str, Any]:
         """By name, shape (3, m).  Raises ValueError."""
-        found = {}
+        motions = {}
         for name, own in self._kernels.items():
             values = np.broadcast_to(own(np.array([times])), (3, len(times)))
             if not np.isfinite(values).all():
                 first = times[~np.isfinite(values).all(axis=0)][0]
                 raise ValueError(f"at t = {first:.9g} the motion of {name} is infinite or no number")
-            found[name] = values
-        return found
+            motions[name] = values
+        return motions
 
 
 class _Rows:
     """f, g, the acceleration form at q'' = 0 and J of all rows."""
 
     def __init__(self, system: System, given: Scenario) -> None:
-        self.system, self.given, self.n = system, given, len(system.coordinates)
-        found = conditions(system, ring_of(system))
-        self.names = found.names
+        self.system, self.scenario, self.n = system, given, len(system.coordinates)
+        equations = conditions(system, ring_of(system))
+        self.names = equations.names
         self.holonomic = sum(name.holonomic for name in self.names)
-        nodes = [row.position for row in found.rows if row.position is not None]
-        nodes += [row.velocity for row in found.rows]
-        nodes += [row.acceleration for row in found.rows]
-        nodes += [slope for row in found.rows for slope in row.partials]
+        nodes = [row.position for row in equations.rows if row.position is not None]
+        nodes += [row.velocity for row in equations.rows]
+        nodes += [row.acceleration for row in equations.rows]
+        nodes += [slope for row in equations.rows for slope in row.partials]
         numbers = bound(given)
         inputs = ("t", *system.coordinates, *system.velocities)
-        self._kernel = kernel(Code(numbers, inputs, tuple(substituted(found.program, nodes, numbers))))
+        self._kernel = kernel(Code(numbers, inputs, tuple(substituted(equations.program, nodes, numbers))))
         #: What coordinates are measured by is asked of these, and the largest of what is given (3, n).
         self._measuring = Dynamics(given).constraints
         self._largest = np.zeros((3, self.n))
@@ -330,31 +330,31 @@ class _Rows:
         partials = values[h + 2 * r :].reshape(r, self.n, -1)
         return values[:h], values[h : h + r], values[h + r : h + 2 * r], partials
 
-    def followed(self, given: _Given, times: Array) -> Any:
+    def followed(self, prescribed: _Given, times: Array) -> Any:
         """q, q', q'' (3n, m) with those that follow.  Raises ValueError."""
-        n, names, known = self.n, self.system.coordinates, given(times)
+        n, names, known = self.n, self.system.coordinates, prescribed(times)
         states = np.zeros((3 * n, len(times)))
         for place, name in enumerate(names):
             if name in known:
                 states[place::n] = known[name]
                 self._largest[:, place] = np.max(np.abs(known[name]), axis=1)
         open_ = [place for place, name in enumerate(names) if name not in known]
-        q = np.array([float(x) for x in self.given.positions])
-        rolled = self._rolled(given, times, states[:, 0:1], q, open_) if open_ else None
+        q = np.array([float(x) for x in self.scenario.positions])
+        rolled = self._rolled(prescribed, times, states[:, 0:1], q, open_) if open_ else None
         for m, t in enumerate(times):
-            one = states[:, m : m + 1]
-            one[open_, 0] = q[open_] if rolled is None else rolled[:, m]
-            self._placed(t, one, open_)
-            _, g, _, partials = self.at(t, one)
-            one[[n + k for k in open_], 0] = self._solved(partials[:, :, 0], g[:, 0], open_, t)
-            _, _, c, partials = self.at(t, one)
-            needed = c[:, 0] + partials[:, :, 0] @ one[2 * n :, 0]
-            one[[2 * n + k for k in open_], 0] = self._solved(partials[:, :, 0], needed, open_, t)
-            self._check(t, one)
-            q = one[:n, 0]
+            column = states[:, m : m + 1]
+            column[open_, 0] = q[open_] if rolled is None else rolled[:, m]
+            self._placed(t, column, open_)
+            _, g, _, partials = self.at(t, column)
+            column[[n + k for k in open_], 0] = self._solved(partials[:, :, 0], g[:, 0], open_, t)
+            _, _, c, partials = self.at(t, column)
+            needed = c[:, 0] + partials[:, :, 0] @ column[2 * n :, 0]
+            column[[2 * n + k for k in open_], 0] = self._solved(partials[:, :, 0], needed, open_, t)
+            self._check(t, column)
+            q = column[:n, 0]
         return states
 
-    def _rolled(self, given: _Given, times: Array, first: Any, q: Any, open_: list[int]) -> Any | None:
+    def _rolled(self, prescribed: _Given, times: Array, first: Any, q: Any, open_: list[int]) -> Any | None:
         """Open positions (k, m) by the velocities that the rows leave them; None where rows on positions suffice."""
         from scipy.integrate import solve_ivp
 
@@ -366,11 +366,11 @@ class _Rows:
         self._placed(times[0], start, open_)
 
         def rates(t: float, x: Any) -> Any:
-            one = np.zeros((3 * n, 1))
-            for name, values in given(np.array([t])).items():
-                one[names.index(name) :: n, 0] = values[:, 0]
-            one[open_, 0] = x
-            _, g, _, partials = self.at(t, one)
+            column = np.zeros((3 * n, 1))
+            for name, values in prescribed(np.array([t])).items():
+                column[names.index(name) :: n, 0] = values[:, 0]
+            column[open_, 0] = x
+            _, g, _, partials = self.at(t, column)
             return self._solved(partials[:, :, 0], g[:, 0], open_, t)
 
         if len(times) < 2:
@@ -380,22 +380,22 @@ class _Rows:
             raise ValueError(f"at t = {done.t[-1] if done.t.size else times[0]:.9g} the motion cannot be followed")
         return done.y
 
-    def _placed(self, t: float, one: Any, open_: list[int]) -> None:
+    def _placed(self, t: float, column: Any, open_: list[int]) -> None:
         """Positions are led to the rows that have a position."""
         h = self.holonomic
         for _ in range(STEPS if open_ and h else 0):
-            f, _, _, partials = self.at(t, one)
+            f, _, _, partials = self.at(t, column)
             step = self._solved(partials[:h, :, 0], f[:, 0], open_, t, partly=True)
-            one[open_, 0] += step
-            if not np.any(np.abs(step) > 1e-14 * self._sizes(one)[0][open_]):
+            column[open_, 0] += step
+            if not np.any(np.abs(step) > 1e-14 * self._sizes(column)[0][open_]):
                 break
 
-    def _sizes(self, one: Any) -> list[Any]:
+    def _sizes(self, column: Any) -> list[Any]:
         """What q, q', q'' are measured by at a time, each (n,): by what they are in the whole motion."""
         assert self._measuring is not None
-        largest = np.maximum(self._largest, np.abs(one[:, 0]).reshape(3, self.n))
-        found = [self._measuring.sizes(np.concatenate([one[: self.n, 0], x])) for x in largest]
-        return [np.maximum(found[0][: self.n], largest[0]), found[1][self.n :], found[2][self.n :]]
+        largest = np.maximum(self._largest, np.abs(column[:, 0]).reshape(3, self.n))
+        sizes = [self._measuring.sizes(np.concatenate([column[: self.n, 0], x])) for x in largest]
+        return [np.maximum(sizes[0][: self.n], largest[0]), sizes[1][self.n :], sizes[2][self.n :]]
 
     def _solved(self, partials: Any, right: Any, open_: list[int], t: float, partly: bool = False) -> Any:
         """x with J x = -right for the coordinates that are open."""
@@ -403,20 +403,20 @@ class _Rows:
             return np.zeros(0)
         if not np.isfinite(partials).all() or not np.isfinite(right).all():
             raise ValueError(f"at t = {t:.9g} the constraints have no finite value")
-        found, _, rank, _ = np.linalg.lstsq(partials[:, open_], -right, rcond=OFF)
+        solution, _, rank, _ = np.linalg.lstsq(partials[:, open_], -right, rcond=OFF)
         if rank < len(open_) and not partly:
             listed = ", ".join(self.system.coordinates[k] for k in open_)
             why = "the constraints do not determine it" if len(open_) == 1 else "the constraints do not determine all"
             raise ValueError(f"at t = {t:.9g} the motion of {listed} does not follow from what is given: {why}")
-        return found
+        return solution
 
-    def _check(self, t: float, one: Any) -> None:
+    def _check(self, t: float, column: Any) -> None:
         n, h = self.n, self.holonomic
-        f, g, c, partials = (x[..., 0] for x in self.at(t, one))
+        f, g, c, partials = (x[..., 0] for x in self.at(t, column))
         slopes = np.abs(partials)
-        sizes = self._sizes(one)
+        sizes = self._sizes(column)
         off = [np.abs(f) / (slopes[:h] @ sizes[0] + 1e-300), np.abs(g) / (slopes @ sizes[1] + 1e-300)]
-        off.append(np.abs(c + partials @ one[2 * n :, 0]) / (slopes @ sizes[2] + np.abs(c) + 1e-300))
+        off.append(np.abs(c + partials @ column[2 * n :, 0]) / (slopes @ sizes[2] + np.abs(c) + 1e-300))
         for values, what in zip(off, ("", " (velocities)", " (accelerations)"), strict=True):
             if len(values) and not np.max(values) < OFF:
                 name = self.names[int(np.argmax(np.nan_to_num(values, nan=np.inf)))]

@@ -141,10 +141,10 @@ def positions(scenario: Scenario, times: Any, states: Any) -> Positions | None:
     moments = np.vstack([times, np.asarray(states, dtype=float)])
     with np.errstate(all="ignore"):
         places = [compiled[f"frame{i}"](moments) for i in range(len(carriers))]
-        found = [_positions(system, frame, rows, moments[0]) for frame, rows in zip(carriers, places, strict=True)]
-        found = [item for item in found if 0 < item.size < np.inf]
-        least = min(map(_extent, found), default=0.0)
-    return next((item for item in found if _extent(item) <= COMPACT * least), None)
+        drawings = [_positions(system, frame, rows, moments[0]) for frame, rows in zip(carriers, places, strict=True)]
+        drawings = [item for item in drawings if 0 < item.size < np.inf]
+        least = min(map(_extent, drawings), default=0.0)
+    return next((item for item in drawings if _extent(item) <= COMPACT * least), None)
 
 
 def _points(system: System, frame: str) -> list[Point]:
@@ -169,7 +169,11 @@ def _points(system: System, frame: str) -> list[Point]:
 def _tied(system: System) -> dict[int, tuple[PointOfBody, PointOfBody]]:
     """The two points that a constraint lets coincide, or holds at a distance, by its number."""
     kinds = (Coincide, Distance)
-    return {k: (one.first, one.second) for k, one in enumerate(system.constraints) if isinstance(one, kinds)}
+    return {
+        k: (constraint.first, constraint.second)
+        for k, constraint in enumerate(system.constraints)
+        if isinstance(constraint, kinds)
+    }
 
 
 def _place(scene: Scene, frame: str, point: Point) -> Vector:
@@ -188,8 +192,8 @@ def _place(scene: Scene, frame: str, point: Point) -> Vector:
 def _upward(scene: Scene, frame: str) -> Iterator[Vector]:
     """Against gravity, in the axes of the frame: away from the centre, or opposite to uniform gravity."""
     for load in scene.system.loads:
-        found = KINDS[type(load)].upward
-        up = None if found is None else found(load, scene, frame)
+        upward = KINDS[type(load)].upward
+        up = None if upward is None else upward(load, scene, frame)
         if up is not None:
             yield up
             return
@@ -213,17 +217,17 @@ def _positions(system: System, frame: str, values: Any, times: Any) -> Positions
             places[i] = places[joints[point.body]] + drawn[point.body] * places[i]
         elif point.kind == AXIS:
             places[i] = places[joints[point.body]] + (0.1 * travelled if travelled > STILL * scale else 1.0) * places[i]
-    kept = [
+    selected = [
         i
         for i, point in enumerate(points)
         if point.kind in (JOINT, MASS_CENTRE, END) or (point.kind == AXIS and (point_like or point.body in drawn))
     ]
-    if _ties_to_origin(system, frame) or any(_held(system, frame, points[i]) for i in kept):
-        kept.insert(0, 0)
-    shown = tuple(points[i] for i in kept)
+    if _ties_to_origin(system, frame) or any(_held(system, frame, points[i]) for i in selected):
+        selected.insert(0, 0)
+    shown = tuple(points[i] for i in selected)
     links, slides = _lines(system, frame, shown)
     centres = {body.name: _centre(shown, body) for body in system.bodies if body.mass != ZERO and body.name in joints}
-    return Positions(system, frame, shown, links, slides, centres, times, places[kept], up, not point_like)
+    return Positions(system, frame, shown, links, slides, centres, times, places[selected], up, not point_like)
 
 
 def _own_axes(system: System, frame: str, points: Sequence[Point], places: Any) -> dict[str, float]:
@@ -291,8 +295,8 @@ def _lines(
     for k, constraint in enumerate(system.constraints):
         if isinstance(constraint, Distance):
             sides = [
-                ends.get((k, side), number.get((one.body, ORIGIN if one.body == frame else JOINT)))
-                for side, one in enumerate((constraint.first, constraint.second))
+                ends.get((k, side), number.get((attachment.body, ORIGIN if attachment.body == frame else JOINT)))
+                for side, attachment in enumerate((constraint.first, constraint.second))
             ]
             if sides[0] is not None and sides[1] is not None:
                 links.append((sides[0], sides[1]))
@@ -305,8 +309,8 @@ def _ties_to_origin(system: System, frame: str) -> bool:
     return any(end.body == frame and all(x == ZERO for x in end.position) for end in ends)
 
 
-def _extent(found: Positions) -> float:
+def _extent(drawing: Positions) -> float:
     """How large the system looks, the origin of the frame included."""
-    low = np.minimum(np.min(found.places, axis=(0, 2)), 0.0)
-    high = np.maximum(np.max(found.places, axis=(0, 2)), 0.0)
+    low = np.minimum(np.min(drawing.places, axis=(0, 2)), 0.0)
+    high = np.maximum(np.max(drawing.places, axis=(0, 2)), 0.0)
     return float(np.linalg.norm(high - low))

@@ -46,14 +46,14 @@ class SceneUnits:
         return tuple(size * self.rate for size in self.sizes)
 
 
-def scene_units(given: Scenario, truth: Truth) -> SceneUnits:
+def scene_units(nominal: Scenario, truth: Truth) -> SceneUnits:
     """From balls at the initial state; what is not finite there (a singular position) is left out."""
-    n = len(given.positions)
-    angles = angle_denominators(given.system)
-    masses = _values(truth, "mass matrix", given)
+    n = len(nominal.positions)
+    angles = angle_denominators(nominal.system)
+    masses = _values(truth, "mass matrix", nominal)
     diagonal = [masses[i * (n + 1)] if masses else 0.0 for i in range(n)]
-    sizes = [1.0 if name in angles else 0.0 for name in given.system.coordinates]
-    for i, position in enumerate(given.positions):
+    sizes = [1.0 if name in angles else 0.0 for name in nominal.system.coordinates]
+    for i, position in enumerate(nominal.positions):
         if not sizes[i] and position:
             sizes[i] = abs(float(position))
     for i in range(n):
@@ -63,26 +63,26 @@ def scene_units(given: Scenario, truth: Truth) -> SceneUnits:
             ]
             sizes[i] = max(others, default=0.0) or 1.0
     exact = tuple(Fraction(size) for size in sizes)
-    rates = [abs(float(v)) / x for v, x in zip(given.velocities, sizes, strict=True)]
-    accelerations = _values(truth, "accelerations", given)
+    rates = [abs(float(v)) / x for v, x in zip(nominal.velocities, sizes, strict=True)]
+    accelerations = _values(truth, "accelerations", nominal)
     rates += [sqrt(abs(a) / x) for a, x in zip(accelerations, sizes, strict=False)]
-    slopes = _values(truth, "Jacobian", given)
+    slopes = _values(truth, "Jacobian", nominal)
     for place, slope in enumerate(slopes):
         i, j = divmod(place, 2 * n)
         scaled = abs(slope) * sizes[j % n] / sizes[i]
         rates.append(scaled if j >= n else sqrt(scaled))
-    rates += [abs(float(rate)) for name, (_, rate) in given.prescribed.items() if name in angles]
+    rates += [abs(float(rate)) for name, (_, rate) in nominal.prescribed.items() if name in angles]
     usual = max((x for x in rates if isfinite(x)), default=0.0)
     return SceneUnits(exact, Fraction(usual) if usual > 0 else Fraction(1))
 
 
-def _values(truth: Truth, name: str, given: Scenario) -> list[float]:
+def _values(truth: Truth, name: str, nominal: Scenario) -> list[float]:
     """Finite midpoints; nothing where the quantity is not measured."""
     if name not in truth.functions:
         return []
     with ctx.workprec(256):
-        found = truth.functions[name](truth.inputs(given, Fraction(0), given.state))
-        return [float(x.mid()) if x.is_finite() else float("nan") for x in found]
+        balls = truth.functions[name](truth.inputs(nominal, Fraction(0), nominal.state))
+        return [float(x.mid()) if x.is_finite() else float("nan") for x in balls]
 
 
 def in_units(units: SceneUnits, pattern: Sequence[Any]) -> tuple[Fraction, ...]:
@@ -128,17 +128,17 @@ class Ladder:
 
 
 def ladders(
-    given: Scenario,
+    nominal: Scenario,
     overrides: dict[str, Expression],
-    found: Sequence[Quantity],
+    quantities: Sequence[Quantity],
     singularities: Singularities,
     units: SceneUnits,
 ) -> Iterator[Ladder]:
     """All ladders of states and parameters that apply to a system."""
-    yield from singular(given, singularities, units)
-    yield Ladder(RATES, "rates", tuple(Probe(s, given, _faster(given, s, units)) for s in SPEEDS))
-    yield from near_equilibrium(given, units)
-    yield from ratios(given, overrides, found, units)
+    yield from singular(nominal, singularities, units)
+    yield Ladder(RATES, "rates", tuple(Probe(s, nominal, _faster(nominal, s, units)) for s in SPEEDS))
+    yield from near_equilibrium(nominal, units)
+    yield from ratios(nominal, overrides, quantities, units)
 
 
 def _decimal(size: float) -> Fraction:
@@ -146,42 +146,45 @@ def _decimal(size: float) -> Fraction:
     return Fraction(f"{size:e}")
 
 
-def _velocities(given: Scenario, units: SceneUnits) -> tuple[Fraction, ...]:
+def _velocities(nominal: Scenario, units: SceneUnits) -> tuple[Fraction, ...]:
     """The initial velocities, or a plain choice where nothing moves."""
-    if any(given.velocities):
-        return given.velocities
+    if any(nominal.velocities):
+        return nominal.velocities
     return tuple(Fraction(k + 2, 10 * (k + 1)) * unit for k, unit in enumerate(units.velocities))
 
 
-def _faster(given: Scenario, factor: float, units: SceneUnits) -> tuple[Fraction, ...]:
+def _faster(nominal: Scenario, factor: float, units: SceneUnits) -> tuple[Fraction, ...]:
     """All velocities times one factor."""
-    return (*given.positions, *(v * _decimal(factor) for v in _velocities(given, units)))
+    return (*nominal.positions, *(v * _decimal(factor) for v in _velocities(nominal, units)))
 
 
 # --- singular configurations ---
 
 
-def singular(given: Scenario, found: Singularities, units: SceneUnits) -> Iterator[Ladder]:
+def singular(nominal: Scenario, singularities: Singularities, units: SceneUnits) -> Iterator[Ladder]:
     """One ladder for every value of a coordinate at which M is singular, or point of a set in several coordinates.
 
     One coordinate approaches it; the others are where the scenario has them, or where the set wants them.
     """
-    for singular_set in found.sets:
-        movable = [name for name in singular_set.names if name in given.system.coordinates]
+    for singular_set in singularities.sets:
+        movable = [name for name in singular_set.names if name in nominal.system.coordinates]
         for number in range(min(len(singular_set.places), MOST_PLACES)):
             if movable:
-                yield _approach(given, singular_set, number, movable[0], units)
+                yield _approach(nominal, singular_set, number, movable[0], units)
 
 
-def _approach(given: Scenario, singular_set: SingularSet, number: int, moving: str, units: SceneUnits) -> Ladder:
-    place, names_ = singular_set.places[number], given.system.coordinates
-    start = [*(place.get(name, x) for name, x in zip(names_, given.positions, strict=True)), *_velocities(given, units)]
+def _approach(nominal: Scenario, singular_set: SingularSet, number: int, moving: str, units: SceneUnits) -> Ladder:
+    place, names_ = singular_set.places[number], nominal.system.coordinates
+    start = [
+        *(place.get(name, x) for name, x in zip(names_, nominal.positions, strict=True)),
+        *_velocities(nominal, units),
+    ]
     k = names_.index(moving)
     probes = []
     for size in DISTANCES:
         state = list(start)
         state[k] -= _decimal(size) * units.sizes[k]
-        probes.append(Probe(size, given, tuple(state)))
+        probes.append(Probe(size, nominal, tuple(state)))
     return Ladder(SINGULAR, subject(singular_set, number, moving), tuple(probes))
 
 
@@ -197,31 +200,31 @@ def subject(singular_set: SingularSet, number: int, moving: str) -> str:
 # --- the motion ---
 
 
-def motion_state(given: Scenario) -> tuple[Fraction, ...] | None:
+def motion_state(nominal: Scenario) -> tuple[Fraction, ...] | None:
     """(q, q') of the unperturbed motion at t = 0; None where the description has none."""
-    motion = {entry.coordinate: entry for entry in given.system.motion}
+    motion = {entry.coordinate: entry for entry in nominal.system.motion}
     if not motion:
         return None
     zero = Fraction(0)
-    names_ = given.system.coordinates
+    names_ = nominal.system.coordinates
     try:
-        at = [exact(motion[q].value, given.parameters) if q in motion else zero for q in names_]
-        rates = [exact(motion[q].rate, given.parameters) if q in motion else zero for q in names_]
+        at = [exact(motion[q].value, nominal.parameters) if q in motion else zero for q in names_]
+        rates = [exact(motion[q].rate, nominal.parameters) if q in motion else zero for q in names_]
     except SingularPoint:
         return None
     return (*at, *rates)
 
 
-def near_equilibrium(given: Scenario, units: SceneUnits) -> Iterator[Ladder]:
+def near_equilibrium(nominal: Scenario, units: SceneUnits) -> Iterator[Ladder]:
     """States that approach the unperturbed motion, if there is one."""
-    start = motion_state(given)
+    start = motion_state(nominal)
     if start is None:
         return
     pattern = in_units(units, [Fraction((-1) ** k * (k + 2), k + 3) for k in range(len(start))])
     probes = []
     for size in DISTANCES[::2]:
         state = tuple(x + _decimal(size) * c for x, c in zip(start, pattern, strict=True))
-        probes.append(Probe(size, given, state))
+        probes.append(Probe(size, nominal, state))
     yield Ladder(EQUILIBRIUM, Message("distance from the motion"), tuple(probes))
 
 
@@ -229,56 +232,56 @@ def near_equilibrium(given: Scenario, units: SceneUnits) -> Iterator[Ladder]:
 
 
 def scaled(
-    given: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction, assumed: bool = True
+    nominal: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction, assumed: bool = True
 ) -> Scenario:
     """The scenario with one parameter times a factor, and all that follows from it by relations.
 
     Raises Incomplete where that contradicts something; unless ``assumed`` is false, an assumption, too.
     """
-    value = Number(given.parameters[name] * factor)
-    changed = scenario(given.system, {**overrides, name: value}, state=False, assumed=assumed)
-    return replace(changed, positions=given.positions, velocities=given.velocities)
+    value = Number(nominal.parameters[name] * factor)
+    changed = scenario(nominal.system, {**overrides, name: value}, state=False, assumed=assumed)
+    return replace(changed, positions=nominal.positions, velocities=nominal.velocities)
 
 
-def free_parameters(given: Scenario) -> tuple[str, ...]:
+def free_parameters(nominal: Scenario) -> tuple[str, ...]:
     """The parameters that are positive and not determined by a relation."""
-    bound = {relation.name for relation in given.system.relations}
+    bound = {relation.name for relation in nominal.system.relations}
     return tuple(
         p.name
-        for p in given.system.parameters
-        if p.name not in bound and p.sign in ("positive", "nonnegative") and given.parameters[p.name] > 0
+        for p in nominal.system.parameters
+        if p.name not in bound and p.sign in ("positive", "nonnegative") and nominal.parameters[p.name] > 0
     )
 
 
-def _assumed(given: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction) -> bool:
+def _assumed(nominal: Scenario, overrides: dict[str, Expression], name: str, factor: Fraction) -> bool:
     """Whether the assumptions still hold with a parameter times a factor."""
     try:
-        scaled(given, overrides, name, factor)
+        scaled(nominal, overrides, name, factor)
     except Incomplete:
         return False
     return True
 
 
 def ratios(
-    given: Scenario, overrides: dict[str, Expression], found: Sequence[Quantity], units: SceneUnits
+    nominal: Scenario, overrides: dict[str, Expression], quantities: Sequence[Quantity], units: SceneUnits
 ) -> Iterator[Ladder]:
     """One ladder for every free parameter that occurs in a quantity."""
     used = set()
-    for q in found:
+    for q in quantities:
         for number in q.code.program.live(q.code.outputs):
             used.add(q.code.program.instructions[number].payload)
-    for relation in given.system.relations:
+    for relation in nominal.system.relations:
         if relation.name in used:
             used.update(names(relation.value))
-    for name in free_parameters(given):
+    for name in free_parameters(nominal):
         if name in used:
             probes = []
             for factor in FACTORS:
                 try:
-                    there = scaled(given, overrides, name, _decimal(factor), assumed=False)
+                    there = scaled(nominal, overrides, name, _decimal(factor), assumed=False)
                 except Incomplete:  # a value that contradicts another one
                     continue
-                state = (*given.positions, *_velocities(given, units))
-                probes.append(Probe(factor, there, state, _assumed(given, overrides, name, _decimal(factor))))
+                state = (*nominal.positions, *_velocities(nominal, units))
+                probes.append(Probe(factor, there, state, _assumed(nominal, overrides, name, _decimal(factor))))
             if probes:
                 yield Ladder(RATIO, name, tuple(probes))

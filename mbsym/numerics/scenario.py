@@ -148,7 +148,10 @@ def scenario(
     if missing or numbers.contradictions:
         raise Incomplete(Lack(tuple(missing), tuple(numbers.contradictions)))
     typed = {name: entry.position for name, entry in values.items() if entry.position is not None}
-    became = tuple(Driven(one.name, given_laws.get(one.name, one.held), one.name in given_laws) for one in inputs)
+    became = tuple(
+        Driven(control.name, given_laws.get(control.name, control.held), control.name in given_laws)
+        for control in inputs
+    )
     unstated = tuple(velocity_name(name) for name in system.coordinates if values[name].velocity is None)
     return Scenario(system, parameters, tuple(positions), tuple(velocities), prescribed, typed, became, unstated)
 
@@ -208,7 +211,9 @@ def _with_own(
         wrong.append(Contradiction("singular-start", next(iter(own)), text, hint))
     if start.missing or wrong:
         raise Incomplete(Lack(start.missing, tuple(wrong)))
-    became = tuple(Driven(one.name, laws.get(one.name, one.held), one.name in laws) for one in inputs)
+    became = tuple(
+        Driven(control.name, laws.get(control.name, control.held), control.name in laws) for control in inputs
+    )
     rates = start.velocities or (arb(0),) * len(positions)
     return Scenario(
         system=system,
@@ -223,9 +228,9 @@ def _with_own(
     )
 
 
-def changed(found: Scenario, **parameters: Fraction) -> Scenario:
+def changed(nominal: Scenario, **parameters: Fraction) -> Scenario:
     """The scenario with other numbers for some parameters."""
-    return replace(found, parameters={**found.parameters, **parameters})
+    return replace(nominal, parameters={**nominal.parameters, **parameters})
 
 
 class _Numbers:
@@ -252,9 +257,9 @@ class _Numbers:
             return Fraction(0)
 
     def define(self, name: str, expression: Expression) -> None:
-        found = self.value(name, expression)
+        value = self.value(name, expression)
         if name not in self.refused:
-            self.known[name] = found
+            self.known[name] = value
 
     @property
     def settled(self) -> set[str]:
@@ -273,8 +278,8 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
             if value is not None and name not in numbers.settled and name not in stale and numbers.ready(value):
                 numbers.define(name, value)
         for relation in system.relations:
-            wanted = relation.name not in typed or relation.name in stale
-            if wanted and relation.name not in numbers.settled and numbers.ready(relation.value):
+            applies = relation.name not in typed or relation.name in stale
+            if applies and relation.name not in numbers.settled and numbers.ready(relation.value):
                 numbers.define(relation.name, relation.value)
         if len(numbers.settled) == before:
             break
@@ -289,11 +294,11 @@ def _parameters(system: System, overrides: Mapping[str, Expression], numbers: _N
                 )  # fmt: skip
                 numbers.contradictions.append(Contradiction("conflicting-values", relation.name, text))
     for parameter in system.parameters:
-        found = numbers.known.get(parameter.name)
-        if found is not None and not has_sign(found, parameter.sign):
+        number = numbers.known.get(parameter.name)
+        if number is not None and not has_sign(number, parameter.sign):
             text = Message(
                 "[[name]] = [[value]], but it is declared [[sign]]",
-                name=parameter.name, value=f"{float(found):.12g}", sign=worded(parameter.sign),
+                name=parameter.name, value=f"{float(number):.12g}", sign=worded(parameter.sign),
             )  # fmt: skip
             inferred = parameter.value is not None and parameter.sign in ("positive", "negative")
             hint = Message(
@@ -345,8 +350,8 @@ def exact(expression: Expression, known: Mapping[str, Fraction]) -> Fraction:
     if "pi" not in used:
         try:
             values = {name: rationals.exact(known[name]) for name in used}
-            found = Lowering(Rationals({}, {}), values)(expression)
-            return _within_range(rationals.fraction(found))
+            rational = Lowering(Rationals({}, {}), values)(expression)
+            return _within_range(rationals.fraction(rational))
         except (NotRational, NoValue):
             pass
     with ctx.workprec(PRECISION + 64):

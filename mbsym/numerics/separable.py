@@ -74,9 +74,9 @@ def _linked(dynamics: Dynamics) -> list[int]:
     linked = list(range(n))
     for i in range(n):
         for instruction in code.program.live(code.outputs[n + i : n + i + 1]):
-            found = code.program.instructions[instruction]
-            if found.operation == "input" and str(found.payload) in owner:
-                linked = _merged(linked, i, owner[str(found.payload)])
+            operation = code.program.instructions[instruction]
+            if operation.operation == "input" and str(operation.payload) in owner:
+                linked = _merged(linked, i, owner[str(operation.payload)])
     return linked
 
 
@@ -179,7 +179,7 @@ class _Beside:
 
     def _of_part(self, part: Part, state: Any) -> Any:
         """A whole state that tells of one part only."""
-        return self._joined([state if one is part else np.full(len(one.places), np.nan) for one in self.parts])
+        return self._joined([state if other is part else np.full(len(other.places), np.nan) for other in self.parts])
 
     def require_rest(self, state: Any) -> None:
         """Raises ValueError where a state moves what is in no part."""
@@ -191,16 +191,18 @@ class _Beside:
         """The work of all parts together."""
         for name in (*COUNTS, "compiling"):
             setattr(self.work, name, sum(getattr(run.work, name) for run in self.runs))
-        self.work.changes[:] = sorted((one for run in self.runs for one in run.work.changes), key=lambda one: one.time)
+        self.work.changes[:] = sorted(
+            (change for run in self.runs for change in run.work.changes), key=lambda change: change.time
+        )
 
     def _joined(self, states: Sequence[Any]) -> Any:
         """Whole states of those of the parts, one or in columns."""
         shape = np.shape(states[0])[1:]
-        found = np.empty((len(self.whole), *shape), self.whole.dtype)
-        found[...] = self.whole.reshape(-1, *[1] * len(shape))
+        whole = np.empty((len(self.whole), *shape), self.whole.dtype)
+        whole[...] = self.whole.reshape(-1, *[1] * len(shape))
         for part, state in zip(self.parts, states, strict=True):
-            found[list(part.places)] = state
-        return found
+            whole[list(part.places)] = state
+        return whole
 
     def advance(self, until: float) -> Any:
         return self.fill(np.array([until], dtype=float))[:, 0]
@@ -213,11 +215,13 @@ class _Beside:
         for place in range(len(self.runs)):
             try:
                 states.append(self._filled(place, times))
-            except Breakdown as found:
-                count = 0 if found.filled is None else found.filled.shape[1]
+            except Breakdown as breakdown:
+                count = 0 if breakdown.filled is None else breakdown.filled.shape[1]
                 times, states = times[:count], [state[:, :count] for state in states]
-                states.append(np.empty((len(self.parts[place].places), 0)) if found.filled is None else found.filled)
-                ended = (place, found) if ended is None or found.time < ended[1].time else ended
+                states.append(
+                    np.empty((len(self.parts[place].places), 0)) if breakdown.filled is None else breakdown.filled
+                )
+                ended = (place, breakdown) if ended is None or breakdown.time < ended[1].time else ended
         self._count()
         filled = self._joined(states)
         if ended is not None:
@@ -242,11 +246,15 @@ class _Beside:
         self.ahead[place] = None
         try:
             late = run.fill(times[known:])
-        except Breakdown as found:
+        except Breakdown as breakdown:
             filled = (
-                found.filled if early is None else early if found.filled is None else np.hstack((early, found.filled))
+                breakdown.filled
+                if early is None
+                else early
+                if breakdown.filled is None
+                else np.hstack((early, breakdown.filled))
             )
-            raise Breakdown(found.kind, found.message, found.time, found.state, filled) from None
+            raise Breakdown(breakdown.kind, breakdown.message, breakdown.time, breakdown.state, filled) from None
         return late if early is None else np.hstack((early, late))
 
     def step(self, until: float | None = None) -> Piece:
@@ -254,25 +262,25 @@ class _Beside:
         start = self.time
         pieces: list[Piece] = []
         for place, run in enumerate(self.runs):
-            kept = self.ahead[place]
-            if kept is None or kept.end <= start:
+            pending = self.ahead[place]
+            if pending is None or pending.end <= start:
                 try:
-                    kept = self.ahead[place] = run.step(until)
+                    pending = self.ahead[place] = run.step(until)
                 except Breakdown as ended:
                     raise self._ended(place, ended, self.state) from None
-            pieces.append(kept)
+            pieces.append(pending)
         end = min(piece.end for piece in pieces) if until is None else min(until, *(piece.end for piece in pieces))
         curves: list[Callable[[Any], Any]] = [piece.curve for piece in pieces]
         joined = self._joined
-        found = Piece(start, end, lambda times: joined([curve(times) for curve in curves]))
-        self.time, self.state = end, found(end)
+        combined = Piece(start, end, lambda times: joined([curve(times) for curve in curves]))
+        self.time, self.state = end, combined(end)
         self._count()
-        return found
+        return combined
 
     def restart(self, time: float, state: Any) -> None:
         self.require_rest(state)
-        given = np.asarray(state)
+        whole = np.asarray(state)
         for part, run in zip(self.parts, self.runs, strict=True):
-            run.restart(time, given[list(part.places)])
+            run.restart(time, whole[list(part.places)])
         self.ahead = [None] * len(self.runs)
         self.time, self.state = time, self._joined([run.state for run in self.runs])

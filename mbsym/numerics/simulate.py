@@ -143,17 +143,11 @@ def simulate(
         system=dynamics.system,
         method=method.traits.name,
         setting=setting,
-        times=run.times,
-        states=run.states,
         energy=energy,
         generalized_energy=generalized,
         change=change,
         kinetic=kinetic,
-        work=run.work,
-        seconds=run.seconds,
-        breakdown=run.breakdown,
-        interrupted=run.interrupted,
-        passed=run.passed,
+        **vars(run),
     )
 
 
@@ -171,9 +165,9 @@ def integrated(
     rows = _InMemory(len(dynamics.scenario.state), len(moments), scalar)
     ending = followed(dynamics, method, setting, moments, rows, scalar, watch, before)
     states = np.ascontiguousarray(rows.states[:, : rows.count])
-    kept = rows.times[: rows.count].copy()
-    passed = up_to(ending.passed, float(kept[-1]))
-    return Integrated(kept, states, ending.work, ending.seconds, ending.breakdown, ending.interrupted, passed)
+    recorded = rows.times[: rows.count].copy()
+    passed = up_to(ending.passed, float(recorded[-1]))
+    return Integrated(recorded, states, ending.work, ending.seconds, ending.breakdown, ending.interrupted, passed)
 
 
 class Recorder(Protocol):
@@ -244,9 +238,9 @@ def followed(
         first = known[:, -1]
         rows.keep(times[: done - 1], known[:, :-1])
         try:
-            found = wrong_at_once(dynamics, known[:, -1].astype(float), begin)
-            if found is not None:
-                raise found
+            initial_breakdown = wrong_at_once(dynamics, known[:, -1].astype(float), begin)
+            if initial_breakdown is not None:
+                raise initial_breakdown
             run = method.start(dynamics, setting, scalar, None if before is None else known[:, -1], begin)
             work, first = run.work, run.state
         finally:
@@ -295,8 +289,8 @@ def chunks(run: Run, times: Any, bound: float, meter: Meter, done: int = 0, most
         before = meter.spent
         try:
             rows = run.fill(at)
-        except Breakdown as found:
-            _checked(found.filled, at, bound)
+        except Breakdown as breakdown:
+            _checked(breakdown.filled, at, bound)
             raise
         _checked(rows, at, bound)
         yield rows
@@ -323,8 +317,8 @@ def _cut(run: Integrated, first: int) -> Integrated:
     """What is left of a run whose energy has no value from a sample on: it went where the model says nothing."""
     message = "the energy is no real number from here on: a root or a logarithm has left its domain"
     ended = Breakdown(Cause.UNDEFINED, message, run.times[first], run.states[:, first])
-    kept = max(1, first)
-    return replace(run, times=run.times[:kept], states=run.states[:, :kept], breakdown=ended)
+    count = max(1, first)
+    return replace(run, times=run.times[:count], states=run.states[:, :count], breakdown=ended)
 
 
 def raw_energies(dynamics: Dynamics, points: Any, scalar: str) -> Any:
@@ -437,33 +431,33 @@ def _neighbours(dynamics: Dynamics, state: Any, time: float) -> Any:
     return np.vstack([np.full(4, time), state[:, None] + 0.1 * moved * sizes])
 
 
-def diagnosed(dynamics: Dynamics, found: Breakdown, past: Any) -> Breakdown:
+def diagnosed(dynamics: Dynamics, breakdown: Breakdown, past: Any) -> Breakdown:
     """A vanishing step at a blow-up, either of them where M is singular, what moves out of reach: called what they are.
 
     ``past`` holds earlier (t, q, q') in columns: a pivot is small compared with what it was, whatever its units.
     """
-    state = np.asarray(found.state, dtype=float)
-    if found.kind in (Cause.SINGULAR_CONSTRAINTS, Cause.BLOW_UP):
-        at, last = (float(past[0, -1]), past[1:, -1]) if found.kind == Cause.BLOW_UP else (found.time, state)
+    state = np.asarray(breakdown.state, dtype=float)
+    if breakdown.kind in (Cause.SINGULAR_CONSTRAINTS, Cause.BLOW_UP):
+        at, last = (float(past[0, -1]), past[1:, -1]) if breakdown.kind == Cause.BLOW_UP else (breakdown.time, state)
         if not _goes_on(dynamics, at, last, float(past[0, 0])):
             message = "no position was found that keeps the constraints behind this one: velocities grow without bound"
             return Breakdown(Cause.OUT_OF_REACH, message, at, last)
-    if found.kind not in (Cause.BLOW_UP, Cause.STUCK):
-        return found
-    if _dependent_speeds(dynamics, found.time, state, past):
+    if breakdown.kind not in (Cause.BLOW_UP, Cause.STUCK):
+        return breakdown
+    if _dependent_speeds(dynamics, breakdown.time, state, past):
         message = "the speeds do not determine the velocities of coordinates in this state"
-        return Breakdown(Cause.SINGULAR_SPEEDS, message, found.time, found.state)
-    message = _vanishing(dynamics, found.time, state, past, SINGULAR_PIVOT)
+        return Breakdown(Cause.SINGULAR_SPEEDS, message, breakdown.time, breakdown.state)
+    message = _vanishing(dynamics, breakdown.time, state, past, SINGULAR_PIVOT)
     if message:
-        return Breakdown(Cause.SINGULAR, message, found.time, found.state)
-    if _undefined(dynamics, found.time, state, past):
+        return Breakdown(Cause.SINGULAR, message, breakdown.time, breakdown.state)
+    if _undefined(dynamics, breakdown.time, state, past):
         message = "the equations have no real value beyond this state: a root or a logarithm leaves its domain"
-        return Breakdown(Cause.UNDEFINED, message, found.time, found.state)
+        return Breakdown(Cause.UNDEFINED, message, breakdown.time, breakdown.state)
     bound = bound_of(past[1:, 0])
     if not np.all(np.abs(state) < bound):
         message = Message("a coordinate or velocity is beyond [[bound]]", bound=f"{bound:.0e}")
-        return Breakdown(Cause.BLOW_UP, message, found.time, found.state)
-    return found
+        return Breakdown(Cause.BLOW_UP, message, breakdown.time, breakdown.state)
+    return breakdown
 
 
 def _goes_on(dynamics: Dynamics, t: float, state: Any, begin: float) -> bool:
@@ -524,15 +518,15 @@ def _vanishing(dynamics: Dynamics, t: float, state: Any, others: Any, least: flo
     return Message("a pivot of M is [[ratio]] of its usual size", ratio=f"{ratio:.1e}")
 
 
-def least_pivot(dynamics: Dynamics, found: Trajectory) -> tuple[float, float]:
+def least_pivot(dynamics: Dynamics, trajectory: Trajectory) -> tuple[float, float]:
     """(ratio, t): how far a pivot of M fell below what it was at the start, and when.
 
     M loses about -log10(ratio) digits there; 1e-8 and less means that the motion passes by a singularity of the chosen
     coordinates (or of the model).
     """
-    lowest = fallen(dynamics, np.vstack([found.times, found.states.astype(float)]))
+    lowest = fallen(dynamics, np.vstack([trajectory.times, trajectory.states.astype(float)]))
     place = int(np.argmin(lowest))
-    return float(lowest[place]), float(found.times[place])
+    return float(lowest[place]), float(trajectory.times[place])
 
 
 def fallen(dynamics: Dynamics, points: Any, first: Any = None) -> Any:

@@ -68,8 +68,8 @@ def scenario_in_states(scenario: Scenario) -> Scenario:
     values |= dict(zip((*system.coordinates, *system.velocities), scenario.state, strict=True))
     with ctx.workprec(PRECISION + 64):
         values["pi"] = arb.pi()
-        found = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
-    state = tuple(rounded(value) for value in found)
+        balls = enclosures(Code(program, tuple(values), tuple(nodes)), tuple(values.values()), PRECISION + 64)
+    state = tuple(rounded(value) for value in balls)
     return replace(scenario, system=in_states(system, *names), positions=state[:n], velocities=state[n:], typed={})
 
 
@@ -250,18 +250,18 @@ def norm_drifts(dynamics: StateDynamics, states: Any) -> dict[str, Any]:
     """
     place = {name: i for i, name in enumerate(dynamics.inputs[1:])}
     rows = np.asarray(states)
-    found: dict[str, Any] = {}
+    drifts: dict[str, Any] = {}
     for body in dynamics.described.bodies:
-        vectors = {one.name: rows[[place[name] for name in one.components]] for one in body.orientation}
+        vectors = {attitude.name: rows[[place[name] for name in attitude.components]] for attitude in body.orientation}
         for name, vector in vectors.items():
             gaps = [np.sum(vector * other, axis=0) - (other is vector) for other in vectors.values()]
-            found[name] = np.max(np.abs(np.array(gaps, dtype=float)), axis=0)
-    return found
+            drifts[name] = np.max(np.abs(np.array(gaps, dtype=float)), axis=0)
+    return drifts
 
 
 def has_quaternions(system: System) -> bool:
     """Whether a body is told by one."""
-    return any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation)
+    return any(isinstance(attitude, Quaternion) for body in system.bodies for attitude in body.orientation)
 
 
 def in_coordinates(dynamics: StateDynamics, states: Any) -> Any | None:
@@ -271,22 +271,24 @@ def in_coordinates(dynamics: StateDynamics, states: Any) -> Any | None:
     """
     place = {name: i for i, name in enumerate(dynamics.inputs[1:])}
     rows = np.asarray(states, dtype=float)
-    found: dict[str, Any] = {}
+    values_by_name: dict[str, Any] = {}
     for body in dynamics.described.bodies:
-        found |= {name: rows[place[name]] for name in body.coordinates if name in place}
+        values_by_name |= {name: rows[place[name]] for name in body.coordinates if name in place}
         if not body.orientation:
             continue
         turns = [(axis - 1, angle) for axis, angle in body.rotation.turns()]
         names = [angle.name for _, angle in turns if isinstance(angle, Name)]
         if len(turns) != 3 or len(names) != 3:
             return None
-        found |= dict(zip(names, _angles([axis for axis, _ in turns], _cosines(body, rows, place)), strict=True))
-    return np.array([found[name] for name in dynamics.described.coordinates])
+        values_by_name |= dict(
+            zip(names, _angles([axis for axis, _ in turns], _cosines(body, rows, place)), strict=True)
+        )
+    return np.array([values_by_name[name] for name in dynamics.described.coordinates])
 
 
 def _cosines(body: Body, rows: Any, place: Mapping[str, int]) -> Any:
     """A (3 x 3 x m), from the axes of a body to those of the frame that it hangs on."""
-    vectors = [rows[[place[name] for name in one.components]] for one in body.orientation]
+    vectors = [rows[[place[name] for name in attitude.components]] for attitude in body.orientation]
     if not isinstance(body.orientation[0], Quaternion):
         return np.array(vectors)
     e, v = vectors[0][0], vectors[0][1:]

@@ -66,7 +66,7 @@ def streamed(
     table, places = _table(dynamics, rows, further)
     shown = rows.stored.at(places)
     size = 1 + 2 * dynamics.size
-    found = _quantities(dynamics, shown, rows.stored.rows(0, 1), table.plain, table.scale, lambda points: {})[1]
+    quantities = _quantities(dynamics, shown, rows.stored.rows(0, 1), table.plain, table.scale, lambda points: {})[1]
     natural = dynamics.natural
     return Trajectory(
         system=dynamics.system,
@@ -74,9 +74,9 @@ def streamed(
         setting=setting,
         times=shown[0].astype(float),
         states=np.ascontiguousarray(shown[1:size]),
-        energy=found["energy"],
-        generalized_energy=found["energy"] if natural else found["generalized_energy"],
-        change=found["change"],
+        energy=quantities["energy"],
+        generalized_energy=quantities["energy"] if natural else quantities["generalized_energy"],
+        change=quantities["change"],
         kinetic=shown[size + 1],
         work=ending.work,
         seconds=ending.seconds,
@@ -107,11 +107,11 @@ class _Recorder:
         points = np.vstack([times, rows])
         raw = raw_energies(self._dynamics, points, self._scalar)
         defined = np.all(np.isfinite(raw.astype(float)), axis=0)
-        kept = len(defined) if np.all(defined) else max(int(np.argmin(defined)), 0 if self.count else 1)
-        fine = np.abs(raw[:, :kept][:, defined[:kept]]).astype(float)
+        count = len(defined) if np.all(defined) else max(int(np.argmin(defined)), 0 if self.count else 1)
+        fine = np.abs(raw[:, :count][:, defined[:count]]).astype(float)
         self.kinetic = max(self.kinetic, float(np.max(fine[1], initial=0.0)))
         self.largest = max(self.largest, float(np.max(fine[1:], initial=0.0)))
-        self.stored.append(np.vstack([points, raw])[:, :kept])
+        self.stored.append(np.vstack([points, raw])[:, :count])
         if not np.all(defined):
             first = int(np.argmin(defined))
             message = "the energy is no real number from here on: a root or a logarithm has left its domain"
@@ -144,8 +144,8 @@ class _Steps:
         if away[place] > self.farthest[0]:
             self.farthest = float(away[place]), start + place
         own = np.argsort(-steps, kind="stable")[:LARGEST_CHANGES]
-        found = self.largest + [(float(steps[k]), start + int(k) - 1) for k in own if start + k > 0]
-        self.largest = sorted(found, key=lambda one: (-one[0], one[1]))[:LARGEST_CHANGES]
+        candidates = self.largest + [(float(steps[k]), start + int(k) - 1) for k in own if start + k > 0]
+        self.largest = sorted(candidates, key=lambda change: (-change[0], change[1]))[:LARGEST_CHANGES]
         self.last = float(values[-1])
 
     def places(self, count: int) -> list[int]:
@@ -162,13 +162,13 @@ def _table(dynamics: Dynamics, rows: _Recorder, further: Further) -> tuple[Table
     steps: dict[str, _Steps] = {}
     kinetic, pivot = (-1.0, 0), (np.inf, 0)
     for start, block in stored.blocks():
-        points, found = _quantities(dynamics, block, first, plain, scale, further)
-        for name, values in found.items():
+        points, quantities = _quantities(dynamics, block, first, plain, scale, further)
+        for name, values in quantities.items():
             steps.setdefault(name, _Steps()).see(start, values)
         highest = int(np.argmax(np.abs(block[size + 1])))
-        kinetic = max(kinetic, (float(abs(block[size + 1, highest])), start + highest), key=lambda one: one[0])
+        kinetic = max(kinetic, (float(abs(block[size + 1, highest])), start + highest), key=lambda extreme: extreme[0])
         left = fallen(dynamics, points.astype(float), first[:size, 0].astype(float))
-        pivot = min(pivot, (float(np.min(left)), start + int(np.argmin(left))), key=lambda one: one[0])
+        pivot = min(pivot, (float(np.min(left)), start + int(np.argmin(left))), key=lambda extreme: extreme[0])
     visited = {name: stored.at(step.places(stored.count))[:size].astype(float) for name, step in steps.items()}
     places = {*_evenly(stored.count, SHOWN), kinetic[1], pivot[1], *(step.farthest[1] for step in steps.values())}
     return Table(dynamics, stored, plain, scale, further, visited), sorted(places)
@@ -191,10 +191,10 @@ def _quantities(
     size = 1 + 2 * dynamics.size
     points, energies = rows[:size], rows[size:]
     change = energies[0] - first[size] if not plain else energies[-1] - first[-1]
-    found = {"energy": energies[0 if dynamics.natural else 2], "change": change, "relative_drift": change / scale}
+    quantities = {"energy": energies[0 if dynamics.natural else 2], "change": change, "relative_drift": change / scale}
     if not dynamics.natural:
-        found["generalized_energy"] = energies[3]
-    return points, found | dict(further(points))
+        quantities["generalized_energy"] = energies[3]
+    return points, quantities | dict(further(points))
 
 
 def _evenly(count: int, most: int) -> list[int]:

@@ -79,38 +79,38 @@ class WatchedRun:
 
     def fill(self, times: Sequence[float]) -> Any:
         """The states at increasing times; raises Breakdown with those that there are."""
-        wanted = np.asarray(times, dtype=float)
-        states = np.empty((len(self.state), len(wanted)), dtype=np.asarray(self.state).dtype)
+        moments = np.asarray(times, dtype=float)
+        states = np.empty((len(self.state), len(moments)), dtype=np.asarray(self.state).dtype)
         # The first of them may be where the run is.
-        done = 0 if self._piece is not None else int(np.searchsorted(wanted, self.time, side="right"))
+        done = 0 if self._piece is not None else int(np.searchsorted(moments, self.time, side="right"))
         states[:, :done] = np.asarray(self.state)[:, None]
         try:
-            while done < self._upto(wanted):
-                done = self._some(wanted, states, done)
-        except Breakdown as found:
+            while done < self._upto(moments):
+                done = self._some(moments, states, done)
+        except Breakdown as breakdown:
             if not self.watcher.settle():
-                found.filled = states[:, : self._filled]
+                breakdown.filled = states[:, : self._filled]
                 raise
             done = self._filled
         self.watcher.settle()
-        if len(wanted) and self._end <= wanted[-1]:
-            self._stopped(states[:, : min(done, self._upto(wanted))])
-        if len(wanted):
-            self.time, self.state = float(wanted[-1]), states[:, -1].copy()
+        if len(moments) and self._end <= moments[-1]:
+            self._stopped(states[:, : min(done, self._upto(moments))])
+        if len(moments):
+            self.time, self.state = float(moments[-1]), states[:, -1].copy()
         return states
 
-    def _some(self, wanted: Any, states: Any, done: int) -> int:
+    def _some(self, moments: Any, states: Any, done: int) -> int:
         """Fills the rows of the next few steps; how many are done then, a Breakdown on the way or not."""
         pieces: list[Piece] = []
         parts: list[Any] = []
         upto, piece = done, self._piece
         try:
-            while upto < len(wanted) and len(pieces) < BATCH:
-                if piece is None or piece.end < wanted[upto]:
+            while upto < len(moments) and len(pieces) < BATCH:
+                if piece is None or piece.end < moments[upto]:
                     piece = self._next()
-                last = upto + int(np.searchsorted(wanted[upto:], piece.end, side="right"))
+                last = upto + int(np.searchsorted(moments[upto:], piece.end, side="right"))
                 pieces.append(piece)
-                parts.append(wanted[upto:last])
+                parts.append(moments[upto:last])
                 upto = last
         finally:
             if upto > done:
@@ -141,9 +141,9 @@ class WatchedRun:
         ended = self.watcher.ended
         return float("inf") if ended is None else ended.time
 
-    def _upto(self, wanted: Any) -> int:
+    def _upto(self, moments: Any) -> int:
         """How many of the times are not after the end."""
-        return int(np.searchsorted(wanted, self._end, side="right"))
+        return int(np.searchsorted(moments, self._end, side="right"))
 
     def _stopped(self, filled: Any) -> None:
         ended = self.watcher.ended
@@ -166,42 +166,47 @@ MOST, PLACES = 4_000, 4_000
 LONG = 2.0
 
 
-def between_rows(dynamics: Dynamics, found: Trajectory, method: Method, scalar: str) -> Trajectory:
+def between_rows(dynamics: Dynamics, trajectory: Trajectory, method: Method, scalar: str) -> Trajectory:
     """The trajectory with more rows, where its steps are many beside its rows; else as it is."""
     if (
-        not found.whole
-        or cost(dynamics, found.method, scalar, found.work) > LONG
-        or 2 * found.work.steps < found.samples
+        not trajectory.whole
+        or cost(dynamics, trajectory.method, scalar, trajectory.work) > LONG
+        or 2 * trajectory.work.steps < trajectory.samples
     ):
-        return found
-    end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
+        return trajectory
+    end, run = float(trajectory.times[-1]), method.start(dynamics, trajectory.setting, scalar)
     places = [0.0]
     try:
         with np.errstate(all="ignore"):
             while places[-1] < end and len(places) < MOST:
                 places.append(min(float(run.step().end), end))
     except Breakdown:
-        return found  # a step that would have gone beyond the end
-    places += [(one + other) / 2 for one, other in pairwise(places)]
+        return trajectory  # a step that would have gone beyond the end
+    places += [(left + right) / 2 for left, right in pairwise(places)]
     reached = max(places)
     rest = np.linspace(reached, end, PLACES if reached < end else 0)
-    times = np.unique(np.concatenate([places, rest, found.times]))
-    more = simulate(dynamics, method, found.setting, times.tolist(), scalar)
-    return more if more.whole else found
+    times = np.unique(np.concatenate([places, rest, trajectory.times]))
+    more = simulate(dynamics, method, trajectory.setting, times.tolist(), scalar)
+    return more if more.whole else trajectory
 
 
 def nearest_to_singular(
-    dynamics: Dynamics, found: Trajectory, dense: Trajectory, method: Method, scalar: str
+    dynamics: Dynamics, trajectory: Trajectory, dense: Trajectory, method: Method, scalar: str
 ) -> tuple[float, float]:
     """(ratio, t) of ``least_pivot`` over rows and ends of steps, which crowd where M is nearly singular.
 
-    ``dense`` is what ``between_rows`` made of ``found``.  Rows alone are looked at where a run was dear, ended early,
+    ``dense`` is what ``between_rows`` made of ``trajectory``.  Rows alone are looked at where a run was dear,
+    ended early,
     or has more than ``MOST`` steps, beyond those.
     """
     lowest = least_pivot(dynamics, dense)
-    if dense is not found or not found.whole or cost(dynamics, found.method, scalar, found.work) > LONG:
+    if (
+        dense is not trajectory
+        or not trajectory.whole
+        or cost(dynamics, trajectory.method, scalar, trajectory.work) > LONG
+    ):
         return lowest
-    end, run = float(found.times[-1]), method.start(dynamics, found.setting, scalar)
+    end, run = float(trajectory.times[-1]), method.start(dynamics, trajectory.setting, scalar)
     times, states = [float(run.time)], [np.array(run.state)]
     try:
         with np.errstate(all="ignore"):
@@ -211,5 +216,5 @@ def nearest_to_singular(
                 states.append(np.array(run.state))
     except Breakdown:
         pass  # a step made otherwise than the run's own; those before it count
-    ends = replace(found, times=np.array(times), states=np.column_stack(states))
+    ends = replace(trajectory, times=np.array(times), states=np.column_stack(states))
     return min(lowest, least_pivot(dynamics, ends))

@@ -122,15 +122,15 @@ def _numbers(
         missing = _lacking(system, expressions | chosen)
     if chosen:  # numbers that mean nothing need not agree with signs
         system = replace(system, parameters=tuple(replace(item, sign="real") for item in system.parameters))
-    told = tuple((name, -1.0 if item == tree.number(-1) else 1.0) for name, item in chosen.items())
+    stand_ins = tuple((name, -1.0 if item == tree.number(-1) else 1.0) for name, item in chosen.items())
     try:
-        return scenario(system, expressions | chosen, assumed=not chosen, declared=True), told, ()
+        return scenario(system, expressions | chosen, assumed=not chosen, declared=True), stand_ins, ()
     except Incomplete as error:
         if not error.lack.names:
             raise
     begun = {} if own_values(system, expressions) else initial_values(system, expressions)
     at_zero = tuple(x for x in system.coordinates if x not in begun or begun[x].position is None)
-    return scenario(system, expressions | chosen, state=False, assumed=not chosen), told, at_zero
+    return scenario(system, expressions | chosen, state=False, assumed=not chosen), stand_ins, at_zero
 
 
 def _lacking(system: System, expressions: Mapping[str, Expression]) -> set[str]:
@@ -181,8 +181,8 @@ class Places:
     def _turned(self, axes: Axes, turn: Turn[Node]) -> Axes:
         """The rows after a turn: c u + s v and c v - s u of the two that it moves."""
         program = self.program
-        if turn.given is not None:
-            first, second, third = (self._combined(axes, row) for row in turn.given.rows)
+        if turn.matrix is not None:
+            first, second, third = (self._combined(axes, row) for row in turn.matrix.rows)
             return first, second, third
         i, j = turn.axis % 3, (turn.axis + 1) % 3
         u, v, s, c = axes[i], axes[j], turn.sine, turn.cosine
@@ -214,12 +214,12 @@ class Places:
 
     def slides(self, body: Body) -> list[tuple[str, Triple]]:
         """(coordinate, direction): how the connection point moves in the body before, for every coordinate it holds."""
-        found = []
+        directions = []
         held = set().union(*map(names, body.connection_point))
         for name in (x for x in self.scene.system.coordinates if x in held):
             slope = self.scene.lower.vector([differentiate(x, name) for x in body.connection_point])
-            found.append((name, self.direction(body.attached_to, slope)))
-        return found
+            directions.append((name, self.direction(body.attached_to, slope)))
+        return directions
 
 
 def _triple(values: Sequence[Node]) -> Triple:
@@ -277,8 +277,8 @@ class _Made:
 
     def _upward(self) -> Triple | None:
         for load in self.system.loads:
-            found = KINDS[type(load)].upward
-            up = None if found is None else found(load, self.scene, self.places.frame)
+            upward = KINDS[type(load)].upward
+            up = None if upward is None else upward(load, self.scene, self.places.frame)
             if up is not None:
                 return up.components
         return None
@@ -328,12 +328,12 @@ class _Made:
 
     def _ellipsoid(self, body: Body, plane: bool) -> Ellipsoid | None:
         """See ``Ellipsoid``: the one of a body, and whether it tells something."""
-        found = ellipsoid(body, self.scenario.parameters)
-        if found is None:
+        solid = ellipsoid(body, self.scenario.parameters)
+        if solid is None:
             return None
-        half = sorted(found.half_axes)
+        half = sorted(solid.half_axes)
         lined = plane and any(span.of == body.name for span in self.spans)
-        return replace(found, telling=half[1] >= ROD * half[2] and not lined)
+        return replace(solid, telling=half[1] >= ROD * half[2] and not lined)
 
     def _guides(self) -> Iterator[Guide]:
         """What a body slides along while one coordinate alone moves it, where that is a curve."""
@@ -365,11 +365,11 @@ class _Made:
     def _closed(self, states: Sequence[State]) -> list[State]:
         """Those of the positions near which the loops are closed, the start first."""
         closure = self._closure()
-        found = [states[0]]
+        closed_states = [states[0]]
         for state in states[1 : LOOPS + 1]:
             there, good = closed(self.program, closure, state, ())
-            found += [there] if good else []
-        return found
+            closed_states += [there] if good else []
+        return closed_states
 
     def _closure(self) -> Closure:
         slopes = tuple(tuple(self._value[x.number] for x in row) for row in self.slopes)
@@ -449,8 +449,8 @@ class _Made:
         )
 
     def _moved_by(self, angle: Expression) -> tuple[str, ...]:
-        found = names(angle)
-        return tuple(x for x in self.system.coordinates if x in found)
+        occurring = names(angle)
+        return tuple(x for x in self.system.coordinates if x in occurring)
 
 
 def _straight(system: System, body: Body, name: str) -> bool:
@@ -472,7 +472,7 @@ def coordinates(scenario: Scenario) -> tuple[Coordinate, ...]:
     """In the order of the system.  An angle goes half a turn either way of its start, a length as far as it is long."""
     system = scenario.system
     limits = {item.coordinate: item for item in system.limits}
-    found = []
+    entries = []
     for name, position, velocity in zip(system.coordinates, scenario.positions, scenario.velocities, strict=True):
         kind, value = measure(system, name), float(position)
         far = pi if kind is Measure.ANGLE else max(1.0, abs(value))
@@ -485,8 +485,8 @@ def coordinates(scenario: Scenario) -> tuple[Coordinate, ...]:
             if bounds and bounds[0] < bounds[1]:
                 low, high, limited = min(bounds[0], value), max(bounds[1], value), True
         unit = unit_of(system, name) or ""
-        found.append(Coordinate(name, kind, unit, value, float(velocity), low, high, limited))
-    return tuple(found)
+        entries.append(Coordinate(name, kind, unit, value, float(velocity), low, high, limited))
+    return tuple(entries)
 
 
 def measure(system: System, name: str) -> Measure:
@@ -519,28 +519,28 @@ def rows(scene: Scene[Node]) -> tuple[list[Node], list[list[Node]], list[str]]:
     """f, its derivatives by the coordinates, and the names of the rows; rows that are zero at sight left out."""
     from mbsym.mechanics.constraints.rows import constraint_rows  # most systems have none
 
-    found: list[tuple[str, Node]] = [
+    equations: list[tuple[str, Node]] = [
         (row.name.label, row.position)
         for row in constraint_rows(scene)
         if row.position is not None and not scene.algebra.vanishes(row.position)
     ]
-    if not found:
+    if not equations:
         return [], [], []
-    values = [position for _, position in found]
+    values = [position for _, position in equations]
     program = values[0].program
     slopes = jacobian(program, values, [program.input(name) for name in scene.system.coordinates])
-    return values, [list(row) for row in slopes], [label for label, _ in found]
+    return values, [list(row) for row in slopes], [label for label, _ in equations]
 
 
 def gaps(program: PoseProgram, closure: Closure, state: Mapping[str, float]) -> list[float]:
     """|f| of every row as a part of what the coordinates do to it: closed where it is below the tolerance."""
     values = program.at(state)
     sizes = [1 + abs(float(state[name])) for name in closure.coordinates]
-    found = []
+    residuals = []
     for row, slopes in zip(closure.rows, closure.slopes, strict=True):
         scale = sum(abs(float(values[k])) * size for k, size in zip(slopes, sizes, strict=True))
-        found.append(abs(float(values[row])) / scale if scale > 0 else abs(float(values[row])))
-    return found
+        residuals.append(abs(float(values[row])) / scale if scale > 0 else abs(float(values[row])))
+    return residuals
 
 
 def closed(
@@ -564,8 +564,8 @@ def closed(
         step *= min(1.0, LONGEST / max(float(np.max(np.abs(step) / sizes)), 1e-300))
         for k, change in zip(free, step, strict=True):
             there[closure.coordinates[k]] += float(change)
-    found = gaps(program, closure, there)
-    return there, bool(max(found, default=0.0) < closure.tolerance)
+    residuals = gaps(program, closure, there)
+    return there, bool(max(residuals, default=0.0) < closure.tolerance)
 
 
 # Loads as arrows, springs, dampers and rods as lines; all of them operands of the picture's program.
@@ -595,17 +595,17 @@ class Span(NamedTuple):
 
 def pulls(places: Places) -> tuple[list[Pull], list[int]]:
     """The arrows, and the loads that have none though they act on something."""
-    found: list[Pull] = []
+    arrows: list[Pull] = []
     without = []
     for number, load in enumerate(places.scene.system.loads):
         try:
             own = list(_pulls(places, number, load))
         except Failure:  # no formula for it at these numbers
             own = []
-        found += own
+        arrows += own
         if not own and not isinstance(load, PointSpring | PointDamper | IsotropicDamper):
             without.append(number)
-    return found, without
+    return arrows, without
 
 
 def _pulls(places: Places, number: int, load: Load) -> Iterator[Pull]:

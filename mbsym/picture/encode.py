@@ -18,13 +18,13 @@ from mbsym.picture.program import PoseProgram
 from mbsym.picture.values import Closure, Drawn, Picture
 
 
-def as_json(found: Picture) -> dict[str, Any]:
+def as_json(picture: Picture) -> dict[str, Any]:
     """The picture with the sentences that have to stand beside it."""
-    stand_ins = dict(found.notes.stand_ins)
+    stand_ins = dict(picture.notes.stand_ins)
     return {
-        "name": found.name,
-        "frame": found.frame,
-        "units": dict(found.units),
+        "name": picture.name,
+        "frame": picture.frame,
+        "units": dict(picture.units),
         "coordinates": [
             {
                 "name": x.name,
@@ -37,7 +37,7 @@ def as_json(found: Picture) -> dict[str, Any]:
                 "maximum": number(x.maximum),
                 "limited": x.limited,
             }
-            for x in found.coordinates
+            for x in picture.coordinates
         ],
         "parameters": [
             {
@@ -48,28 +48,30 @@ def as_json(found: Picture) -> dict[str, Any]:
                 "meaning": x.meaning,
                 "given": x.name not in stand_ins,
             }
-            for x in found.parameters
+            for x in picture.parameters
         ],
         "guides": [
-            {"body": x.body, "points": [numbers(point) for point in x.points], "closed": x.closed} for x in found.guides
+            {"body": x.body, "points": [numbers(point) for point in x.points], "closed": x.closed}
+            for x in picture.guides
         ],
-        "program": _program(found.program),
-        "bodies": [_body(x) for x in found.bodies],
+        "program": _program(picture.program),
+        "bodies": [_body(x) for x in picture.bodies],
         "arrows": [
-            {"load": x.load, "of": x.of.value, "body": x.body, "point": x.point, "along": x.along} for x in found.arrows
+            {"load": x.load, "of": x.of.value, "body": x.body, "point": x.point, "along": x.along}
+            for x in picture.arrows
         ],
-        "lines": [{"kind": x.kind.value, "start": x.start, "end": x.end, "of": x.of} for x in found.lines],
-        "closure": None if found.closure is None else _closure(found.closure),
+        "lines": [{"kind": x.kind.value, "start": x.start, "end": x.end, "of": x.of} for x in picture.lines],
+        "closure": None if picture.closure is None else _closure(picture.closure),
         "view": {
-            "up": numbers(found.view.up),
-            "azimuth": found.view.azimuth,
-            "elevation": found.view.elevation,
-            "plane": found.view.plane,
+            "up": numbers(picture.view.up),
+            "azimuth": picture.view.azimuth,
+            "elevation": picture.view.elevation,
+            "plane": picture.view.plane,
         },
-        "middle": numbers(found.middle),
-        "extent": number(found.extent),
-        "atZero": list(found.notes.at_zero),
-        "sentences": list(sentences(found)),
+        "middle": numbers(picture.middle),
+        "extent": number(picture.extent),
+        "atZero": list(picture.notes.at_zero),
+        "sentences": list(sentences(picture)),
     }
 
 
@@ -83,12 +85,12 @@ def numbers(values: Iterable[float]) -> list[float | None]:
     return [number(x) for x in values]
 
 
-def _program(found: PoseProgram) -> dict[str, Any]:
+def _program(program: PoseProgram) -> dict[str, Any]:
     return {
-        "inputs": list(found.inputs),
-        "constants": numbers(found.constants),
-        "steps": [list(step) for step in found.steps],
-        "tables": [_table(curve) for curve in found.tables],
+        "inputs": list(program.inputs),
+        "constants": numbers(program.constants),
+        "steps": [list(step) for step in program.steps],
+        "tables": [_table(curve) for curve in program.tables],
     }
 
 
@@ -101,16 +103,16 @@ def _table(curve: Curve) -> dict[str, Any]:
     }
 
 
-def _body(found: Drawn) -> dict[str, Any]:
-    joint = found.joint
+def _body(body: Drawn) -> dict[str, Any]:
+    joint = body.joint
     return {
-        "name": found.name,
-        "parent": found.parent,
-        "axes": found.axes,
-        "origin": found.origin,
-        "centre": found.centre,
-        "massive": found.massive,
-        "cart": found.cart,
+        "name": body.name,
+        "parent": body.parent,
+        "axes": body.axes,
+        "origin": body.origin,
+        "centre": body.centre,
+        "massive": body.massive,
+        "cart": body.cart,
         "joint": {
             "hinges": [
                 {"along": x.along, "coordinates": list(x.coordinates), "slides": x.slides, "straight": x.straight}
@@ -121,33 +123,33 @@ def _body(found: Drawn) -> dict[str, Any]:
         },
         "shapes": [
             {"kind": x.kind, "size": numbers(x.size), "at": numbers(x.at), "axes": [numbers(row) for row in x.axes]}
-            for x in found.shapes
+            for x in body.shapes
         ],
         "ellipsoid": None
-        if found.ellipsoid is None
+        if body.ellipsoid is None
         else {
-            "halfAxes": numbers(found.ellipsoid.half_axes),
-            "axes": [numbers(row) for row in found.ellipsoid.axes],
-            "trueSize": found.ellipsoid.true_size,
-            "telling": found.ellipsoid.telling,
+            "halfAxes": numbers(body.ellipsoid.half_axes),
+            "axes": [numbers(row) for row in body.ellipsoid.axes],
+            "trueSize": body.ellipsoid.true_size,
+            "telling": body.ellipsoid.telling,
         },
     }
 
 
-def _closure(found: Closure) -> dict[str, Any]:
+def _closure(closure: Closure) -> dict[str, Any]:
     return {
-        "coordinates": list(found.coordinates),
-        "rows": list(found.rows),
-        "slopes": [list(row) for row in found.slopes],
-        "names": list(found.names),
-        "tolerance": found.tolerance,
+        "coordinates": list(closure.coordinates),
+        "rows": list(closure.rows),
+        "slopes": [list(row) for row in closure.slopes],
+        "names": list(closure.names),
+        "tolerance": closure.tolerance,
     }
 
 
-def sentences(found: Picture) -> Iterator[str]:
+def sentences(picture: Picture) -> Iterator[str]:
     """In which axes it is seen, what was made up, moved, left out, or is not to scale."""
-    notes = found.notes
-    axes = {} if found.frame == INERTIAL else {"body": quoted(found.frame)}
+    notes = picture.notes
+    axes = {} if picture.frame == INERTIAL else {"body": quoted(picture.frame)}
     if notes.hidden:
         text = (
             "Seen in the axes of [[body]]; [[names]] not drawn."
@@ -164,14 +166,14 @@ def sentences(found: Picture) -> Iterator[str]:
         names = ", ".join(notes.at_zero)
         yield Message("No initial value is given for [[names]]: drawn at 0.", names=names)
     if notes.moved:
-        moves = ", ".join(f"{name}: {given:.6g} -> {there:.6g}" for name, given, there in notes.moved)
+        moves = ", ".join(f"{name}: {before:.6g} -> {there:.6g}" for name, before, there in notes.moved)
         yield Message("Led to the constraints: [[moves]].", moves=moves)
     if notes.open_loop:
         yield Message("The constraints are open here: [[why]].", why=notes.open_loop)
     if notes.velocity_rows:
         text = "Constraints on velocities: [[count]]; every position can be shown, whether a motion reaches it or not."
         yield Message(text, count=notes.velocity_rows)
-    solid = [body.ellipsoid for body in found.bodies if body.ellipsoid is not None]
+    solid = [body.ellipsoid for body in picture.bodies if body.ellipsoid is not None]
     if any(ellipsoid.true_size for ellipsoid in solid):
         yield Message(
             "Ellipsoids: homogeneous bodies with the same mass and inertia, to scale (none thinner than 1/100)."
@@ -180,7 +182,7 @@ def sentences(found: Picture) -> Iterator[str]:
         yield Message(
             "Ellipsoids of bodies without a mass have the proportions of their inertia; their size means nothing."
         )
-    if any(body.shapes for body in found.bodies):
+    if any(body.shapes for body in picture.bodies):
         yield Message("Shapes are those that the description gives; no force depends on them.")
     if notes.without_arrow:
         loads = ", ".join(str(k + 1) for k in notes.without_arrow)

@@ -62,35 +62,35 @@ class Letters(Generic[T]):
 
     def placed(self) -> list[tuple[T, Place]]:
         """Each with the middle of its place; what would cover another one stands nowhere."""
-        found, lines = [], sorted(self.lines)
-        for one in self._wanted:
-            place = self._best(one, lines)
+        placements, lines = [], sorted(self.lines)
+        for letter in self._wanted:
+            place = self._best(letter, lines)
             if place is not None:
-                self._boxes.append((place, one.wide))
-                found.append((one.what, place))
-        return found
+                self._boxes.append((place, letter.wide))
+                placements.append((letter.what, place))
+        return placements
 
-    def _best(self, one: _Wanted[T], lines: Sequence[Place]) -> Place | None:
+    def _best(self, letter: _Wanted[T], lines: Sequence[Place]) -> Place | None:
         """``lines`` are those to be avoided, from left to right."""
         best, least = None, float("inf")
-        size = hypot(*one.away)
+        size = hypot(*letter.away)
         for out in FURTHER_OUT:
-            for k in range(AROUND if one.near else 1):
+            for k in range(AROUND if letter.near else 1):
                 angle = 2 * pi * k / AROUND
-                x, y = (one.away[0] / size, one.away[1] / size) if size else (1.0, 0.0)
+                x, y = (letter.away[0] / size, letter.away[1] / size) if size else (1.0, 0.0)
                 x, y = x * cos(angle) - y * sin(angle), x * sin(angle) + y * cos(angle)
                 # So far that the box just leaves the place.
-                reach = one.near + out + min(one.wide / 2 / max(abs(x), 1e-9), HIGH / 2 / max(abs(y), 1e-9))
-                place = (one.place[0] + reach * x, one.place[1] + reach * y) if one.near else one.place
-                if any(_meet(place, one.wide, other, wide) for other, wide in self._boxes):
+                reach = letter.near + out + min(letter.wide / 2 / max(abs(x), 1e-9), HIGH / 2 / max(abs(y), 1e-9))
+                place = (letter.place[0] + reach * x, letter.place[1] + reach * y) if letter.near else letter.place
+                if any(_meet(place, letter.wide, other, wide) for other, wide in self._boxes):
                     continue
-                half = one.wide / 2 + 0.02
+                half = letter.wide / 2 + 0.02
                 near = slice(bisect_left(lines, (place[0] - half,)), bisect_left(lines, (place[0] + half,)))
                 crossed = sum(abs(q - place[1]) < HIGH / 2 + 0.02 for _, q in lines[near])
                 cost = 3 * crossed + 4 * out + (1 - cos(angle) if size else 0.0)
                 if cost < least - 1e-9:
                     best, least = place, cost
-            if not one.near:
+            if not letter.near:
                 break
         return best
 

@@ -268,10 +268,10 @@ def principal(tensor: Sequence[Sequence[float]]) -> tuple[Numbers, Rows]:
 
 
 def _rotated(rows: list[list[float]], p: int, q: int, c: float, s: float) -> list[list[float]]:
-    found = list(rows)
-    found[p] = [c * x + s * y for x, y in zip(rows[p], rows[q], strict=True)]
-    found[q] = [c * y - s * x for x, y in zip(rows[p], rows[q], strict=True)]
-    return found
+    rotated = list(rows)
+    rotated[p] = [c * x + s * y for x, y in zip(rows[p], rows[q], strict=True)]
+    rotated[q] = [c * y - s * x for x, y in zip(rows[p], rows[q], strict=True)]
+    return rotated
 
 
 def _numbers(values: Sequence[float]) -> Numbers:

@@ -79,13 +79,13 @@ def _ellipse(half: Sequence[float], middle: Numbers, rows: Sequence[Numbers], lo
 
 
 def _fronts(
-    half: Sequence[float], middle: Numbers, rows: Sequence[Numbers], look: Rows, one: bool
+    half: Sequence[float], middle: Numbers, rows: Sequence[Numbers], look: Rows, sphere: bool
 ) -> Iterable[tuple[Place, ...]]:
     """The near halves of the ellipses in the planes of symmetry; of a sphere the one about its third axis.
 
     A point r of the surface is seen where n . e > 0, n = sum (r_i / a_i^2) e_i.
     """
-    for p, q in ((0, 1),) if one else ((0, 1), (1, 2), (2, 0)):
+    for p, q in ((0, 1),) if sphere else ((0, 1), (1, 2), (2, 0)):
         u, v = dot(look[2], rows[p]) / half[p], dot(look[2], rows[q]) / half[q]
         if hypot(u, v) * max(half) < 0.02:
             continue  # seen as its whole
@@ -109,14 +109,14 @@ def hull(places: Iterable[Place]) -> tuple[Place, ...]:
         return tuple(ordered)
 
     def chain(points: Iterable[Place]) -> list[Place]:
-        found: list[Place] = []
+        corners: list[Place] = []
         for x, y in points:
-            while len(found) > 1:
-                (a, b), (c, d) = found[-2], found[-1]
+            while len(corners) > 1:
+                (a, b), (c, d) = corners[-2], corners[-1]
                 if (c - a) * (y - b) - (d - b) * (x - a) > 0:
                     break
-                found.pop()
-            found.append((x, y))
-        return found[:-1]
+                corners.pop()
+            corners.append((x, y))
+        return corners[:-1]
 
     return tuple(chain(ordered) + chain(reversed(ordered)))

@@ -61,16 +61,16 @@ class PoseProgram:
     steps: tuple[tuple[Any, ...], ...]
     tables: tuple[Curve, ...] = ()
 
-    def evaluate(self, given: Mapping[str, Any]) -> list[Any]:
+    def evaluate(self, inputs: Mapping[str, Any]) -> list[Any]:
         """Every value, numbers or arrays of one shape; what has no value (1/0, log of -1) is inf or nan.
 
-        Raises KeyError for an input that is not ``given``.
+        Raises KeyError for an input that is not ``inputs``.
         """
         import numpy as np
 
         from mbsym.algebra.lookup import looked_up
 
-        values: list[Any] = [np.asarray(given[name], dtype=float) for name in self.inputs]
+        values: list[Any] = [np.asarray(inputs[name], dtype=float) for name in self.inputs]
         values += [np.float64(x) for x in self.constants]
         with np.errstate(all="ignore"):
             for operation, *operands in self.steps:
@@ -82,12 +82,12 @@ class PoseProgram:
                     values.append(looked_up(self._table(operation), *arguments))
         return values
 
-    def at(self, given: Mapping[str, float]) -> list[float]:
+    def at(self, inputs: Mapping[str, float]) -> list[float]:
         """Every value at one place, without NumPy; what has no value is inf or nan.
 
-        Raises KeyError for an input that is not ``given``.
+        Raises KeyError for an input that is not ``inputs``.
         """
-        values = [*(float(given[name]) for name in self.inputs), *self.constants]
+        values = [*(float(inputs[name]) for name in self.inputs), *self.constants]
         for operation, *operands in self.steps:
             values.append(self.done(operation, [values[k] for k in operands]))
         return values
@@ -134,16 +134,16 @@ class Varied(Sequence[float]):
 
     def __getitem__(self, place: Any) -> Any:
         depends, steps, new = self._program.depends, self._program.steps, self._new
-        asked = [place]
-        while asked:
-            k = asked[-1]
+        pending = [place]
+        while pending:
+            k = pending[-1]
             if k in new or not depends[k] & self._changed:
-                asked.pop()
+                pending.pop()
                 continue
             operation, *operands = steps[k - self._before]
             unknown = [j for j in operands if j not in new and depends[j] & self._changed]
             if unknown:
-                asked += unknown
+                pending += unknown
             else:
                 new[k] = self._program.done(operation, [new.get(j, self._values[j]) for j in operands])
         return new.get(place, self._values[place])
@@ -156,22 +156,24 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
     """
     live = program.live(outputs)
     instructions = [(number, program.instructions[number]) for number in live]
-    needed = {str(one.payload): number for number, one in instructions if one.operation == "input"}
+    needed = {
+        str(instruction.payload): number for number, instruction in instructions if instruction.operation == "input"
+    }
     unknown = sorted(needed.keys() - set(order))
     if unknown:
         text = "the places of bodies depend on what has no value: [[names]]"
         raise NoClosedForm(text, names=", ".join(unknown))
     inputs = tuple(name for name in order if name in needed)
     value = {needed[name]: k for k, name in enumerate(inputs)}
-    constants = [(number, one) for number, one in instructions if one.operation == "constant"]
+    constants = [(number, instruction) for number, instruction in instructions if instruction.operation == "constant"]
     for number, _ in constants:
         value[number] = len(value)
     tables: list[Curve] = []
     steps: list[tuple[Any, ...]] = []
-    for number, one in instructions:
-        if one.operation in ("input", "constant"):
+    for number, instruction in instructions:
+        if instruction.operation in ("input", "constant"):
             continue
-        name: str = one.operation
+        name: str = instruction.operation
         if isinstance(name, Tabulated):
             if name.curve not in tables:
                 tables.append(name.curve)
@@ -180,7 +182,7 @@ def flattened(program: Program, outputs: Sequence[Node], order: Sequence[str]) -
             name = _SHORT.get(name, name)
             if name not in OPERATIONS:
                 raise NoClosedForm("pictures do not know the operation [[name]]", name=name)
-        steps.append((name, *(value[k] for k in one.operands)))
+        steps.append((name, *(value[k] for k in instruction.operands)))
         value[number] = len(value)
-    numbers = tuple(float(one.payload) for _, one in constants)  # type: ignore[arg-type]
+    numbers = tuple(float(instruction.payload) for _, instruction in constants)  # type: ignore[arg-type]
     return PoseProgram(inputs, numbers, tuple(steps), tuple(tables)), value

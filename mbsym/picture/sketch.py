@@ -170,7 +170,7 @@ class Film:
         wide, tall = (max([x, *solids]) for x in spread)
         size = max(hypot(wide, tall), 1e-9 * found.extent) or 1.0
         self.unit = min(WIDE / max(wide, 1e-9 * size), TALL / max(tall, 1e-9 * size), 8.0 / size)
-        paths = [[(self.unit * x, self.unit * y) for x, y in one] for one in flat]
+        paths = [[(self.unit * x, self.unit * y) for x, y in track] for track in flat]
         self.paths = [path for path in paths if max(_width([x for x, _ in path]), _width([y for _, y in path])) > 0.01]
 
     def _track(self, operands: Operands) -> list[Numbers]:
@@ -204,7 +204,7 @@ class _Paper:
         state: dict[str, float] | None = None,
         values: Sequence[float] = (),
     ) -> None:
-        self.found, self.system, self.unknown = found, system, unknown
+        self.picture, self.system, self.unknown = found, system, unknown
         #: How far coordinates go, where the system moves: tracks stay in their place then.
         self.ranges: Mapping[str, tuple[float, float]] = {}
         self.still = state is None
@@ -221,7 +221,7 @@ class _Paper:
 
     def _state(self) -> dict[str, float]:
         """The position that is drawn."""
-        picture = self.found
+        picture = self.picture
         state = dict.fromkeys(picture.program.inputs, 0.0) | {"t": 0.0}
         for coordinate, rate in zip(picture.coordinates, self.system.velocities, strict=True):
             state[coordinate.name], state[rate] = coordinate.value, coordinate.velocity
@@ -240,19 +240,21 @@ class _Paper:
                 )
                 turn += 1
         size = self._size(moved)
-        for one in picture.coordinates:
-            if one.name in self._sliding and one.kind is Measure.LENGTH and abs(one.value) < AWAY * size:
+        for slider in picture.coordinates:
+            if slider.name in self._sliding and slider.kind is Measure.LENGTH and abs(slider.value) < AWAY * size:
                 there = self._rounded(MOVED * size)
-                moved[one.name] = there if one.minimum <= there <= one.maximum or not one.limited else one.value
+                moved[slider.name] = (
+                    there if slider.minimum <= there <= slider.maximum or not slider.limited else slider.value
+                )
         return moved if isfinite(self._size(moved)) else state
 
     def _size(self, state: dict[str, float]) -> float:
         """How large the system is, on the paper; of what is a point 1."""
-        values = self.found.program.at(state)
-        ends = [x for body in self.found.bodies for x in (body.origin, body.centre)]
+        values = self.picture.program.at(state)
+        ends = [x for body in self.picture.bodies for x in (body.origin, body.centre)]
         flat = [self.flat(at(values, x)) for x in ends]
         far = max((dist(a, b) for a in flat for b in flat), default=0.0)
-        reach = [hypot(*shape.size) for body in self.found.bodies for shape in body.shapes]
+        reach = [hypot(*shape.size) for body in self.picture.bodies for shape in body.shapes]
         far = max([far, *reach])
         return far if far > 1e-9 or not isfinite(far) else 1.0
 
@@ -273,7 +275,7 @@ class _Paper:
 
     def varied(self, name: str, value: float, zero: Iterable[str] = ()) -> Varied:
         """The program's values with one coordinate at another value, and some at zero."""
-        return Varied(self.found.program, self.values, dict.fromkeys(zero, 0.0) | {name: value})
+        return Varied(self.picture.program, self.values, dict.fromkeys(zero, 0.0) | {name: value})
 
     # --- scale ---
 
@@ -281,8 +283,8 @@ class _Paper:
         """Everything, scaled and lettered."""
         solids = list(self._solids())
         guides = list(self._guides())
-        extent = [self.flat(self.point(x)) for body in self.found.bodies for x in (body.origin, body.centre)]
-        extent += [self.flat(self.point(x)) for line in self.found.lines for x in (line.start, line.end)]
+        extent = [self.flat(self.point(x)) for body in self.picture.bodies for x in (body.origin, body.centre)]
+        extent += [self.flat(self.point(x)) for line in self.picture.lines for x in (line.start, line.end)]
         extent += [place for solid in solids for place in solid.outline]
         extent += [self.flat(place) for _, places in guides for place in places]
         if not all(isfinite(x) for place in extent for x in place):
@@ -302,7 +304,7 @@ class _Paper:
         self.unit = min(
             WIDE / max(high[0] - low[0], 1e-9 * size),
             TALL / max(high[1] - low[1], 1e-9 * size),
-            (2.6 if carts and len(self.found.bodies) == 1 else 8.0) / size,
+            (2.6 if carts and len(self.picture.bodies) == 1 else 8.0) / size,
         )
         self.middle = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
         self._draw(solids, guides)
@@ -347,7 +349,7 @@ class _Paper:
         round: bool
 
     def _solids(self) -> Iterator[_Paper.Solid]:
-        for body in self.found.bodies:
+        for body in self.picture.bodies:
             axes = tuple(self.point(row) for row in body.axes)
             origin = self.point(body.origin)
             for shape in body.shapes:
@@ -368,16 +370,16 @@ class _Paper:
     @cached_property
     def _sliding(self) -> dict[str, tuple[Drawn, Hinge]]:
         """By coordinate, the body that it moves, where one alone moves it."""
-        found = {}
-        for body in self.found.bodies:
+        sliders = {}
+        for body in self.picture.bodies:
             hinges = [x for x in body.joint.hinges if x.slides]
             if len(hinges) == 1:
-                found[hinges[0].coordinates[0]] = body, hinges[0]
-        return found
+                sliders[hinges[0].coordinates[0]] = body, hinges[0]
+        return sliders
 
     def _guides(self) -> Iterator[tuple[Guide, tuple[Numbers, ...]]]:
         """Hoops with their points in the axes of the picture."""
-        for guide in self.found.guides:
+        for guide in self.picture.guides:
             parent = self.bodies[guide.body].parent
             carrier = None if parent is None else self.bodies[parent]
             origin = (0.0, 0.0, 0.0) if carrier is None else self.point(carrier.origin)
@@ -414,7 +416,9 @@ class _Paper:
         for name, (body, hinge) in self._sliding.items():
             along = self.flat(self.point(hinge.along))
             size = hypot(*along)
-            if size < 1e-6 or any(one.name == name and one.kind is Measure.ANGLE for one in self.found.coordinates):
+            if size < 1e-6 or any(
+                coordinate.name == name and coordinate.kind is Measure.ANGLE for coordinate in self.picture.coordinates
+            ):
                 continue
             right = along[0] / size, along[1] / size
             zero = self.on(self.point(body.origin, self.varied(name, 0.0)))
@@ -496,7 +500,7 @@ class _Paper:
 
     def _lines(self) -> None:
         guided = set(self._sliding)
-        for line in self.found.lines:
+        for line in self.picture.lines:
             first, second = self.spot(line.start), self.spot(line.end)
             if dist(first, second) < 0.05:
                 continue
@@ -524,8 +528,8 @@ class _Paper:
 
     def _lengths(self) -> None:
         """Letters of lengths beside the lines that are as long."""
-        told: list[tuple[str, Place, Place]] = []
-        for body in self.found.bodies:
+        lettered: list[tuple[str, Place, Place]] = []
+        for body in self.picture.bodies:
             own = self.own[body.name]
             start = INERTIAL if body.parent is None else body.parent
             before = None if body.parent is None else self.spot(self.bodies[start].origin)
@@ -536,9 +540,9 @@ class _Paper:
             ends += [(vector, here, end) for vector, end in self._tied_points(body)]
             for vector, first, second in ends:
                 length = _length_of(vector)
-                if length is None or dist(first, second) < 0.5 or (text(length), first, second) in told:
+                if length is None or dist(first, second) < 0.5 or (text(length), first, second) in lettered:
                     continue
-                told.append((text(length), first, second))
+                lettered.append((text(length), first, second))
                 self.letter(length, _between(first, second), _turned(_direction(first, second)))
 
     def _tied_points(self, body: Drawn) -> Iterator[tuple[Vector, Place]]:
@@ -547,19 +551,20 @@ class _Paper:
         for constraint in self.system.constraints:
             if isinstance(constraint, Coincide | Distance):
                 for point in (constraint.first, constraint.second):
-                    if point.body == body.name and all(names(x) <= self.found.values.keys() for x in point.position):
-                        values = self.found.values
+                    if point.body == body.name and all(names(x) <= self.picture.values.keys() for x in point.position):
+                        values = self.picture.values
                         arm = [_number(x, values) for x in point.position]
                         yield point.position, self.on(combined((1.0, *arm), (self.point(body.origin), *axes)))
 
     def _goes_on(self, body: Drawn) -> bool:
         """Whether its mass centre lies on a longer line of it."""
         here, centre = self.spot(body.origin), self.spot(body.centre)
-        others = [self.spot(drawn.origin) for drawn in self.found.bodies if drawn.parent == body.name]
+        others = [self.spot(drawn.origin) for drawn in self.picture.bodies if drawn.parent == body.name]
         others += [place for _, place in self._tied_points(body)]
         return any(
-            dist(here, one) > dist(here, centre) - 1e-6 and dot(_direction(here, one), _direction(here, centre)) > 0.999
-            for one in others
+            dist(here, other) > dist(here, centre) - 1e-6
+            and dot(_direction(here, other), _direction(here, centre)) > 0.999
+            for other in others
         )
 
     def _points(self) -> None:
@@ -568,11 +573,11 @@ class _Paper:
             lines = [x for x in self.marks if isinstance(x, Stroke) and x.ink is Ink.BODY and place in x.points]
             below = any(max(y for _, y in x.points) > place[1] + 0.1 for x in lines)
             self._held(place, -1.0 if below else 1.0)
-        for body in self.found.bodies:
+        for body in self.picture.bodies:
             here, centre = self.spot(body.origin), self.spot(body.centre)
             turns = [x for x in body.joint.hinges if not x.slides]
             slides = any(x.slides for x in body.joint.hinges)
-            if turns and not slides and body.parent is None and self.found.frame == INERTIAL and self._has_line(body):
+            if turns and not slides and body.parent is None and self.picture.frame == INERTIAL and self._has_line(body):
                 self._pinned(body, here)
             if len(turns) == 1 and self._has_line(body) and not self._is_hidden(body):
                 self.marks.append(Dot(f"joint of {body.name}", here, 0.06, open=True))
@@ -586,15 +591,15 @@ class _Paper:
     def _grounded(self) -> Iterator[Place]:
         """Points of the ground that a constraint or a load ties."""
         tied = [x for x in self.system.constraints if isinstance(x, Coincide | Distance)]
-        for one in [
+        for tie in [
             *tied,
             *(x for x in self.system.loads if isinstance(x, PointSpring | PointDamper | IsotropicDamper)),
         ]:
-            for end in (one.first, one.second):
-                if end.body == INERTIAL == self.found.frame and all(
-                    names(x) <= self.found.values.keys() for x in end.position
+            for end in (tie.first, tie.second):
+                if end.body == INERTIAL == self.picture.frame and all(
+                    names(x) <= self.picture.values.keys() for x in end.position
                 ):
-                    values = self.found.values
+                    values = self.picture.values
                     x, y, z = (_number(c, values) for c in end.position)
                     yield self.on((x, y, z))
 
@@ -603,8 +608,10 @@ class _Paper:
         return {body.name for body, _ in self._sliding.values()}
 
     def _has_line(self, body: Drawn) -> bool:
-        lines = {line.of for line in self.found.lines if line.kind in (Stretch.BODY, Stretch.LINK)}
-        return body.name in lines or any(one.parent == body.name and self._slides(one) for one in self.found.bodies)
+        lines = {line.of for line in self.picture.lines if line.kind in (Stretch.BODY, Stretch.LINK)}
+        return body.name in lines or any(
+            child.parent == body.name and self._slides(child) for child in self.picture.bodies
+        )
 
     def _slides(self, body: Drawn) -> bool:
         """Along a line that is drawn as a spring or a damper from the joint before."""
@@ -619,7 +626,7 @@ class _Paper:
         return not body.massive and any(
             drawn.parent == body.name and name in drawn.joint.hinges[-1].coordinates
             for name, (drawn, _) in self._sliding.items()
-            if any(x.name == name and x.kind is Measure.ANGLE for x in self.found.coordinates)
+            if any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
         )
 
     def _mass(self, body: Drawn, place: Place, away: Place, near: float) -> None:
@@ -629,7 +636,7 @@ class _Paper:
 
     def _pinned(self, body: Drawn, here: Place) -> None:
         """Ground at a joint: on the other side of what hangs or stands there."""
-        if not self.found.view.plane and not any(x.of is Acting.GRAVITY for x in self.found.arrows):
+        if not self.picture.view.plane and not any(x.of is Acting.GRAVITY for x in self.picture.arrows):
             return  # nothing says that it is held, not free
         target = self._target(body)
         up = 1.0 if target is None or self.spot(target)[1] <= here[1] + 1e-6 else -1.0
@@ -683,17 +690,17 @@ class _Paper:
     def _target(self, body: Drawn) -> Operands | None:
         """What tells how a body is turned: its mass centre, else what is attached to it."""
         here = self.point(body.origin)
-        near = 1e-6 * self.found.extent
+        near = 1e-6 * self.picture.extent
         if body.massive and dist(self.point(body.centre), here) > near:
             return body.centre
-        for drawn in self.found.bodies:
+        for drawn in self.picture.bodies:
             if drawn.parent == body.name and dist(self.point(drawn.origin), here) > near:
                 return drawn.origin
         return None
 
     def _angles(self) -> None:
         radius = 0.72
-        for body in self.found.bodies:
+        for body in self.picture.bodies:
             target = self._target(body)
             turns = [x for x in body.joint.hinges if not x.slides and x.coordinates]
             if target is None or not turns or self._is_hidden(body) or self._shows_axes(body):
@@ -721,7 +728,7 @@ class _Paper:
         for k in range(ARC):
             values = self.varied(name, value * k / (ARC - 1), zero=later)
             arm = combined((1.0, -1.0), (self.point(target, values), self.point(body.origin, values)))
-            if not all(map(isfinite, arm)) or hypot(*arm) < 1e-9 * self.found.extent:
+            if not all(map(isfinite, arm)) or hypot(*arm) < 1e-9 * self.picture.extent:
                 return False
             arc.append(combined((1.0, radius / self.unit), (here, unit(arm))))
         if (
@@ -744,7 +751,9 @@ class _Paper:
         name, value = guide.coordinate, self.state[guide.coordinate]
         middle_of = combined([1 / (len(curve) - 1)] * (len(curve) - 1), curve[:-1])
         radii = [dist(x, middle_of) for x in curve]
-        angle = any(one.name == name and one.kind is Measure.ANGLE for one in self.found.coordinates)
+        angle = any(
+            coordinate.name == name and coordinate.kind is Measure.ANGLE for coordinate in self.picture.coordinates
+        )
         if not angle or max(radii) - min(radii) > 1e-6 * max(radii) or abs(value) < 0.05 or abs(value) > 2 * pi:
             return
         body = self.bodies[guide.body]
@@ -760,14 +769,14 @@ class _Paper:
         middle = line[ARC // 2]
         self.letter(Name(name), middle, _direction(centre, middle))
         own = self.own[guide.body]
-        values = self.found.values
+        values = self.picture.values
         known = {x for expression in own.connection_point for x in names(expression)} & values.keys()
-        for one in sorted(known):
-            if abs(values[one] - radius) < 1e-9 * radius:
+        for parameter in sorted(known):
+            if abs(values[parameter] - radius) < 1e-9 * radius:
                 side = _turned(_direction(centre, bead))
                 sign = -1.0 if dot(side, (middle[0] - centre[0], middle[1] - centre[1])) > 0 else 1.0
                 place = centre[0] + 0.6 * (bead[0] - centre[0]), centre[1] + 0.6 * (bead[1] - centre[1])
-                self.letter(Name(one), place, (sign * side[0], sign * side[1]))
+                self.letter(Name(parameter), place, (sign * side[0], sign * side[1]))
                 break
 
     def _spiral(self, body: Drawn, name: str) -> None:
@@ -786,7 +795,7 @@ class _Paper:
             if not isinstance(load, PointForce) or load.point.body not in self.bodies:
                 continue
             body = self.bodies[load.point.body]
-            arrow = next((x for x in self.found.arrows if x.load == number), None)
+            arrow = next((x for x in self.picture.arrows if x.load == number), None)
             along = (0.0, 0.0) if arrow is None else self.flat(self.point(arrow.along))
             if hypot(*along) < 1e-9:  # zero at these values: its direction is that of its only component
                 vector = self._direction_of(load)
@@ -824,7 +833,7 @@ class _Paper:
         return False
 
     def _direction_of(self, load: PointForce) -> Numbers | None:
-        axes = AXES if load.axes == self.found.frame else None
+        axes = AXES if load.axes == self.picture.frame else None
         if axes is None and load.axes in self.bodies:
             rows = [self.point(row) for row in self.bodies[load.axes].axes]
             axes = (rows[0], rows[1], rows[2])
@@ -835,7 +844,7 @@ class _Paper:
         """Whether it turns by so many angles, or has so short a line, that its axes show it better than arcs."""
         turns = {x for hinge in body.joint.hinges if not hinge.slides for x in hinge.coordinates}
         if (
-            self.found.view.plane
+            self.picture.view.plane
             or not (body.massive or body.ellipsoid)
             or (len(turns) < 2 and not self.own[body.name].orientation)
         ):
@@ -845,9 +854,9 @@ class _Paper:
 
     def _body_axes(self) -> None:
         """The axes of what turns by several angles and has no line that would show it."""
-        if self.found.view.plane:
+        if self.picture.view.plane:
             return
-        for body in self.found.bodies:
+        for body in self.picture.bodies:
             if not self._shows_axes(body):
                 continue
             here = self.spot(body.origin)
@@ -867,13 +876,15 @@ class _Paper:
 
     def _driven(self) -> None:
         """Axes in the paper about which something is turned by an angle that is prescribed."""
-        given = {prescribed.name for prescribed in self.system.prescribed}
-        for body in self.found.bodies:
+        prescribed_angles = {prescribed.name for prescribed in self.system.prescribed}
+        for body in self.picture.bodies:
             turns = [x for x in body.joint.hinges if not x.slides]
-            if not self.found.view.plane or len(turns) != 1 or turns[0].coordinates:
+            if not self.picture.view.plane or len(turns) != 1 or turns[0].coordinates:
                 continue
             along = self.flat(self.point(turns[0].along))
-            name = sorted({x for angle in self.own[body.name].rotation.angles for x in names(angle)} & given)
+            name = sorted(
+                {x for angle in self.own[body.name].rotation.angles for x in names(angle)} & prescribed_angles
+            )
             if len(name) != 1 or abs(hypot(*along) - 1) > 1e-6:
                 continue
             up, side = along, (along[1], -along[0])
@@ -910,7 +921,7 @@ class _Paper:
         gravity = next((x for x in self.system.loads if isinstance(x, UniformGravity)), None)
         if gravity is None:
             return
-        up = self.flat(self.found.view.up)
+        up = self.flat(self.picture.view.up)
         size = hypot(*up)
         if size < 0.3:
             return
@@ -927,28 +938,28 @@ class _Paper:
     def _finished(self) -> Sketch:
         placed = self.letters.placed()
         low, high = self.letters.box()
-        names_of = [coordinate.name for coordinate in self.found.coordinates]
+        names_of = [coordinate.name for coordinate in self.picture.coordinates]
         return Sketch(
             tuple(self.marks),
             tuple(Letter(what, place) for what, place in placed),
             low,
             high,
             tuple((name, self.state[name]) for name in names_of),
-            self.found.frame,
+            self.picture.frame,
             tuple(name for name in self.unknown if name in self._geometry()),
-            any(_shown(body) is not None for body in self.found.bodies),
+            any(_shown(body) is not None for body in self.picture.bodies),
         )
 
     def _geometry(self) -> set[str]:
         """The parameters that places and shapes depend on."""
-        found: set[str] = set()
+        parameters: set[str] = set()
         for body in self.system.bodies:
             shapes = (x for shape in body.shapes for x in (*shape.size, *shape.at, *shape.rotation.angles))
             for expression in (*body.connection_point, *body.mass_centre, *body.rotation.angles, *shapes):
-                found |= names(expression)
+                parameters |= names(expression)
         for relation in reversed(self.system.relations):
-            found |= names(relation.value) if relation.name in found else set()
-        return found
+            parameters |= names(relation.value) if relation.name in parameters else set()
+        return parameters
 
 
 def _letters_of(what: Expression | int) -> str:
@@ -1003,9 +1014,9 @@ def _coil(first: Place, second: Place) -> list[Place]:
     side = _turned(along)
     straight = min(0.2, 0.15 * length)
     turns = max(3, min(9, round((length - 2 * straight) / 0.22)))
-    found = [first]
+    points = [first]
     for k in range(2 * turns + 1):
         a = straight + (length - 2 * straight) * k / (2 * turns)
         b = 0.0 if k in (0, 2 * turns) else (0.13 if k % 2 else -0.13)
-        found.append((first[0] + a * along[0] + b * side[0], first[1] + a * along[1] + b * side[1]))
-    return [*found, second]
+        points.append((first[0] + a * along[0] + b * side[0], first[1] + a * along[1] + b * side[1]))
+    return [*points, second]

@@ -235,8 +235,8 @@ class Brackets(Shown):
     def in_involution(self) -> bool | None:
         """Whether all brackets vanish; None where one is no zero of the ring, and may be one all the same."""
         ring = self.matrix[0, 0].ring
-        found = [ring.is_zero(x) for row in self.matrix.polynomials for x in row]
-        return False if False in found else None if None in found else True
+        vanishing = [ring.is_zero(x) for row in self.matrix.polynomials for x in row]
+        return False if False in vanishing else None if None in vanishing else True
 
 
 def brackets(system: System, canonical: Hamilton, integrals: Sequence[Integral]) -> Brackets | None:
@@ -299,40 +299,40 @@ def rate_along(canonical: Hamilton, scene: Scene, f: Polynomial) -> Polynomial:
 CANONICAL, ROUTH, BRACKETS = "canonical equations", "Routh's equations", "Poisson brackets"
 
 
-def check_hamilton(truth: Oracles, found: Hamilton) -> Check:
+def check_hamilton(truth: Oracles, canonical: Hamilton) -> Check:
     """p, H, dH/dp and -dH/dq + Q against sums over bodies in inertial axes."""
-    system, ring, names = truth.system, found.hamiltonian.ring, truth.system.coordinates
+    system, ring, names = truth.system, canonical.hamiltonian.ring, truth.system.coordinates
     scene = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
-    along = [total_rate(scene, x.polynomial) for x in found.momenta_in_velocities]
-    rows = zip(found.velocities, found.rates, found.momenta_in_velocities, strict=True)
+    along = [total_rate(scene, x.polynomial) for x in canonical.momenta_in_velocities]
+    rows = zip(canonical.velocities, canonical.rates, canonical.momenta_in_velocities, strict=True)
     lengths = {name: sum(x.terms for x in row) for name, row in zip(names, rows, strict=True)}
-    chosen = extent(lengths, "equations", fixed=found.hamiltonian.terms)
+    chosen = extent(lengths, "equations", fixed=canonical.hamiltonian.terms)
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = oracle.state
         p = momenta_at(oracle, names)
         known = Carrier(ring, state.numbers, state.values)
-        carry = Carrier(ring, state.numbers, _without(state, names) | dict(zip(found.momenta, p, strict=True)))
+        carry = Carrier(ring, state.numbers, _without(state, names) | dict(zip(canonical.momenta, p, strict=True)))
         legendre = -(oracle.kinetic_energy + oracle.force_function)
         for momentum, name in zip(p, names, strict=True):
             legendre = legendre + momentum * state.values[velocity_name(name)]
-        compared: list[Pair] = [("H", carry(found.hamiltonian.polynomial), legendre)]
+        compared: list[Pair] = [("H", carry(canonical.hamiltonian.polynomial), legendre)]
         for i, name in enumerate(names):
             if name in chosen.chosen:
-                rate = known(along[i]) - carry(found.rates[i].polynomial)
+                rate = known(along[i]) - carry(canonical.rates[i].polynomial)
                 velocity = state.values[velocity_name(name)]
                 compared += [
                     (
-                        Message("[[momentum]]", momentum=found.momenta[i]),
-                        known(found.momenta_in_velocities[i].polynomial),
+                        Message("[[momentum]]", momentum=canonical.momenta[i]),
+                        known(canonical.momenta_in_velocities[i].polynomial),
                         p[i],
                     ),
                     (
-                        Message("dH/d[[momentum]]", momentum=found.momenta[i]),
-                        carry(found.velocities[i].polynomial),
+                        Message("dH/d[[momentum]]", momentum=canonical.momenta[i]),
+                        carry(canonical.velocities[i].polynomial),
                         velocity,
                     ),
-                    (Message("the rate of [[momentum]]", momentum=found.momenta[i]), rate, oracle.residuals[name]),
+                    (Message("the rate of [[momentum]]", momentum=canonical.momenta[i]), rate, oracle.residuals[name]),
                 ]
         return compared
 

@@ -101,18 +101,18 @@ class Reduction:
     def then(self, how: How, images: Mapping[int, Series], flow: Flow) -> Reduction:
         """With one more step.  Raises NoClosedForm where, put into the original equations, it does not satisfy them."""
         longer = replace(self, steps=(*self.steps, Step(how, images, flow)))
-        left, wanted = longer.order_left()
-        if left is not None and (wanted is None or left < wanted):
+        left, allowed = longer.order_left()
+        if left is not None and (allowed is None or left < allowed):
             raise NoClosedForm("withdrawn: put into the original equations, the reduction does not satisfy them")
         return replace(longer, steps=(*self.steps, Step(how, images, flow, left)))
 
     def images(self) -> dict[int, Series]:
         """The first variables in terms of the last ones."""
-        found = {place: self.flow.variable(place) for place in self.rows}
+        series_by_place = {place: self.flow.variable(place) for place in self.rows}
         for step in self.steps:
             put = _put(step.flow.context, step.images)
-            found = {place: put(x) for place, x in found.items()}
-        return found
+            series_by_place = {place: put(x) for place, x in series_by_place.items()}
+        return series_by_place
 
     def order_left(self, seed: int = 1) -> tuple[int | None, int | None]:
         """The lowest power of eps in  dx/dy Y - X(x(y)), and in that of integrals; and from which one on it may be.
@@ -137,17 +137,17 @@ class Reduction:
         eps = fmpq_poly([0, 1])
         put = {place: _lowered(value(x), shift) for place, x in images.items()} | {self.small: eps}
         rates = {place: value(x) for place, x in flow.rates.items()}
-        found = []
+        residuals = []
         for place, (top, bottom) in self.rows.items():
             moved = fmpq_poly()
             for other, rate in rates.items():
                 slope = images[place].derivative(other)
                 if slope.coefficients:
                     moved += _lowered(value(slope), shift) * rate
-            found.append(whole(bottom, put) * moved - whole(top, put) * eps**shift)
+            residuals.append(whole(bottom, put) * moved - whole(top, put) * eps**shift)
         for integral in flow.integrals:
-            found.append(sum((value(integral.derivative(k)) * rate for k, rate in rates.items()), fmpq_poly()))
-        orders = [next(k for k, c in enumerate(one.coeffs()) if c != 0) for one in found if one != 0]
+            residuals.append(sum((value(integral.derivative(k)) * rate for k, rate in rates.items()), fmpq_poly()))
+        orders = [next(k for k, c in enumerate(residual.coeffs()) if c != 0) for residual in residuals if residual != 0]
         return (min(orders) - shift if orders else None), None if known is None else known - shift
 
 
@@ -182,9 +182,9 @@ def by_integrals(
     for chosen in combinations(flow.integrals, len(unknown)):
         values = [at_first(x) for x in chosen] if known is not None else constants
         rows = [x if flow.fixed else x - c for x, c in zip(chosen, values, strict=True)]
-        found = _implicit(flow.context, rows, unknown, starts, known)
-        if found is not None:
-            images = dict(zip(unknown, found, strict=True))
+        solution = _implicit(flow.context, rows, unknown, starts, known)
+        if solution is not None:
+            images = dict(zip(unknown, solution, strict=True))
             put = _put(flow.context, images, known)
             fixed = known is not None
             others = (x for x in flow.integrals if not any(x is series for series in chosen))
@@ -202,10 +202,10 @@ def by_equations(before: Reduction, unknown: Sequence[int], of: Sequence[int], k
     """The ``unknown`` from the equations ``of`` as many variables, whose rates become variables."""
     flow = before.flow
     rows = [flow.rates[place] - flow.variable(flow.velocities[place]) for place in of]
-    found = _implicit(flow.context, rows, unknown, None, known)
-    if found is None:
+    solution = _implicit(flow.context, rows, unknown, None, known)
+    if solution is None:
         raise NoClosedForm("at the lowest order these equations are not linear in the variables, or singular")
-    images = dict(zip(unknown, found, strict=True))
+    images = dict(zip(unknown, solution, strict=True))
     put = _put(flow.context, images, known)
     rates = {place: put(x) for place, x in flow.rates.items() if place not in (*unknown, *of)}
     for place in of:
@@ -215,20 +215,24 @@ def by_equations(before: Reduction, unknown: Sequence[int], of: Sequence[int], k
     return before.then(How.EQUATIONS, images, replace(flow, rates=rates, integrals=integrals))
 
 
-def by_change(before: Reduction, given: Mapping[int, Series], new: Sequence[int], known: int | None) -> Reduction:
+def by_change(
+    before: Reduction, replacements: Mapping[int, Series], new: Sequence[int], known: int | None
+) -> Reduction:
     """Variables in terms of as many ``new`` ones; with their velocities where these are variables, too."""
     flow = before.flow
-    second = [place for place in given if flow.velocities.get(place) in flow.rates]
-    if len(new) != len(given) or second not in ([], list(given)):
+    second = [place for place in replacements if flow.velocities.get(place) in flow.rates]
+    if len(new) != len(replacements) or second not in ([], list(replacements)):
         raise NoClosedForm("as many new variables as old ones are wanted, and those of second order apart from others")
-    if any(x.derivative(place).coefficients for x in given.values() for place in flow.rates if place not in new):
+    if any(x.derivative(place).coefficients for x in replacements.values() for place in flow.rates if place not in new):
         raise NoClosedForm("variables that stay cannot stand in what is put in for others")
-    images = {place: x.up_to(known) for place, x in given.items()}
+    images = {place: x.up_to(known) for place, x in replacements.items()}
     moving = {place: flow.variable(flow.velocities[place]) for place in new}
-    old, tops = list(given), list(new)
+    old, tops = list(replacements), list(new)
     if second:
-        old, tops = [flow.velocities[place] for place in given], [flow.velocities[place] for place in new]
-        images |= {v: replace(flow, rates=moving).rate(images[place]) for v, place in zip(old, given, strict=True)}
+        old, tops = [flow.velocities[place] for place in replacements], [flow.velocities[place] for place in new]
+        images |= {
+            v: replace(flow, rates=moving).rate(images[place]) for v, place in zip(old, replacements, strict=True)
+        }
     put = _put(flow.context, images, known)
     rates = {place: put(x) for place, x in flow.rates.items() if place not in images} | (moving if second else {})
     lower = replace(flow, rates=rates)
@@ -249,21 +253,21 @@ def _implicit(
     slopes = [[Series.constant(row.coefficient(0).derivative(place)) for place in unknown] for row in rows]
     if start is None and any(x.derivative(place).coefficients for line in slopes for x in line for place in unknown):
         return None
-    found = [Series(context) for _ in unknown] if start is None else list(start)
-    put = _put(context, dict(zip(unknown, found, strict=True)))
+    solution = [Series(context) for _ in unknown] if start is None else list(start)
+    put = _put(context, dict(zip(unknown, solution, strict=True)))
     if start is not None and any(put(Series.constant(row.coefficient(0))).coefficients for row in rows):
         return None
     slopes = [[put(x) for x in line] for line in slopes]
     for _ in range(MOST_ROUNDS):
-        put = _put(context, dict(zip(unknown, found, strict=True)), known)
+        put = _put(context, dict(zip(unknown, solution, strict=True)), known)
         left = [put(row) for row in rows]
         if not any(x.coefficients for x in left):
-            return [x if all(series.is_zero for series in left) else x.up_to(known) for x in found]
+            return [x if all(series.is_zero for series in left) else x.up_to(known) for x in solution]
         try:
             steps = _linear(slopes, left, known)
         except SingularPoint:
             return None
-        found = [(x - step).exactly() for x, step in zip(found, steps, strict=True)]
+        solution = [(x - step).exactly() for x, step in zip(solution, steps, strict=True)]
     raise NoClosedForm("the coefficients do not settle", limit=Limit.WORK, remedy=LOWER)
 
 

@@ -149,22 +149,22 @@ def _compared(truth: Oracles, name: str, routes: tuple[str, str], pairs: Pairs, 
     return Check(name, *routes, NUMERICAL if outcome == EXACT else outcome, detail, done)
 
 
-def _compare(truth: Sequence[Oracle], pairs: Pairs, wanted: int) -> tuple[str, str, int]:
+def _compare(truth: Sequence[Oracle], pairs: Pairs, required: int) -> tuple[str, str, int]:
     done = 0
     for oracle in truth:
         try:
-            found = pairs(oracle)
+            compared = pairs(oracle)
         except ZeroDivisionError:
             continue
-        outcome, detail = _verdict(found)
+        outcome, detail = _verdict(compared)
         if outcome == FAILED:
             return outcome, detail, done
         done += outcome == EXACT
-        if done == wanted:
+        if done == required:
             return EXACT, Counted(done, "state"), done
     return (
         UNDECIDED,
-        Message("only [[done]] of [[wanted]] states without a singularity were found", done=done, wanted=wanted),
+        Message("only [[done]] of [[wanted]] states without a singularity were found", done=done, wanted=required),
         done,
     )
 
@@ -192,8 +192,8 @@ def decide(name: str, routes: tuple[str, str], exact: bool, pairs: Callable[[boo
         return Check(name, *routes, UNDECIDED, Message("singular: [[why]]", why=message_of(reason)))
 
 
-def _verdict(found: Sequence[Pair]) -> tuple[str, str]:
-    agreements = [(label, first, second, agreement(first, second)) for label, first, second in found]
+def _verdict(compared: Sequence[Pair]) -> tuple[str, str]:
+    agreements = [(label, first, second, agreement(first, second)) for label, first, second in compared]
     for label, first, second, agree in agreements:
         if agree is False:
             return FAILED, Message(
@@ -236,7 +236,7 @@ def check_equations(truth: Oracles, equations: Equations) -> Check:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         needed = oracle.residuals
-        found: list[Pair] = []
+        compared: list[Pair] = []
         for i, name in enumerate(names):
             if name not in chosen.chosen:
                 continue
@@ -244,8 +244,8 @@ def check_equations(truth: Oracles, equations: Equations) -> Check:
             for j, other in enumerate(names):
                 entry = carry(equations.mass_matrix[i, j].polynomial)
                 total = total + entry * state.values[acceleration_name(other)]
-            found.append((Message("equation [[name]]", name=name), total, needed[name]))
-        return found
+            compared.append((Message("equation [[name]]", name=name), total, needed[name]))
+        return compared
 
     routes = ("Lagrange, closed form", D_ALEMBERT)
     return compare(truth, "equations of motion", routes, pairs, chosen.states, chosen.remark)
@@ -262,16 +262,16 @@ def check_program(truth: Oracles, programs: Programs) -> Check:
         values = programs.program.evaluate(nodes, state.values, state.numbers)
         needed = oracle.residuals
         n = len(names)
-        found: list[Pair] = [(Message("energy"), values[-1], oracle.energy_of_motion - oracle.force_function)]
+        compared: list[Pair] = [(Message("energy"), values[-1], oracle.energy_of_motion - oracle.force_function)]
         for i, name in enumerate(names):
             total = -values[n * n + i]
             for j, other in enumerate(names):
                 total = total + values[i * n + j] * state.values[acceleration_name(other)]
-            found.append((Message("equation [[name]]", name=name), total, needed[name]))
-            found.append(
+            compared.append((Message("equation [[name]]", name=name), total, needed[name]))
+            compared.append(
                 (Message("equation [[name]] of the general recursion", name=name), recursion[name], needed[name])
             )
-        return found
+        return compared
 
     states = 1 if len(names) * len(truth.system.bodies) > MOST_DISPLACED else STATES
     return compare(truth, "straight-line program", ("Newton-Euler recursion in body axes", D_ALEMBERT), pairs, states)
@@ -296,10 +296,10 @@ def check_mass_matrix(truth: Oracles, programs: Programs) -> Check:
         for states in (truth.rational, truth.balls):
             for oracle in states:
                 with suppress(SingularPoint, NotRational):
-                    found = regular(oracle)
-                    if found:
+                    full_rank = regular(oracle)
+                    if full_rank:
                         return Check("mass matrix", *routes, EXACT, "regular")
-                    deficient = deficient or found is False
+                    deficient = deficient or full_rank is False
     if not deficient and not any(all(programs.program.vanishes(x) for x in row) for row in programs.mass_matrix):
         return Check("mass matrix", *routes, UNDECIDED, "enclosures too wide to tell whether M is regular")
     idle = [name for i, name in enumerate(names) if all(programs.program.vanishes(x) for x in programs.mass_matrix[i])]
@@ -320,7 +320,7 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
         state = oracle.state
         carry = Carrier(truth.ring, state.numbers, state.values)
         place = oracle.moving
-        found: list[Pair] = []
+        compared: list[Pair] = []
         for body in truth.system.bodies:
             if body.name not in chosen.chosen:
                 continue
@@ -330,7 +330,7 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
             for i in range(3):
                 for j in range(3):
                     cosine = sum((axes[k][i] * parent[k][j] for k in range(3)), state.numbers.zero)
-                    found.append(
+                    compared.append(
                         (Message("R of [[body]]", body=body.name), carry(own.rotation[i, j].polynomial), cosine)
                     )
             spin = place.spin(body.name)[0]
@@ -347,14 +347,14 @@ def check_kinematics(truth: Oracles, kinematics: Kinematics) -> Check:
             ):
                 for i in range(3):
                     turned = sum((axes[k][i] * world[k] for k in range(3)), state.numbers.zero)
-                    found.append(
+                    compared.append(
                         (
                             Message("[[label]] of [[body]]", label=label, body=body.name),
                             carry(ours[i].polynomial),
                             turned,
                         )
                     )
-        return found
+        return compared
 
     routes = ("recursion in body axes", "placement in inertial axes")
     return compare(truth, "kinematics", routes, pairs, chosen.states, chosen.remark)
@@ -470,12 +470,12 @@ def _vanishing(ring: Ring, x: Any) -> str:
     zero = ring.is_zero(x)
     if zero is not None:
         return EXACT if zero else FAILED
-    source, found = random.Random(SEED), 0
+    source, agreements = random.Random(SEED), 0
     with ctx.workprec(PRECISION):
         for _ in range(4 * STATES):
             value = ring.evaluate(x, {name: arb(source.randint(1, 99)) / 64 for name in ring.names()})
             agree = agreement(value, arb(0))
             if agree is False:
                 return FAILED
-            found += agree is True
-    return NUMERICAL if found else UNDECIDED
+            agreements += agree is True
+    return NUMERICAL if agreements else UNDECIDED

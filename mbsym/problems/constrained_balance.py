@@ -65,8 +65,8 @@ class ConstrainedBalance(Balance):
             return Displacements(tuple(coordinates))
         names, taken = self.scene.system.coordinates, self._with_dependent(coordinates)
         places = [names.index(name) for name in taken]
-        found = self._displacements(taken, [(row.velocity, [row.partials[i] for i in places]) for row in self._rows])
-        return _along(found, coordinates)
+        extended = self._displacements(taken, [(row.velocity, [row.partials[i] for i in places]) for row in self._rows])
+        return _along(extended, coordinates)
 
     def symmetries(self, coordinates: Sequence[str]) -> Displacements:
         """Those that vary with the position, too, of holonomic systems near a rest: along leaves of the constraints."""
@@ -210,14 +210,16 @@ class ConstrainedBalance(Balance):
         """The coordinates that a row depends on, or on whose velocity it does."""
         names = self.scene.system.coordinates
         rows = self._rows or ()
-        found = {name for row in rows for name, x in zip(names, row.partials, strict=True) if not x.is_zero()}
-        return found | {name for row in rows for x in _entries(row) for name in names if self.ring.depends_on(x, name)}
+        touched = {name for row in rows for name, x in zip(names, row.partials, strict=True) if not x.is_zero()}
+        return touched | {
+            name for row in rows for x in _entries(row) for name in names if self.ring.depends_on(x, name)
+        }
 
 
-def _along(found: Displacements, coordinates: Sequence[str]) -> Displacements:
+def _along(displacements: Displacements, coordinates: Sequence[str]) -> Displacements:
     """The same by the first coordinates alone: the others follow."""
-    directions = tuple(direction[: len(coordinates)] for direction in found.directions)
-    return replace(found, coordinates=tuple(coordinates), directions=directions)
+    directions = tuple(direction[: len(coordinates)] for direction in displacements.directions)
+    return replace(displacements, coordinates=tuple(coordinates), directions=directions)
 
 
 def _entries(row: Row) -> list[Polynomial]:

@@ -80,7 +80,7 @@ def displacements(
         return none
     lists = [[ring.derivative(x, name) for name in coordinates] for x in (kinetic, *forces, *(g for g, _ in rows))]
     lists += [list(partials) for _, partials in rows]
-    free = [_whole(ring, found, len(coordinates)) for found in kernel(ring, *lists)]
+    free = [_whole(ring, vector, len(coordinates)) for vector in kernel(ring, *lists)]
     if not free:
         return none
     works = [_along(ring, c, forces) for c in free]
@@ -99,8 +99,8 @@ def displacements(
     return Displacements(tuple(coordinates), (*constant, *others), len(constant), tuple(driven))
 
 
-def _whole(ring: Ring, found: dict[int, Polynomial], size: int) -> Direction:
-    return tuple(found.get(i, ring.zero) for i in range(size))
+def _whole(ring: Ring, vector: dict[int, Polynomial], size: int) -> Direction:
+    return tuple(vector.get(i, ring.zero) for i in range(size))
 
 
 def _along(ring: Ring, direction: Direction, forces: Sequence[Polynomial]) -> Polynomial:
@@ -111,12 +111,12 @@ def _completing(ring: Ring, basis: Sequence[Direction], directions: Sequence[Dir
     """Those of the directions that enlarge what a basis spans."""
     from mbsym.algebra.kernel import kernel
 
-    found: list[Direction] = []
+    added: list[Direction] = []
     for c in directions:
-        columns = [*basis, *found, c]
+        columns = [*basis, *added, c]
         if not kernel(ring, *([x[i] for x in columns] for i in range(len(c)))):
-            found.append(c)
-    return found
+            added.append(c)
+    return added
 
 
 def _is_linear(ring: Ring, x: Polynomial, coordinates: Sequence[str], moving: Sequence[str]) -> bool:
@@ -202,7 +202,7 @@ def symmetries(
                 for c in tried
             ]
         )
-    told: list[tuple[Direction, Direction, bool]] = []
+    accepted: list[tuple[Direction, Direction, bool]] = []
     combined = [
         tuple(
             ring.reduce(sum((ring.times(w, tried[k][i]) for k, w in weights.items()), ring.zero))
@@ -214,12 +214,12 @@ def symmetries(
         if any(not set(ring.dependencies(x, coordinates)) <= {*standing} for x in c) or _shears(ring, coordinates, c):
             continue
         value = tuple(here(x) for x in c)
-        if all(x.is_zero() for x in value) or not _completing(ring, [v for _, v, _ in told], [value]):
+        if all(x.is_zero() for x in value) or not _completing(ring, [v for _, v, _ in accepted], [value]):
             continue
-        told.append((c, value, _along(ring, c, forces).is_zero()))
-    if all(_commute(ring, coordinates, a, b) for (a, _, _), (b, _, _) in combinations(told, 2)):
-        return told
-    return [(c, value, False) for c, value, _ in told]
+        accepted.append((c, value, _along(ring, c, forces).is_zero()))
+    if all(_commute(ring, coordinates, a, b) for (a, _, _), (b, _, _) in combinations(accepted, 2)):
+        return accepted
+    return [(c, value, False) for c, value, _ in accepted]
 
 
 def _shears(ring: Ring, coordinates: Sequence[str], c: Direction) -> bool:
@@ -281,9 +281,9 @@ def among(
 ) -> Displacements:
     """Those whose values lie along some of ``every`` coordinates, those with constant momenta first."""
     places = [every.index(name) for name in coordinates]
-    own = [one for one in found if not any(x and i not in places for i, x in enumerate(one[1]))]
-    own.sort(key=lambda one: not one[2])
-    constant = sum(one[2] for one in own)
+    own = [symmetry for symmetry in found if not any(x and i not in places for i, x in enumerate(symmetry[1]))]
+    own.sort(key=lambda symmetry: not symmetry[2])
+    constant = sum(symmetry[2] for symmetry in own)
     fields = {k: _displacement(ring, c, every, "d") for k, (c, value, _) in enumerate(own) if c != value}
     directions = tuple(tuple(value[i] for i in places) for _, value, _ in own)
     return Displacements(tuple(coordinates), directions, constant, tuple(range(constant, len(own))), fields)
@@ -338,11 +338,11 @@ def basis(ring: Ring, found: Displacements, signs: Signs) -> Basis | None:
         return None
     others = [i for i in range(size) if i not in places]
     units = [tuple(ring.one if i == k else ring.zero for i in range(size)) for k in others]
-    told = tuple(
+    labels = tuple(
         found.fields.get(k) or _displacement(ring, c, found.coordinates) for k, c in enumerate(found.directions)
     )
-    kept = tuple(_left(ring, found, places, i) for i in others)
-    return Basis(found.coordinates, (*found.directions, *units), (*told, *kept), told)
+    remaining = tuple(_left(ring, found, places, i) for i in others)
+    return Basis(found.coordinates, (*found.directions, *units), (*labels, *remaining), labels)
 
 
 def _left(ring: Ring, found: Displacements, places: Sequence[int], i: int) -> str:

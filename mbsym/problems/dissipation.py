@@ -113,15 +113,15 @@ class Balance:
         }
         there = replace(self, fixed=exact)
         # What holds for all parameters holds there: no need to find it once more at every point.
-        kept: dict[str, Any] = {"ignorable": self.ignorable}
+        cached: dict[str, Any] = {"ignorable": self.ignorable}
         if not self._signs:  # which may be known where parameters are numbers
-            kept["_nonlinear"] = self._nonlinear
+            cached["_nonlinear"] = self._nonlinear
         if not self.driven:
-            kept["driven"] = ()
+            cached["driven"] = ()
         if self.law.bounded:
-            kept["law"] = self.law
-        kept |= {key: value for key, value in vars(self).items() if key in ("_forces", "_here")}
-        vars(there).update(kept)
+            cached["law"] = self.law
+        cached |= {key: value for key, value in vars(self).items() if key in ("_forces", "_here")}
+        vars(there).update(cached)
         return there
 
     @cached_property
@@ -485,8 +485,10 @@ class Balance:
         spinning = {x for name in turning(self.scene) for x in (name, velocity_name(name))}
         if any(spinning & self._names_of(load) for load in loads) and not self._same_along_motion():
             return EnergyLaw.UNKNOWN
-        given = [load for load in loads if load.given]
-        if len(given) < len(loads) and given and self._loss(given).is_zero():  # gyroscopic ones: the others decide
+        given_loads = [load for load in loads if load.given]
+        if (
+            len(given_loads) < len(loads) and given_loads and self._loss(given_loads).is_zero()
+        ):  # gyroscopic ones: the others decide
             loads = [load for load in loads if not load.given]
         words = [word for load in loads for word in self._losses(load)]
         if {*words} <= {"zero"}:
@@ -577,10 +579,10 @@ class Balance:
         A dashpot along a line knows only what moves its ends with respect to each other.
         """
         system = self.scene.system
-        found = {name for x in expressions(load) for name in names(x)}
-        found |= {x for name in load.coordinates for x in (name, velocity_name(name))}
+        dependencies = {name for x in expressions(load) for name in names(x)}
+        dependencies |= {x for name in load.coordinates for x in (name, velocity_name(name))}
         if load.bodies is None:  # it depends on places in space: on anything
-            return found | {*system.coordinates, *system.velocities}
+            return dependencies | {*system.coordinates, *system.velocities}
         paths = [system.path(name) for name in load.bodies]
         common: set[str] = {INERTIAL}
         if load.along_line:
@@ -588,8 +590,8 @@ class Balance:
         for body in {name for path in paths for name in path} - common:
             part = system.body(body)
             moved = {name for x in expressions((part.rotation, part.connection_point)) for name in names(x)}
-            found |= moved | {velocity_name(name) for name in moved & {*system.coordinates}}
-        return found
+            dependencies |= moved | {velocity_name(name) for name in moved & {*system.coordinates}}
+        return dependencies
 
 
 def _is_formula(load: Load) -> bool:
@@ -616,10 +618,10 @@ class _Product:
     powers: tuple[tuple[Expression, int], ...] = ()
 
     def __mul__(self, other: _Product) -> _Product:
-        found: dict[Expression, int] = dict(self.powers)
+        powers: dict[Expression, int] = dict(self.powers)
         for base, exponent in other.powers:
-            found[base] = found.get(base, 0) + exponent
-        return _Product(self.number * other.number, tuple((b, e) for b, e in found.items() if e))
+            powers[base] = powers.get(base, 0) + exponent
+        return _Product(self.number * other.number, tuple((b, e) for b, e in powers.items() if e))
 
 
 def _products(expression: Expression) -> list[_Product]:

@@ -179,16 +179,16 @@ def beside(
 ) -> list[Polynomial]:
     """v^T df/dq_j for each displacement v and coordinate j; ``slopes``: df_i/dq_j, all j of the i of each name."""
     return [
-        sum((x * exact(part) for (_, part), x in zip(one, column_, strict=True)), zero)
-        for one in singular
-        for column_ in zip(*(slopes[name] for name, _ in one), strict=True)
+        sum((x * exact(part) for (_, part), x in zip(displacement, column_, strict=True)), zero)
+        for displacement in singular
+        for column_ in zip(*(slopes[name] for name, _ in displacement), strict=True)
     ]
 
 
-def unsolved(scene: Scene, found: Equilibrium) -> list[Polynomial]:
+def unsolved(scene: Scene, steady_state: Equilibrium) -> list[Polynomial]:
     """The conditions of problem 4 that were not solved for a parameter, what was solved for put in."""
-    ring, at = scene.ring, found.determined(scene)
-    values = (ring.substitute(x.polynomial, dict(at)) for x in found.conditions)
+    ring, at = scene.ring, steady_state.determined(scene)
+    values = (ring.substitute(x.polynomial, dict(at)) for x in steady_state.conditions)
     return [ring.fraction(x)[0] for x in values if ring.is_zero(x) is not True]
 
 
@@ -198,20 +198,20 @@ def essential(scene: Scene, x: Polynomial, signs: Signs) -> Polynomial | None:
     numerator, _ = ring.fraction(x)
     if numerator.is_zero():
         return None
-    kept = ring.one
+    product = ring.one
     for factor, _ in ring.factored(numerator)[1]:
         if not signs.never_zero(factor):
-            kept = ring.times(kept, factor)
-    return numerator if kept.is_constant() else ring.reduce(kept)
+            product = ring.times(product, factor)
+    return numerator if product.is_constant() else ring.reduce(product)
 
 
-def on_a_branch(scene: Scene, found: Equilibrium) -> dict[int, Polynomial]:
+def on_a_branch(scene: Scene, steady_state: Equilibrium) -> dict[int, Polynomial]:
     """As ``determined``, on one branch of the conditions that were not solved: s = 0 of s sin(a) = 0, sin(a) != 0.
 
     What holds only where the motion exists is to be tried there.  A condition that is linear in no parameter is left.
     """
-    ring, solved = scene.ring, [(name, value.polynomial) for name, value in found.solved]
-    pending = unsolved(scene, found)
+    ring, solved = scene.ring, [(name, value.polynomial) for name, value in steady_state.solved]
+    pending = unsolved(scene, steady_state)
     while pending:
         solution = _solve(scene, pending.pop(), lambda slope: ring.is_zero(slope) is not True)
         if solution is not None:

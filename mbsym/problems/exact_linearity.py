@@ -39,14 +39,14 @@ def excess(
     """
     try:
         entries = [x for row in energy.A2.polynomials for x in row]
-        found = _excess(scene, entries, 0, known)
-        if found is None:
+        mass_excess = _excess(scene, entries, 0, known)
+        if mass_excess is None:
             return None
         further = _excess(scene, velocity_rows, 1, known)
         if further is None:
             return None
         forces = _excess(scene, _forcing(scene, energy), 1, known)
-        return None if forces is None else (*found, *further, *forces)
+        return None if forces is None else (*mass_excess, *further, *forces)
     except Failure:
         return None
 

@@ -132,7 +132,7 @@ def _independent(
 def check(
     form: SpeedForm,
     equations: SpeedEquations,
-    found: FirstOrder,
+    approximation: FirstOrder,
     linear: Linearisation,
     at: Equilibrium,
     reduced: Reduced | None = None,
@@ -142,7 +142,7 @@ def check(
     plain, motion = _motion(form, at, reduced)
     by_name = {x.name: x for x in (*form.positions, *form.speeds)}
     turned = _quaternion_slopes(form, plain, motion, reduced)
-    moving, below, kept = _flow(form, linear, motion, reduced)
+    moving, below, independent = _flow(form, linear, motion, reduced)
     rates = [motion[ring.index("velocity", name)] for name in names]
 
     def along(y: Polynomial) -> Polynomial:
@@ -154,7 +154,7 @@ def check(
         return ring.substitute(ring.reduce(total), motion)
 
     rows = []
-    for name in found.names:
+    for name in approximation.names:
         y = _inner(form, by_name[name])
         by_place = [ring.substitute(ring.derivative(y, q), motion) for q in names]
         by_rate = [ring.substitute(ring.velocity_derivative(y, q), motion) for q in names]
@@ -163,12 +163,15 @@ def check(
         through = [ring.dot(by_rate, column) for column in zip(*moving, strict=True)]
         rows.append([ring.reduce(x + y) for x, y in zip_longest(through, by_place, fillvalue=ring.zero)])
     change = ScalarMatrix(ring, rows)
-    left, right = ScalarMatrix(ring, found.A.polynomials) @ change, change @ ScalarMatrix(ring, [*moving, *below])
-    states = [*names, *(velocity_name(names[k]) for k in kept)]
+    left, right = (
+        ScalarMatrix(ring, approximation.A.polynomials) @ change,
+        change @ ScalarMatrix(ring, [*moving, *below]),
+    )
+    states = [*names, *(velocity_name(names[k]) for k in independent)]
     differences: dict[str, Polynomial] = {
         Message("the row of [[name]] by [[by]]", name=name, by=by): ring.reduce(a - b - along(z))
-        for name, one, other, row in zip(found.names, left, right, rows, strict=True)
-        for by, a, b, z in zip(states, one, other, row, strict=True)
+        for name, left_row, right_row, row in zip(approximation.names, left, right, rows, strict=True)
+        for by, a, b, z in zip(states, left_row, right_row, row, strict=True)
     }
     routes = ("Kane's equations differentiated", "matrices of the generalised coordinates")
     if reduced is not None:
@@ -195,8 +198,10 @@ def _flow(
         moving = [[ring.one if j == n + i else ring.zero for j in range(2 * n)] for i in range(n)]
         return moving, solved(ring, mass, right), range(n)
     expansion, parts = reduced.expansion, reduced.equations
-    kept = [*range(n), *(n + k for k in expansion.speeds)]
-    moving = [[ring.substitute(one.get(j, ring.zero), motion) for j in kept] for one in expansion.velocities[:n]]
+    columns = [*range(n), *(n + k for k in expansion.speeds)]
+    moving = [
+        [ring.substitute(velocity.get(j, ring.zero), motion) for j in columns] for velocity in expansion.velocities[:n]
+    ]
     a, b, c = ([[ring.substitute(x, motion) for x in row] for row in rows] for rows in (parts.A, parts.B, parts.C))
     place = {i: j for j, i in enumerate(expansion.coordinates)}
     right = [[*(-row[place[i]] for i in range(n)), *(-x for x in b[k])] for k, row in enumerate(c)]
@@ -225,15 +230,15 @@ def _positions(
     def reached(start: set[str]) -> set[str]:
         found, pending = set(start), list(start)
         while pending:
-            new = needs[pending.pop()] - found
+            new = needs[pending.pop()] - reachable
             found |= new
             pending += new
         return found
 
     start = {name for x in formulas for name in ring.dependencies(x, names)}
     by_themselves = {name for name in form.coordinates if name in needs and name in reached(needs[name])}
-    for found in (reached(start | by_themselves), reached(start)):
-        yield [x for x in form.positions if x.name in found]
+    for reachable in (reached(start | by_themselves), reached(start)):
+        yield [x for x in form.positions if x.name in reachable]
 
 
 def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced | None) -> tuple[Scene, dict[int, Polynomial]]:
@@ -241,17 +246,17 @@ def _motion(form: SpeedForm, at: Equilibrium, reduced: Reduced | None) -> tuple[
     system, ring = form.system.without_speeds, form.ring
     plain = Scene(system, ring, ring_environment(system, ring), ring, bodies=False)
     images = at.determined(plain)
-    found = dict(unperturbed_with(plain, images))
+    motion = dict(unperturbed_with(plain, images))
     if reduced is None:
-        return plain, found
+        return plain, motion
     base = reduced.expansion.base
     for name, value, rate in zip(system.coordinates, base.values, base.rates, strict=True):
         if name in base.turning:
-            found.pop(ring.index("coordinate", name), None)
+            motion.pop(ring.index("coordinate", name), None)
         else:
-            found[ring.index("coordinate", name)] = ring.substitute(value, images)
-        found[ring.index("velocity", name)] = ring.substitute(rate, images)
-    return plain, found | {k: ring.substitute(x, images) for k, x in base.related.items() if k not in images}
+            motion[ring.index("coordinate", name)] = ring.substitute(value, images)
+        motion[ring.index("velocity", name)] = ring.substitute(rate, images)
+    return plain, motion | {k: ring.substitute(x, images) for k, x in base.related.items() if k not in images}
 
 
 def _inner(form: SpeedForm, variable: Variable) -> Polynomial:
@@ -291,9 +296,9 @@ def _quaternion_slopes(
 ) -> dict[str, list[Polynomial]]:
     """de/dq of every component on the motion, by name:  1/2 e o w_i."""
     ring, names = form.ring, form.system.coordinates
-    found: dict[str, list[Polynomial]] = {}
+    slopes: dict[str, list[Polynomial]] = {}
     if not form.by_quaternion:
-        return found
+        return slopes
     values = _quaternions(form, plain, reduced)
     moving = Scene(plain.system, ring, plain.environment, ring)
     for body in form.by_quaternion:
@@ -303,5 +308,5 @@ def _quaternion_slopes(
         for name in names:
             axis = [ring.substitute(ring.velocity_derivative(x, name), motion) for x in spin]
             columns.append([ring.reduce(x) for x in rates(ring, e, axis)])
-        found |= {name: [one[k] for one in columns] for k, name in enumerate(components)}
-    return found
+        slopes |= {name: [slope_column[k] for slope_column in columns] for k, name in enumerate(components)}
+    return slopes

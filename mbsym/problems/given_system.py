@@ -78,7 +78,7 @@ class OpenBalance(Balance):
 # --- the second route: the description at numbers, without the ring ---
 
 
-def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
+def check_matrices(scene: Scene[Polynomial], linearisation: Linearisation) -> Check:
     """M, D + G, K + N and B against the formulas of the description, evaluated in balls at random parameters."""
     linear, ring, second = scene.system.linear, scene.ring, "formulas of the description at numbers"
     assert linear is not None
@@ -91,8 +91,10 @@ def check_matrices(scene: Scene[Polynomial], found: Linearisation) -> Check:
                 there = Scene(scene.system, state.numbers, values, ring, bodies=False)
                 matrices = given_matrices(there, linear)
                 carry = Carrier(ring, state.numbers, values)
-                derived = [[[carry(x) for x in row] for row in matrix.polynomials] for matrix in found.matrices]
-                gains = [] if found.B is None else [[carry(x) for x in row] for row in found.B.polynomials]
+                derived = [[[carry(x) for x in row] for row in matrix.polynomials] for matrix in linearisation.matrices]
+                gains = (
+                    [] if linearisation.B is None else [[carry(x) for x in row] for row in linearisation.B.polynomials]
+                )
             except Failure as reason:
                 return Check("linearisation", ROUTE, second, UNDECIDED, message_of(reason))
             mass, damping, gyroscopic, stiffness, circulatory = derived

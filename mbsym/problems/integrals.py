@@ -96,13 +96,13 @@ class Integral(Shown):
         object.__setattr__(self, "name", worded(self.name))
 
 
-def identifiers(found: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
+def identifiers(first_integrals: Iterable[Integral], taken: Iterable[str] = ()) -> list[str]:
     """A name for each in letters, digits, underscores, none twice: ``momentum_psi``, ``generalized_energy``.
 
     None of them is ``taken``.
     """
     used, named = set(taken), []
-    for integral in found:
+    for integral in first_integrals:
         short = integral.kind.removeprefix("cyclic ")
         stem = f"{short}_{integral.of}".replace(" ", "_") if integral.kind != ENERGY else "generalized_energy"
         name, count = stem, 2
@@ -120,14 +120,16 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     for item in _energies_of_parts(scene, energy, equations):
         if _is_new(scene.ring, item.formula.polynomial, [x.formula.polynomial for x in energies]):
             energies.append(item)
-    found = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
-    found = [item for item in found if varies(scene, item.formula.polynomial)]
+    first_integrals = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
+    first_integrals = [item for item in first_integrals if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
-    found += _momenta(scene, equations, conserved, [item.formula.polynomial for item in found if item not in energies])
+    first_integrals += _momenta(
+        scene, equations, conserved, [item.formula.polynomial for item in first_integrals if item not in energies]
+    )
     if not all(load.conservative for load in scene.system.loads):
-        known = [item.formula.polynomial for item in found if item not in energies]
-        found += _momenta_with_a_share(scene, equations, conserved, known, idle)
-    return tuple(found)
+        known = [item.formula.polynomial for item in first_integrals if item not in energies]
+        first_integrals += _momenta_with_a_share(scene, equations, conserved, known, idle)
+    return tuple(first_integrals)
 
 
 def varies(scene: Scene, x: Polynomial) -> bool:
@@ -143,21 +145,21 @@ def by_structure(system: System, programs: Programs) -> tuple[str, ...]:
     """
     if not all(load.conservative for load in system.loads):
         return ()
-    given = {name for expression in expressions(system) for name in names(expression)}
+    names_used = {name for expression in expressions(system) for name in names(expression)}
     rates = {*system.velocities, *(acceleration_name(name) for name in system.coordinates)}
-    found = []
-    if not system.prescribed and "t" not in given and not given & rates:
-        found.append("the energy T - U")
+    conserved = []
+    if not system.prescribed and "t" not in names_used and not names_used & rates:
+        conserved.append("the energy T - U")
     program = programs.program
     live = program.live([programs.kinetic_energy, programs.force_function])
     read = {str(x.payload) for x in map(program.instructions.__getitem__, live) if x.operation == "input"}
-    if not given & rates:
+    if not names_used & rates:
         pairs = zip(system.coordinates, system.velocities, strict=True)
         # What L does not read at all has no inertia: its momentum is zero.
-        found += [
+        conserved += [
             Message("the momentum of [[name]]", name=name) for name, rate in pairs if name not in read and rate in read
         ]
-    return tuple(found)
+    return tuple(conserved)
 
 
 def total_rate(scene: Scene, x: Polynomial) -> Polynomial:
@@ -302,23 +304,23 @@ def _constant_momenta(system: System, ring: Ring, programs: Programs) -> set[tup
 def _momenta(
     scene: Scene, equations: Equations, conserved: set[tuple[str, int]], known: Sequence[Polynomial]
 ) -> list[Integral]:
-    found: list[Integral] = []
+    momenta: list[Integral] = []
     if not conserved:
-        return found
+        return momenta
     try:
         for kind, axis, formula in whole_momenta(scene):
-            others = [*known, *(item.formula.polynomial for item in found)]
-            wanted = (kind, axis) in conserved and _is_new(scene.ring, formula, others)
-            if wanted and is_conserved(scene, equations, formula):
+            others = [*known, *(item.formula.polynomial for item in momenta)]
+            candidate = (kind, axis) in conserved and _is_new(scene.ring, formula, others)
+            if candidate and is_conserved(scene, equations, formula):
                 status = Certainty.PROVED if is_proved(scene, equations, formula) else Certainty.VERIFIED
                 if status is Certainty.VERIFIED and scene.ring.kinked:
                     continue  # a force that comes late vanishes at every state before
-                found.append(
+                momenta.append(
                     Integral(momentum_title(kind, axis), kind, str(axis), Formula(scene.ring, formula), status)
                 )
     except Failure:
         pass  # what was found so far is right; the rest is not known
-    return found
+    return momenta
 
 
 def _momenta_with_a_share(
@@ -369,7 +371,7 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
     H.e = sum m (e_k x r_k).V_C + omega.Theta_C e_k with r_k the mass centre from the inertial origin.
     """
     algebra = scene.algebra
-    found = []
+    momenta = []
     for axis in (3, 1, 2):
         direction = {INERTIAL: axis_vector(algebra, axis, algebra.one, INERTIAL)}
         origin = {INERTIAL: scene.zero(INERTIAL)}
@@ -391,10 +393,10 @@ def whole_momenta(scene: Scene) -> list[tuple[str, int, Any]]:
                 angular = angular + motion.angular_velocity.dot(motion.inertia @ along)
             if motion.gyrostatic_moment is not None:
                 angular = angular + motion.gyrostatic_moment.dot(along)
-        found.append(("linear momentum", axis, algebra.reduce(linear)))
-        found.append(("angular momentum", axis, algebra.reduce(angular)))
+        momenta.append(("linear momentum", axis, algebra.reduce(linear)))
+        momenta.append(("angular momentum", axis, algebra.reduce(angular)))
     order = {"linear momentum": 0, "angular momentum": 1}
-    return sorted(found, key=lambda item: order[item[0]])
+    return sorted(momenta, key=lambda item: order[item[0]])
 
 
 def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bool:
@@ -508,8 +510,8 @@ def _simple_multipliers(scene: Scene, equations: Equations, formula: Polynomial)
             basis.append([carry(x) for x in unknowns])
             values.append(solved)
             if len(basis) == len(unknowns):
-                found = fmpq_mat(basis).solve(fmpq_mat(values))
-                columns = [[found[k, i] for k in range(len(unknowns))] for i in range(len(names))]
+                coefficients = fmpq_mat(basis).solve(fmpq_mat(values))
+                columns = [[coefficients[k, i] for k in range(len(unknowns))] for i in range(len(names))]
                 return [sum((x * c for x, c in zip(unknowns, column, strict=True)), ring.zero) for column in columns]
     except NOT_THERE:
         pass
@@ -522,16 +524,16 @@ def _depend_on_state_alone(scene: Scene, equations: Equations, slopes: Sequence[
     At a rational state these are independent numbers, so two solutions spare the fit of large systems.
     """
     names = [*scene.system.coordinates, *scene.system.velocities]
-    found: list[list[Any]] = []
-    kept: dict[str, Any] = {}
+    multipliers: list[list[Any]] = []
+    fixed: dict[str, Any] = {}
     for state in rational_states(scene.system, scene.ring, 4 * STATES):
-        kept = kept or {name: state.values[name] for name in names}
-        same = State(state.numbers, {**state.values, **kept})
+        fixed = fixed or {name: state.values[name] for name in names}
+        same = State(state.numbers, {**state.values, **fixed})
         solved = _multipliers_at(scene, equations, slopes, same)
         if solved is not None:
-            found.append(solved)
-        if len(found) == 2:
-            return found[0] == found[1]
+            multipliers.append(solved)
+        if len(multipliers) == 2:
+            return multipliers[0] == multipliers[1]
     return True
 
 
@@ -559,8 +561,8 @@ def remainder(scene: Scene, equations: Equations, formula: Polynomial) -> Polyno
 
     None where that is too long to be formed.
     """
-    found = rate_on_motion(scene, equations, formula)
-    return None if found is None else found[0]
+    rate = rate_on_motion(scene, equations, formula)
+    return None if rate is None else rate[0]
 
 
 def rate_on_motion(scene: Scene, equations: Equations, formula: Polynomial) -> tuple[Polynomial, Polynomial] | None:

@@ -53,12 +53,12 @@ def signs(scene: Scene) -> Signs:
         if word not in ("unknown", "zero"):
             words[ring.index("parameter", item.name)] = word
     plain = Signs(ring.context, tuple(words), numbers=numbers)
-    told = Signs(ring.context, tuple(words), _assumptions(scene, plain), numbers=numbers)
-    told = told.assuming(_radicands(ring, dependent.values(), told))
-    return _with_reciprocals(scene, told.assuming(_bounds(scene, told)))
+    assumed = Signs(ring.context, tuple(words), _assumptions(scene, plain), numbers=numbers)
+    assumed = assumed.assuming(_radicands(ring, dependent.values(), assumed))
+    return _with_reciprocals(scene, assumed.assuming(_bounds(scene, assumed)))
 
 
-def _radicands(ring: Ring, values: Iterable[Polynomial], told: Signs) -> list[tuple[Polynomial, str]]:
+def _radicands(ring: Ring, values: Iterable[Polynomial], assumed: Signs) -> list[tuple[Polynomial, str]]:
     """x >= 0 of every sqrt(x) by which parameters are given: they are real numbers.
 
     As a polynomial that is top * bottom, x = top/bottom; > 0, and the root with it, where top is known not to vanish.
@@ -70,12 +70,12 @@ def _radicands(ring: Ring, values: Iterable[Polynomial], told: Signs) -> list[tu
             continue
         try:
             product, below = ring.fraction(g.argument)
-            strict = told.never_zero(product)
+            strict = assumed.never_zero(product)
             for bottom, exponent in below:
                 product = ring.times(product, bottom) if exponent % 2 else product
         except Failure:
             continue
-        if len(product) <= MOST_TERMS and told.sign(product) not in ("negative", "nonpositive", "zero"):
+        if len(product) <= MOST_TERMS and assumed.sign(product) not in ("negative", "nonpositive", "zero"):
             facts.append((product, ">" if strict else ">="))
             facts += [(ring.context.gen(k), ">")] * strict
     return facts
@@ -87,14 +87,14 @@ def _numbers(ring: Ring) -> dict[int, arb]:
     return {k: value for k, value in values.items() if value is not None}
 
 
-def _bounds(scene: Scene, told: Signs) -> list[tuple[Polynomial, str]]:
+def _bounds(scene: Scene, assumed: Signs) -> list[tuple[Polynomial, str]]:
     """-1 <= cos <= 1 for every constant angle, strictly where its sine is known not to vanish; sin likewise."""
     ring = scene.ring
     facts = []
     for name in (name for name in ring.angles if ring.has("parameter", name)):
         pair = (ring.generator("sine", name), ring.generator("cosine", name))
         for bounded, other in (pair, pair[::-1]):
-            strict = told.never_zero(other)
+            strict = assumed.never_zero(other)
             facts += [(ring.one + sign * bounded, ">" if strict else ">=") for sign in (1, -1)]
     return facts
 
@@ -140,10 +140,10 @@ def definition_in_parameters(scene: Scene, name: str) -> Polynomial:
 
     Raises SingularPoint where that divides by zero or has no closed form: the symbol has no value then.
     """
-    found = _definitions(scene)
-    if name not in found:
+    definitions = _definitions(scene)
+    if name not in definitions:
         raise SingularPoint("the symbol [[name]] has no closed form", name=name)
-    return found[name]
+    return definitions[name]
 
 
 #: What ``_definitions`` found, scene by scene: it is asked for symbol by symbol.

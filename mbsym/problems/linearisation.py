@@ -131,12 +131,12 @@ class Linearisation(Shown):
         rates = (("acceleration", (self.M,)), ("velocity", (self.D, self.G)), ("coordinate", (self.K, self.N)))
         terms = [(matrix, self.coordinates, kind, 1) for kind, matrices in rates for matrix in matrices]
         terms += [] if self.B is None else [(self.B, self.inputs, "prescribed", -1)]
-        found = [ring.zero for _ in self.coordinates]
+        residuals = [ring.zero for _ in self.coordinates]
         for matrix, names, kind, sign in terms:
             moving = [ring.generator(kind, name) * sign for name in names]
             for i, row in enumerate(matrix):
-                found[i] += sum((ring.times(x.polynomial, y) for x, y in zip(row, moving, strict=True)), ring.zero)
-        return column(ring, list(map(ring.reduce, found)))
+                residuals[i] += sum((ring.times(x.polynomial, y) for x, y in zip(row, moving, strict=True)), ring.zero)
+        return column(ring, list(map(ring.reduce, residuals)))
 
     @property
     def time_dependence(self) -> str:
@@ -211,9 +211,15 @@ def quadratised(scene: Scene, whole: System | None = None, order: int = 2) -> Sc
     at_rest = {name: value for name, (value, _) in values.items() if name not in spinning}
     lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()}
     numbers = {name: i for i, name in enumerate(names)}
-    held = {one.name: scene.lower(one.held) for one in system.inputs}
-    numbers |= {one.name: 2 * len(names) + k for k, one in enumerate(system.inputs)}
-    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered | held, order)
+    held = {system_input.name: scene.lower(system_input.held) for system_input in system.inputs}
+    numbers |= {system_input.name: 2 * len(names) + k for k, system_input in enumerate(system.inputs)}
+    jets = Jets(
+        ring,
+        at_rest | {system_input.name: system_input.held for system_input in system.inputs},
+        numbers,
+        lowered | held,
+        order,
+    )
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         value, rate = values[name]
@@ -290,10 +296,10 @@ def components(matrices: Sequence[Matrix]) -> list[list[int]]:
 
 
 def _subsystems(scene: Scene, whole: Linearisation) -> tuple[Subsystem, ...]:
-    told = [*scene.system.order, *whole.coordinates]
-    rank = [told.index(name) for name in whole.coordinates]
-    found = [sorted(indices, key=rank.__getitem__) for indices in components(whole.matrices)]
-    return tuple(_subsystem(scene, whole, indices) for indices in sorted(found, key=lambda one: rank[one[0]]))
+    order = [*scene.system.order, *whole.coordinates]
+    rank = [order.index(name) for name in whole.coordinates]
+    groups = [sorted(indices, key=rank.__getitem__) for indices in components(whole.matrices)]
+    return tuple(_subsystem(scene, whole, indices) for indices in sorted(groups, key=lambda group: rank[group[0]]))
 
 
 def _subsystem(scene: Scene, whole: Linearisation, indices: list[int]) -> Subsystem:

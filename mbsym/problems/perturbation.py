@@ -163,7 +163,7 @@ def has_rational_states(system: System, ring: Ring, dependent: Dependent, rates:
     if in_step(ring, {**_rates(system, ring, dependent), **rates}):
         return False
     at_zero = all(value == ZERO for value, _ in _given_motion(system).values())
-    at_zero = at_zero and not any(one.name in ring.angles for one in system.inputs)
+    at_zero = at_zero and not any(system_input.name in ring.angles for system_input in system.inputs)
     return at_zero and not dependent.parameters.keys() & ring.angles.keys()
 
 
@@ -187,8 +187,8 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
     values["pi"] = arb.pi() if balls else fmpq(355, 113)
     motion = _given_motion(system)
     tangents = {name: fmpq(source.randint(1, 9), source.randint(1, 9)) for name in ring.angles}
-    given = _rates(system, ring, dependent)
-    at_rest = [name for name in system.coordinates if given[name].is_zero() and name not in turning]
+    rates = _rates(system, ring, dependent)
+    at_rest = [name for name in system.coordinates if rates[name].is_zero() and name not in turning]
     numbers: Algebra
     if balls:
         numbers = Balls(values)  # reads the values below as they are filled in
@@ -197,9 +197,9 @@ def unperturbed_state(system: System, ring: Ring, dependent: Dependent, balls: b
     carry = Carrier(ring, numbers, dict(values))
     values |= {name: carry(value) for name, value in dependent.parameters.items()}
     lower = Lowering(numbers, dict(values))
-    values |= {one.name: lower(one.held) for one in system.inputs}
+    values |= {system_input.name: lower(system_input.held) for system_input in system.inputs}
     running = {prescribed.name: (prescribed.initial or ZERO, prescribed.rate) for prescribed in system.prescribed}
-    running |= {name: motion[name] for name in system.coordinates if not given[name].is_zero()}
+    running |= {name: motion[name] for name in system.coordinates if not rates[name].is_zero()}
     for name, (value, rate) in running.items():  # sines and cosines of rational states are any, whatever the time
         values[name] = lower(value) + lower(rate) * values["t"]
     for name, x in turning.items():
@@ -231,9 +231,9 @@ def _disturbed(system: System, state: State) -> tuple[State, list[tuple[Scalar, 
     return State(FirstOrder(state.numbers, values), values), direction, pushes
 
 
-def check_integrals(truth: Oracles, programs: Programs, found: Sequence[Integral]) -> Check:
+def check_integrals(truth: Oracles, programs: Programs, first_integrals: Sequence[Integral]) -> Check:
     """dI/dt along the motion, by series in time with the accelerations of the straight-line program."""
-    short = [item for item in found if item.formula.terms <= MOST_TERMS]
+    short = [item for item in first_integrals if item.formula.terms <= MOST_TERMS]
 
     def pairs(oracle: Oracle) -> list[Pair]:
         state = accelerated(truth.system, oracle.state, programs)

@@ -98,10 +98,11 @@ def reactions(
     own = [tied.names[i] for i in tied.independent]
     others = [name for name in _all_rows(scene) if name not in own]
     rows = [(name.constraint, name.component) for name in (*own, *others)]
-    found = [_reaction(scene, reaction) for reaction in recursion.reactions(scene, scene.system.reactions, rows)]
+    unbalanced = [_reaction(scene, reaction) for reaction in recursion.reactions(scene, scene.system.reactions, rows)]
     balanced = _Balances(scene, tied, programs, (*own, *others))
     return tuple(
-        replace(one, per_multiplier=one.per_multiplier[: len(own)], **balanced.of(one.per_multiplier)) for one in found
+        replace(reaction, per_multiplier=reaction.per_multiplier[: len(own)], **balanced.of(reaction.per_multiplier))
+        for reaction in unbalanced
     )
 
 
@@ -130,7 +131,8 @@ class _Balances:
             jacobian = [x for row in programs.jacobian for x in row]
             n = len(scene.system.coordinates)
             values = [
-                programs.tree.program.evaluate(jacobian, one.state.values, one.state.numbers) for one in self.states
+                programs.tree.program.evaluate(jacobian, point.state.values, point.state.numbers)
+                for point in self.states
             ]
         places = {name: i for i, name in enumerate(programs.names)}
         self.tables = [
@@ -150,7 +152,7 @@ class _Balances:
             balances = []
             for names in self.sets:
                 changes = [self._added(k, names, added) for k in range(len(self.states))]
-                components = tuple(c for c in range(6) if any(is_certain(one[c]) for one in changes))
+                components = tuple(c for c in range(6) if any(is_certain(change[c]) for change in changes))
                 if components:
                     balances.append(Balance(names, components, self._formulas(names, added, components)))
                     for table, change in zip(per_state, changes, strict=True):
@@ -235,7 +237,7 @@ def released(system: System, body: str) -> tuple[System, tuple[str, ...]]:
 
 
 def check_reactions(
-    truth: Oracles, found: Sequence[Reaction], tied: Constraints | None, programs: ConstrainedPrograms | None
+    truth: Oracles, listed: Sequence[Reaction], tied: Constraints | None, programs: ConstrainedPrograms | None
 ) -> Check:
     """Forces and moments by the recursion against what the released joint would have to be held with.
 
@@ -245,26 +247,26 @@ def check_reactions(
     routes = ("Newton-Euler recursion", D_ALEMBERT)
 
     def at(state: State) -> list[Pair]:
-        return [pair for reaction in found for pair in _pairs(system, ring, reaction, state, tied)]
+        return [pair for reaction in listed for pair in _pairs(system, ring, reaction, state, tied)]
 
     if tied is None or programs is None:
         return compare(truth, "reactions", routes, lambda oracle: at(oracle.state), states=2)
     from mbsym.mechanics.speeds import SpeedForm
     from mbsym.problems.constraints.checks import compared_on_manifold
 
-    return compared_on_manifold("reactions", routes, SpeedForm(system, ring), programs, lambda one: at(one.state))
+    return compared_on_manifold("reactions", routes, SpeedForm(system, ring), programs, lambda point: at(point.state))
 
 
-def _pairs(system: System, ring: Any, one: Reaction, state: State, tied: Constraints | None) -> list[Pair]:
-    loose, names = released(system, one.body)
+def _pairs(system: System, ring: Any, reaction: Reaction, state: State, tied: Constraints | None) -> list[Pair]:
+    loose, names = released(system, reaction.body)
     numbers, zero = state.numbers, state.numbers.zero
     held = {**state.values}
     for name in names:
         held |= {name: zero, velocity_name(name): zero, acceleration_name(name): zero}
     oracle = Oracle(loose, State(_with_zero_angles(numbers, names[3:]), held))
     axes = oracle.moving.axes
-    before = axes[system.body(one.body).attached_to]
-    own = axes[one.body]
+    before = axes[system.body(reaction.body).attached_to]
+    own = axes[reaction.body]
     carry = Carrier(ring, numbers, state.values)
     compared: list[Pair] = []
     along: list[tuple[str, Any, list[Any]]] = [("", None, [oracle.residuals[name] for name in names])]
@@ -278,12 +280,14 @@ def _pairs(system: System, ring: Any, one: Reaction, state: State, tied: Constra
             partials = rows[row.constraint][max(row.component - 1, 0)].partials
             along.append((row.label, k, [-partials[place] for place in places]))
     for label, k, values in along:
-        force, moment = (one.force, one.moment) if k is None else one.per_multiplier[k]
+        force, moment = (reaction.force, reaction.moment) if k is None else reaction.per_multiplier[k]
         for what, mine, released_ in ((Message("force"), force, values[:3]), (Message("moment"), moment, values[3:])):
             inertial = [sum((before[i][j].a * released_[j] for j in range(3)), zero) for i in range(3)]
             for c in range(3):
                 theirs = sum((own[i][c].a * inertial[i] for i in range(3)), zero)
-                name = Message("[[what]] [[number]] in the joint of [[body]]", what=what, number=c + 1, body=one.body)
+                name = Message(
+                    "[[what]] [[number]] in the joint of [[body]]", what=what, number=c + 1, body=reaction.body
+                )
                 name = Message("[[name]] per [[label]]", name=name, label=label) if label else name
                 compared.append((name, carry(mine[c].polynomial), theirs))
     return compared

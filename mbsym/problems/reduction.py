@@ -88,8 +88,8 @@ class Reduction(Shown):
         if not rows or not rows[0]:
             return 0
         ring = self.family[0][0][0].ring
-        found = echelon(ring, signs, rows, range(len(rows[0])))
-        return len(found.pivots) - len(found.assumed)
+        reduced = echelon(ring, signs, rows, range(len(rows[0])))
+        return len(reduced.pivots) - len(reduced.assumed)
 
 
 @dataclass(frozen=True)
@@ -106,47 +106,47 @@ class Reduced:
         return [*self.expansion.conditions, *(-x for x in self.equations.constant)]
 
 
-def reduction(scene: Scene, found: Expansion, equations: Projected, leaf: int = 0) -> Reduction:
+def reduction(scene: Scene, expanded: Expansion, equations: Projected, leaf: int = 0) -> Reduction:
     """The independent quantities by name.  Raises SingularPoint where the constraints lose their rank on the motion.
 
-    ``leaf`` relations are kept by integrable velocity constraints: then ``found`` and ``equations`` are those on it.
+    ``leaf`` relations are kept by integrable velocity constraints: then ``expanded`` and ``equations`` are those on it.
     """
-    if found.lost and (demanded := [x for x in found.conditions if not x.is_zero()]):
-        told = ", ".join(f"{Formula(scene.ring, x)} = 0" for x in demanded)
+    if expanded.lost and (demanded := [x for x in expanded.conditions if not x.is_zero()]):
+        equalities = ", ".join(f"{Formula(scene.ring, x)} = 0" for x in demanded)
         raise SingularPoint(
             "the motion keeps the constraints only where [[told]], and elsewhere they have another rank: write "
             "numbers in the place of these parameters",
-            told=told,
+            told=equalities,
         )
-    if found.lost:
+    if expanded.lost:
         raise SingularPoint(
             "the constraints have a smaller rank on this motion than at positions near it, allowed ones or not"
         )
     names, ring = scene.system.coordinates, scene.ring
-    given = {entry.coordinate for entry in scene.system.motion}
-    independent, speeds = set(found.coordinates), set(found.speeds)
-    needed = {found.coordinates[j] for j in felt(found, equations)}
+    with_motion = {entry.coordinate for entry in scene.system.motion}
+    independent, speeds = set(expanded.coordinates), set(expanded.speeds)
+    needed = {expanded.coordinates[j] for j in felt(expanded, equations)}
     following = sorted(needed - speeds)
     parameters = _of_the_motion_alone(scene)
     return Reduction(
-        coordinates=tuple(names[i] for i in found.coordinates),
-        speeds=tuple(names[i] for i in found.speeds),
+        coordinates=tuple(names[i] for i in expanded.coordinates),
+        speeds=tuple(names[i] for i in expanded.speeds),
         dependent_coordinates=tuple(name for i, name in enumerate(names) if i not in independent),
         dependent_speeds=tuple(name for i, name in enumerate(names) if i not in speeds),
-        idle=tuple(names[i] for i in found.coordinates if i not in needed),
+        idle=tuple(names[i] for i in expanded.coordinates if i not in needed),
         rates=tuple(
             (name, Formula(ring, rate))
-            for name, rate in zip(names, found.base.rates, strict=True)
-            if name not in given and not rate.is_zero()
+            for name, rate in zip(names, expanded.base.rates, strict=True)
+            if name not in with_motion and not rate.is_zero()
         ),
-        assumed=tuple(Formula(ring, x) for k, x in enumerate(found.assumed) if x not in found.assumed[:k]),
-        holonomic=len(found.coordinates) == len(found.speeds),
+        assumed=tuple(Formula(ring, x) for k, x in enumerate(expanded.assumed) if x not in expanded.assumed[:k]),
+        holonomic=len(expanded.coordinates) == len(expanded.speeds),
         family=tuple(
             (
-                tuple(_by(ring, found.base.values[i], index) for index in parameters),
-                tuple(_by(ring, found.base.rates[i], index) for index in parameters),
+                tuple(_by(ring, expanded.base.values[i], index) for index in parameters),
+                tuple(_by(ring, expanded.base.rates[i], index) for index in parameters),
             )
-            for i in (*found.speeds, *following)
+            for i in (*expanded.speeds, *following)
         ),
         following=tuple(names[i] for i in following),
         leaf=leaf,
@@ -164,8 +164,8 @@ def _of_the_motion_alone(scene: Scene) -> list[int]:
     elsewhere = {name for expression in expressions(bare) for name in names_of(expression)}
     in_motion = {name for entry in system.motion for x in (entry.value, entry.rate) for name in names_of(x)}
     inner = {index for g in ring.generators if g.argument is not None for index in occurring([g.argument])}
-    found = [ring.index("parameter", name) for name in system.parameter_names if name in in_motion - elsewhere]
-    return [index for index in found if index not in inner]
+    indices = [ring.index("parameter", name) for name in system.parameter_names if name in in_motion - elsewhere]
+    return [index for index in indices if index not in inner]
 
 
 def by_projection(scene: Scene, reduced: Reduced, equilibrium: Equilibrium) -> Linearisation:

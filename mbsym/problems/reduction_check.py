@@ -48,10 +48,10 @@ def check_reduced_motion(
         carry = Carrier(ring, place.state.numbers, place.state.values)
         free = place.free_residuals()
         named = zip(about.speeds, own, strict=True)
-        found = [(Message("equation [[name]]", name=name), -carry(x.polynomial), free[name].a) for name, x in named]
+        compared = [(Message("equation [[name]]", name=name), -carry(x.polynomial), free[name].a) for name, x in named]
         satisfied = all(x.is_zero for x in residuals[: len(residuals) - len(about.speeds)])
         zero = place.state.numbers.zero
-        return found + [
+        return compared + [
             (Message("[[label]] on the motion", label=label), x, zero) for label, x in place.left_over if satisfied
         ]
 
@@ -130,9 +130,9 @@ class _Disturbed:
             parts[self.system.coordinates[i]][1] = -x
         rows = list(self._rows())
         unmoved = _eliminated(rows, moving, [row.acceleration.a for row in rows])[0]
-        given = {entry.coordinate for entry in self.system.motion}
+        with_motion = {entry.coordinate for entry in self.system.motion}
         for i, x in unmoved.items():
-            if self.system.coordinates[i] not in given:
+            if self.system.coordinates[i] not in with_motion:
                 key = acceleration_name(self.system.coordinates[i])
                 values[key] = values.get(key, zero) - x
         rows = list(self._rows())

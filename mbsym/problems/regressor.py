@@ -67,7 +67,7 @@ class Base:
     ``value`` is what it is for the parameters of the description.
     """
 
-    kept: Standard
+    parameter: Standard
     others: tuple[tuple[Standard, Formula], ...]
     value: Formula
 
@@ -98,26 +98,26 @@ def regressor(scene: Scene[Polynomial]) -> Regressor:
     system, ring = scene.system, scene.ring
     _refuse(system)
     frames = articulation(scene)
-    told = _in_independent(ring, regrouped(frames), *_slots(frames, system))
-    standards, dependent = _relations(ring, told)
-    given = values(scene)
+    columns = _in_independent(ring, regrouped(frames), *_slots(frames, system))
+    standards, dependent = _relations(ring, columns)
+    values_by_standard = values(scene)
     bases = []
     for standard in standards:
         others = [(other, row[standard]) for other, row in dependent.items() if standard in row]
         added = tuple((other, Formula(ring, _polynomial(ring, x))) for other, x in others)
-        value = given[standard]
+        value = values_by_standard[standard]
         for other, factor in added:
-            value = value + ring.times(factor.polynomial, given[other])
+            value = value + ring.times(factor.polynomial, values_by_standard[other])
         bases.append(Base(standard, added, Formula(ring, ring.reduce(value))))
-    without = tuple(one for one in told if not told[one])
+    without = tuple(standard for standard in columns if not columns[standard])
     besides = any(not isinstance(load, UniformGravity) for load in system.loads) or any(
         motion.gyrostatic_moment is not None for motion in scene.motions.values()
     )
     program = Program()
     moving = Scene(system, program, program_environment(system, program), ring)
     accelerations = Accelerations(moving)
-    nodes = tuple(column(moving, accelerations, one) for one in standards)
-    return Regressor(system, tuple(told), tuple(bases), without, program, nodes, besides)
+    nodes = tuple(column(moving, accelerations, standard) for standard in standards)
+    return Regressor(system, tuple(columns), tuple(bases), without, program, nodes, besides)
 
 
 def _refuse(system: System) -> None:
@@ -136,8 +136,8 @@ def _refuse(system: System) -> None:
 
 
 def _mass_properties(body: Any) -> list[Any]:
-    found = [body.mass, *body.mass_centre]
-    return found + [x for row in body.inertia.tensor for x in row] if body.inertia is not None else found
+    properties = [body.mass, *body.mass_centre]
+    return properties + [x for row in body.inertia.tensor for x in row] if body.inertia is not None else properties
 
 
 class _Split:
@@ -208,14 +208,14 @@ def _slots(
             long.append(slot)
             outgrown.add(slot[0])
     ordered = {slot: columns[slot] for slot in sorted(columns)}
-    kept, dependent = _relations(ring, ordered)
-    kept = [*kept, *long]
-    if long and len(kept) > MOST_PROVED:
+    independent, dependent = _relations(ring, ordered)
+    independent = [*independent, *long]
+    if long and len(independent) > MOST_PROVED:
         raise NoClosedForm("formulas of T are too long to find the relations between their parts")
     if long:
-        _independent(frames, system, kept)
-    made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in kept}
-    return made | dependent, tuple(kept)
+        _independent(frames, system, independent)
+    made: dict[Slot, dict[Slot, Quotient]] = {slot: {slot: Quotient.of(ring.one)} for slot in independent}
+    return made | dependent, tuple(independent)
 
 
 def _in_independent(
@@ -250,8 +250,8 @@ def _independent(frames: Articulation[Polynomial], system: System, slots: Sequen
 
     def state(still: Mapping[str, arb]) -> dict[str, arb]:
         names_ = [*system.coordinates, *system.velocities]
-        found: dict[str, arb] = {name: arb(fmpq(source.randint(-(10**6), 10**6), 10**6)) for name in names_}
-        return {**still, **found, **{acceleration_name(q): arb(0) for q in system.coordinates}}
+        drawn: dict[str, arb] = {name: arb(fmpq(source.randint(-(10**6), 10**6), 10**6)) for name in names_}
+        return {**still, **drawn, **{acceleration_name(q): arb(0) for q in system.coordinates}}
 
     with ctx.workprec(512 + 24 * size):
         constants = {name: arb(fmpq(source.randint(10**5, 10**6), 10**6)) for name in system.parameter_names}
@@ -275,10 +275,12 @@ def _independent(frames: Articulation[Polynomial], system: System, slots: Sequen
 
 def _relations(ring: Ring, columns: Mapping[Key, _Column]) -> tuple[list[Key], dict[Key, dict[Key, Quotient]]]:
     """The columns that do not depend on earlier ones, and the others as combinations of these."""
-    rows = list(dict.fromkeys(key for one in columns.values() for key in sorted(one, key=len)[:_FIRST]))
+    rows = list(dict.fromkeys(key for entries in columns.values() for key in sorted(entries, key=len)[:_FIRST]))
     while True:
         standards, dependent = _eliminated(ring, columns, rows)
-        missed = [key for one, row in dependent.items() if (key := _unequal(ring, columns, one, row, rows)) is not None]
+        missed = [
+            key for name, row in dependent.items() if (key := _unequal(ring, columns, name, row, rows)) is not None
+        ]
         if not missed:
             return standards, dependent
         rows += dict.fromkeys(missed)
@@ -312,7 +314,9 @@ def _eliminated(
         if not left:
             dependent[name] = {other: -x for other, x in made.items() if other != name and not x.is_zero}
             continue
-        key = min(left, key=lambda one: (len(left[one].top) + len(left[one].bottom), rows.index(one)))
+        key = min(
+            left, key=lambda monomial: (len(left[monomial].top) + len(left[monomial].bottom), rows.index(monomial))
+        )
         if ring.is_zero(left[key].top) is None:
             raise NoClosedForm("whether a constant is zero cannot be decided")
         unit = left[key]

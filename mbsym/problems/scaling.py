@@ -165,7 +165,7 @@ class _Equations:
         for name, rate in zip(equations.positions, equations.rates, strict=True):
             self.equal(rate.polynomial, {("coordinate", name): Fraction(1), TIME: Fraction(-1)})
         for body in (body for body in scene.system.bodies if body.orientation):
-            numbers = [name for one in body.orientation for name in one.components]
+            numbers = [name for orientation in body.orientation for name in orientation.components]
             self.rows += [{("coordinate", name): Fraction(1)} for name in (*numbers, *body.own_angles)]
 
     def constrained(self, tied: Constraints, columns: Sequence[Weights]) -> None:
@@ -264,8 +264,8 @@ def measured_in(
     table = [exponents[name] for name in (*units, *held)]
 
     def powers(weights: Sequence[fmpq]) -> tuple[tuple[str, Fraction], ...] | None:
-        found = _solved(table, weights)
-        return None if found is None else tuple(x for x in zip(units, found, strict=False) if x[1])
+        solution = _solved(table, weights)
+        return None if solution is None else tuple(x for x in zip(units, solution, strict=False) if x[1])
 
     left = []
     for name, weights in exponents.items():
@@ -278,11 +278,11 @@ def measured_in(
 
 def independent(names: Iterable[str], exponents: Mapping[str, Sequence[fmpq]]) -> tuple[str, ...]:
     """As many of the names, the first ones, as are independent of each other."""
-    found: list[str] = []
+    chosen: list[str] = []
     for name in names:
-        if name not in found and _rank([exponents[x] for x in (*found, name)]) > len(found):
-            found.append(name)
-    return tuple(found)
+        if name not in chosen and _rank([exponents[x] for x in (*chosen, name)]) > len(chosen):
+            chosen.append(name)
+    return tuple(chosen)
 
 
 def _units(

@@ -141,7 +141,7 @@ def reduced_state_space(scene: Scene, reduced: Reduced, equilibrium: Equilibrium
         StateSpace(
             states=(*(names[i] for i in expansion.coordinates), *(velocity_name(names[k]) for k in expansion.speeds)),
             inputs=inputs,
-            outputs=tuple(one.name for one in system.outputs),
+            outputs=tuple(channel.name for channel in system.outputs),
             A=Matrix.of(ring, [*upper, *(row[:whole] for row in lower)]),
             B=Matrix.of(ring, [*([ring.zero] * len(inputs) for _ in range(places)), *(row[whole:] for row in lower)]),
             C=Matrix.of(ring, [row[:whole] for row in measured]),

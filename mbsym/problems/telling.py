@@ -129,7 +129,7 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
         made.leading = frozenset(made.index("prescribed", name) for name in moving if name not in cosines)
         return made
 
-    told = tell(
+    listing = tell(
         equations.program,
         outputs,
         {k: (name, equations.meanings[k]) for k, name in proposed.items()},
@@ -138,7 +138,7 @@ def told_system(system: System, ring: Ring, terms: int) -> ToldSystem:
         lambda made: ring_environment(system, made),
         _stem(Quantity.COMMON, _Taken(ring), [str(k) for k in range(1, 500)]),
     )
-    sorted_out = _sorted_out(system, told, equations)
+    sorted_out = _sorted_out(system, listing, equations)
     wrong = disagreement(sorted_out, system, ring)
     if wrong:
         raise Untold(wrong)
@@ -149,25 +149,25 @@ class Untold(Exception):
     """What is told through intermediates is not what was derived: a mistake of the program."""
 
 
-def _outputs(found: BodyEquations) -> list[Node]:
-    vectors = [x for motion in found.motions.values() for v in motion for x in v]
-    entries = [x for row in found.mass_matrix for x in row]
-    return [*vectors, *entries, *found.forcing, found.kinetic_energy, found.force_function]
+def _outputs(equations: BodyEquations) -> list[Node]:
+    vectors = [x for motion in equations.motions.values() for v in motion for x in v]
+    entries = [x for row in equations.mass_matrix for x in row]
+    return [*vectors, *entries, *equations.forcing, equations.kinetic_energy, equations.force_function]
 
 
-def _sorted_out(system: System, told: Told[Meaning], found: BodyEquations) -> ToldSystem:
+def _sorted_out(system: System, listing: Told[Meaning], equations: BodyEquations) -> ToldSystem:
     """The formulas in their places: the order is that of ``_outputs``."""
-    pending = iter(told.formulas)
+    pending = iter(listing.formulas)
 
     def take(count: int) -> tuple[Formula, ...]:
         return tuple(next(pending) for _ in range(count))
 
     n = len(system.coordinates)
-    kinematics = {name: ToldKinematics(take(3), take(3), take(3)) for name in found.motions}
+    kinematics = {name: ToldKinematics(take(3), take(3), take(3)) for name in equations.motions}
     matrix = Matrix(tuple(take(n) for _ in range(n)))
     forcing = take(n)
     kinetic, force = take(2)
-    return ToldSystem(told, kinematics, kinetic, force, matrix, forcing)
+    return ToldSystem(listing, kinematics, kinetic, force, matrix, forcing)
 
 
 # --- names ---
@@ -198,16 +198,16 @@ def _stem(quantity: Quantity, taken: _Taken, indices: Iterable[str], used: Seque
     return free_name(STEMS[quantity] + "_", {"_".join((stem, "")) for stem in used})
 
 
-def _names(ring: Ring, found: BodyEquations, numbers: Mapping[str, int]) -> dict[int, str]:
+def _names(ring: Ring, equations: BodyEquations, numbers: Mapping[str, int]) -> dict[int, str]:
     """A name for every noted node."""
     taken = _Taken(ring)
     by_quantity: dict[Quantity, list[int]] = {}
-    for number, meaning in found.meanings.items():
+    for number, meaning in equations.meanings.items():
         by_quantity.setdefault(meaning.quantity, []).append(number)
     names: dict[int, str] = {}
     used: list[str] = [stem for q, stem in STEMS.items() if q in by_quantity]
     for quantity, nodes in by_quantity.items():
-        indices = {k: _indices(found.meanings[k], numbers) for k in nodes}
+        indices = {k: _indices(equations.meanings[k], numbers) for k in nodes}
         others = [stem for stem in used if stem != STEMS[quantity]]
         stem = _stem(quantity, taken, indices.values(), others)
         used.append(stem)
@@ -231,7 +231,7 @@ def _indices(meaning: Meaning, numbers: Mapping[str, int]) -> str:
 # --- the same as without intermediates? ---
 
 
-def disagreement(found: ToldSystem, system: System, ring: Ring) -> str:
+def disagreement(checked_system: ToldSystem, system: System, ring: Ring) -> str:
     """What differs at a random exact state from the general recursion, which knows of no intermediates; else "".
 
     One state of fine numbers is enough, unless its enclosures are too wide to tell; where they always are, that counts
@@ -239,27 +239,27 @@ def disagreement(found: ToldSystem, system: System, ring: Ring) -> str:
     """
     with ctx.workprec(PRECISION):
         for state in enclosed_states(system, ring, STATES, FINE):
-            wrong = _disagreement_at(found, system, ring, state)
+            wrong = _disagreement_at(checked_system, system, ring, state)
             if wrong is not None:
                 return wrong
     return ""
 
 
-def _disagreement_at(found: ToldSystem, system: System, ring: Ring, state: State) -> str | None:
+def _disagreement_at(checked_system: ToldSystem, system: System, ring: Ring, state: State) -> str | None:
     """What differs, "" if nothing does, None where that cannot be told of everything."""
     scene = Scene(system, state.numbers, state.values, ring)
     expected: list[tuple[str, Scalar]] = [("T", kinetic_energy(scene)), ("U", force_function(scene))]
-    formulas = [found.kinetic_energy, found.force_function]
+    formulas = [checked_system.kinetic_energy, checked_system.force_function]
     for name, motion in scene.motions.items():
-        own = found.kinematics[name]
+        own = checked_system.kinematics[name]
         formulas += [*own.angular_velocity, *own.velocity_origin, *own.velocity_mass_centre]
         vectors = (motion.angular_velocity, motion.velocity_origin, motion.velocity_mass_centre)
         for what, v in zip(("omega", "V_O", "V_C"), vectors, strict=True):
             expected += [(Message("[[what]] of [[name]]", what=what, name=name), x) for x in v]
     needed = residuals(scene)
     n = len(system.coordinates)
-    formulas += [x for row in found.mass_matrix for x in row] + [*found.forcing]
-    values = found.told.values(formulas, state.numbers, state.values)
+    formulas += [x for row in checked_system.mass_matrix for x in row] + [*checked_system.forcing]
+    values = checked_system.told.values(formulas, state.numbers, state.values)
     equations = values[len(expected) :]
     values = values[: len(expected)]
     for i, name in enumerate(system.coordinates):

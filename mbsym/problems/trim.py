@@ -49,14 +49,18 @@ def trim(
     ``assumed`` were divided by where these were made.  Raises NoClosedForm where an unknown does not enter linearly.
     """
     ring = scene.ring
-    told = [x for x in residuals if _within(ring, x, unknowns)]
-    posture = equilibrium(scene, [x for x in residuals if not any(x == y for y in told)], signs, on_motion=True)
+    with_unknowns = [x for x in residuals if _within(ring, x, unknowns)]
+    posture = equilibrium(
+        scene, [x for x in residuals if not any(x == y for y in with_unknowns)], signs, on_motion=True
+    )
     images = posture.determined(scene)
-    found = echelon(ring, signs, [_row(ring, ring.substitute(x, images), unknowns) for x in told], range(len(unknowns)))
-    left = [x for row in found.rest if (x := essential(scene, row.get(_REST, ring.zero), signs)) is not None]
+    reduced = echelon(
+        ring, signs, [_row(ring, ring.substitute(x, images), unknowns) for x in with_unknowns], range(len(unknowns))
+    )
+    left = [x for row in reduced.rest if (x := essential(scene, row.get(_REST, ring.zero), signs)) is not None]
     never = [x for x in left if x.is_constant() or signs.never_zero(x)]
     solved, signed = [], list[tuple[str, Formula, str]]()
-    for k, row in sorted(found.pivots.items()):
+    for k, row in sorted(reduced.pivots.items()):
         value = ring.zero - row.get(_REST, ring.zero)
         for j, name in enumerate(unknowns):
             if j != k and j in row:
@@ -67,11 +71,11 @@ def trim(
         if not known <= declared:
             signed.append((*solved[-1], RELATION_OF_SIGN[SIGN_WORDS[declared]]))
             never += [value] if not known & declared else []
-    divided = [ring.substitute(x, images) for x in (*assumed, *found.assumed)]
+    divided = [ring.substitute(x, images) for x in (*assumed, *reduced.assumed)]
     divided = [x for y in divided if (x := essential(scene, y, signs)) is not None and not x.is_constant()]
     return Trim(
         tuple(solved),
-        tuple(name for k, name in enumerate(unknowns) if k not in found.pivots),
+        tuple(name for k, name in enumerate(unknowns) if k not in reduced.pivots),
         tuple(Formula(ring, x) for k, x in enumerate(divided) if x not in divided[:k] and not signs.never_zero(x)),
         (*posture.conditions, *(Formula(ring, x) for x in left)),
         tuple(signed),
@@ -102,8 +106,8 @@ def _within(ring: Ring, x: Polynomial, names: Sequence[str]) -> list[str]:
             seen.add(k)
             argument = ring.generators[k].argument
             pending += [] if argument is None else occurring([argument])
-    found = {ring.generators[k].name for k in seen if ring.generators[k].kind in ("parameter", "sine", "cosine")}
-    return [name for name in names if name in found]
+    parameters = {ring.generators[k].name for k in seen if ring.generators[k].kind in ("parameter", "sine", "cosine")}
+    return [name for name in names if name in parameters]
 
 
 def _cleared(ring: Ring, x: Polynomial) -> Polynomial:
@@ -113,8 +117,8 @@ def _cleared(ring: Ring, x: Polynomial) -> Polynomial:
     for factor, exponent in bottoms:
         above, below = ring.fraction(factor)
         bottom = ring.times(bottom, ring.power(above, exponent))
-        for one, times in below:
-            top = ring.times(top, ring.power(one, times * exponent))
+        for divisor, times in below:
+            top = ring.times(top, ring.power(divisor, times * exponent))
     if not bottoms:
         return x
     return ring.ratio(ring.reduce(top), ring.reduce(bottom))

@@ -176,8 +176,12 @@ class _State:
         if g.kind != "function" or g.name != "exp":
             return None
         held = [(i, ring.generators[i]) for i in occurring([g.argument])]
-        moved = [i for i, one in held if self._follows(i)]
-        return sign * g.argument if moved and all(i in moved or one.kind == "parameter" for i, one in held) else None
+        moved = [i for i, generator in held if self._follows(i)]
+        return (
+            sign * g.argument
+            if moved and all(i in moved or generator.kind == "parameter" for i, generator in held)
+            else None
+        )
 
     def _follows(self, k: int) -> bool:
         """Whether it is a position, a sine or a cosine that moves as ``rates`` say."""
@@ -188,17 +192,17 @@ class _State:
 
     def variables(self) -> dict[int, Polynomial]:
         """det(M) times the derivative of every variable, in the order in which they are told."""
-        ring, found, waiting = self.ring, dict(self.accelerations), [self.determinant, *self.accelerations.values()]
+        ring, rates, waiting = self.ring, dict(self.accelerations), [self.determinant, *self.accelerations.values()]
         while waiting:
             fractions = [ring.fraction(p, self.kept) for p in waiting]
             held = occurring([*(p for p, _ in fractions), *(f for _, factors in fractions for f, _ in factors)])
-            waiting = [found.setdefault(k, self._rate(k)) for k in sorted(self._moving(held) - found.keys())]
+            waiting = [rates.setdefault(k, self._rate(k)) for k in sorted(self._moving(held) - rates.keys())]
             if not waiting:
-                self.rows = self._felt(found)
+                self.rows = self._felt(rates)
                 waiting = [
-                    found.setdefault(k, self._rate(k)) for k in self._moving(occurring(self.rows)) - found.keys()
+                    rates.setdefault(k, self._rate(k)) for k in self._moving(occurring(self.rows)) - rates.keys()
                 ]
-        return {k: found[k] for k in sorted(found, key=self._order)}
+        return {k: rates[k] for k in sorted(rates, key=self._order)}
 
     def _moving(self, held: Iterable[int]) -> set[int]:
         """Generators that are no parameters, sines with their cosines."""
@@ -303,10 +307,10 @@ class _State:
         point = [fmpq(chance.randint(2, 99)) for _ in ring.generators]
         slopes = [[ring.derivative(a, name)(*point) for name in under] for a in exponents]
         if beside or (slopes and fmpq_mat(slopes).rank() < len(slopes) - tied):
-            told = ", ".join([*map(self.name, functions), *beside])
+            dependent = ", ".join([*map(self.name, functions), *beside])
             raise NoClosedForm(
                 "[[names]] are functions of each other: they cannot all be variables",
-                names=told,
+                names=dependent,
                 remedy="see 'mbsym symmetries', which needs no polynomials",
             )
 

@@ -55,13 +55,13 @@ def brief(analysis: Analysis, seconds: float) -> Brief:
 
 def ranges(numbers: Iterable[int]) -> str:
     """``1-3, 5`` for 1, 2, 3, 5."""
-    found: list[list[int]] = []
+    runs: list[list[int]] = []
     for number in sorted(numbers):
-        if found and found[-1][-1] == number - 1:
-            found[-1].append(number)
+        if runs and runs[-1][-1] == number - 1:
+            runs[-1].append(number)
         else:
-            found.append([number])
-    return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in found)
+            runs.append([number])
+    return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
 
 
 def self_check(checks: Sequence[Check]) -> Inline:

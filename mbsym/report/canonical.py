@@ -40,7 +40,7 @@ class Forms:
     @property
     def results(self) -> list[Any]:
         """What is there; each has room of its own in a file."""
-        return [found for found in (self.routh, self.hamilton, self.brackets) if found is not None]
+        return [form for form in (self.routh, self.hamilton, self.brackets) if form is not None]
 
     @property
     def routh_ring(self) -> Ring:
@@ -59,10 +59,10 @@ def forms_of(analysis: Analysis, problems: Sequence[int]) -> Forms:
     """What a report of these problems shows."""
     if 3 not in problems:
         return Forms()
-    wanted = list(requested_forms(analysis))
-    if "hamilton" in wanted and 7 in problems:
-        wanted.append(BRACKETS)
-    stages = {name: analysis.stage_of(name) for name in wanted}
+    names = list(requested_forms(analysis))
+    if "hamilton" in names and 7 in problems:
+        names.append(BRACKETS)
+    stages = {name: analysis.stage_of(name) for name in names}
     failures = [(name, stage.failure) for name, stage in stages.items() if stage.failure is not None]
     if any(name == "hamilton" for name, _ in failures):  # and then there are no brackets either
         failures = [failure for failure in failures if failure[0] != BRACKETS]
@@ -75,12 +75,12 @@ TITLES = {"routh": "Routh's form", "hamilton": "Hamilton's form", "brackets": "P
 # --- results.json -----------------------------------------------------------------------------------------------------
 
 
-def data(found: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+def data(forms: Forms, write: Write, failure: Callable[[NoResult], Any]) -> tuple[dict[str, Any], dict[str, Any]]:
     """The sections of results.json, and what is unavailable."""
     parts: dict[str, type[Part]] = {"routh": doc.Routh, "hamilton": doc.Hamilton, "brackets": doc.Brackets}
-    results = {name: getattr(found, name) for name in parts}
+    results = {name: getattr(forms, name) for name in parts}
     sections = {name: parts[name].from_result(form, write) for name, form in results.items() if form is not None}
-    return sections, {name: failure(why) for name, why in found.failures}
+    return sections, {name: failure(why) for name, why in forms.failures}
 
 
 # Long denominators of Hamilton's and Routh's forms, written once: 1/Delta in place of 1/(a sum that no line holds).
@@ -110,8 +110,8 @@ def with_names(forms: Forms, system: System) -> Denominators:
     if hamilton is not None:
         shorter, second = _named(forms.hamilton_ring, [hamilton, brackets], system, len(first))
         hamilton, brackets = shorter
-    told = replace(forms, routh=routh, hamilton=hamilton, brackets=brackets)
-    return Denominators(told, tuple(first), tuple(second))
+    shortened = replace(forms, routh=routh, hamilton=hamilton, brackets=brackets)
+    return Denominators(shortened, tuple(first), tuple(second))
 
 
 def _named(
@@ -124,11 +124,11 @@ def _named(
         return results, []
     letters = [ring.generator("parameter", name) for name in names[: len(long)]]
     inverse = {index: ring.reciprocal(letter) for index, letter in zip(long, letters, strict=True)}
-    told = [
+    definitions = [
         (Formula(ring, letter), Formula(ring, ring.generators[index].argument))
         for index, letter in zip(long, letters, strict=True)
     ]
-    return [_mapped(result, lambda x: Formula(ring, ring.substitute(x, inverse))) for result in results], told
+    return [_mapped(result, lambda x: Formula(ring, ring.substitute(x, inverse))) for result in results], definitions
 
 
 def _long(ring: Ring, results: list[Any]) -> Iterator[int]:
@@ -142,14 +142,14 @@ def _long(ring: Ring, results: list[Any]) -> Iterator[int]:
             yield index
 
 
-def _mapped(found: Any, change: Callable[[Polynomial], Formula]) -> Any:
+def _mapped(result: Any, change: Callable[[Polynomial], Formula]) -> Any:
     """A result with every formula changed."""
-    if isinstance(found, Formula):
-        return change(found.polynomial)
-    if isinstance(found, Matrix):
-        return Matrix(tuple(tuple(change(x.polynomial) for x in row) for row in found.rows))
-    if isinstance(found, tuple):
-        return tuple(_mapped(x, change) for x in found)
-    if hasattr(found, "__dataclass_fields__"):
-        return replace(found, **{item.name: _mapped(getattr(found, item.name), change) for item in fields(found)})
-    return found
+    if isinstance(result, Formula):
+        return change(result.polynomial)
+    if isinstance(result, Matrix):
+        return Matrix(tuple(tuple(change(x.polynomial) for x in row) for row in result.rows))
+    if isinstance(result, tuple):
+        return tuple(_mapped(x, change) for x in result)
+    if hasattr(result, "__dataclass_fields__"):
+        return replace(result, **{item.name: _mapped(getattr(result, item.name), change) for item in fields(result)})
+    return result

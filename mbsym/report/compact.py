@@ -68,67 +68,69 @@ _MADE: WeakKeyDictionary[Analysis, dict[tuple[Any, ...], tuple[Any, dict[int, Co
 
 
 def _chosen(analysis: Analysis, problems: Mapping[int, Any]) -> dict[int, Compact]:
-    wanted = {n: _formulas(problems[n]) for n in (1, 2, 3) if n in problems}
-    wanted = {n: formulas for n, formulas in wanted.items() if _is_long(formulas)}
-    told = analysis.optional("told") if wanted else None
-    if told is None:
+    candidates = {n: _formulas(problems[n]) for n in (1, 2, 3) if n in problems}
+    candidates = {n: formulas for n, formulas in candidates.items() if _is_long(formulas)}
+    compressed = analysis.optional("told") if candidates else None
+    if compressed is None:
         return {}
     compacts = {}
-    for number, closed in wanted.items():
+    for number, closed in candidates.items():
         total = _ENDLESS if closed is None else sum(x.terms for x in closed)
-        formulas = told_formulas(told, number)
-        listed = passages(told.told, analysis.system, formulas)
+        formulas = told_formulas(compressed, number)
+        listed = passages(compressed.told, analysis.system, formulas)
         length = sum(x.terms for x in formulas) + sum(y.formula.terms for x in listed for y in x.definitions)
-        one = Compact(told, listed, _replaced(problems[number], total))
+        one = Compact(compressed, listed, _replaced(problems[number], total))
         if one.definitions <= MOST_DEFINITIONS and (not one.expanded or SHORTER * length <= total):
             compacts[number] = one
     return compacts
 
 
-def _replaced(found: Any, printed: int) -> int:
+def _replaced(result: Any, printed: int) -> int:
     """The terms of what is told: of T as a whole, though where it is written out its A_ij stand as M_ij in problem 3.
 
     A velocity that is that of the joint is told as that.
     """
-    match found:
+    match result:
         case None:
             return 0
         case Energy():
-            return found.terms
+            return result.terms
         case Kinematics():
-            same = (x.velocity_mass_centre for x in found.bodies if x.velocity_mass_centre == x.velocity_origin)
+            same = (x.velocity_mass_centre for x in result.bodies if x.velocity_mass_centre == x.velocity_origin)
             return printed - sum(x.terms for v in same for x in v)
     return printed
 
 
-def told_formulas(told: ToldSystem, number: int) -> list[Formula]:
+def told_formulas(compressed: ToldSystem, number: int) -> list[Formula]:
     """The formulas of problems 1, 2 and 3 in terms of intermediates."""
     if number == 1:
         vectors = (
             v
-            for body in told.kinematics.values()
+            for body in compressed.kinematics.values()
             for v in (body.angular_velocity, body.velocity_origin, body.velocity_mass_centre)
         )
         return [x for v in vectors for x in v]
     if number == 2:
-        return [told.kinetic_energy, told.force_function]
-    return [*_upper(told.mass_matrix.rows), *told.forcing]
+        return [compressed.kinetic_energy, compressed.force_function]
+    return [*_upper(compressed.mass_matrix.rows), *compressed.forcing]
 
 
 def _upper(rows: tuple[tuple[Formula, ...], ...]) -> list[Formula]:
     return [x for i, row in enumerate(rows) for x in row[i:]]
 
 
-def _formulas(found: Any) -> list[Formula] | None:
+def _formulas(result: Any) -> list[Formula] | None:
     """The formulas of a result as a report prints them; None where it has none."""
-    match found:
+    match result:
         case Kinematics():
-            vectors = (v for x in found.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre))
+            vectors = (
+                v for x in result.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre)
+            )
             return [x for v in vectors for x in v]
         case Energy():
-            return [*found.A1, found.A0, found.force_function]
+            return [*result.A1, result.A0, result.force_function]
         case Equations():
-            return [*_upper(found.mass_matrix.rows), *found.forcing]
+            return [*_upper(result.mass_matrix.rows), *result.forcing]
     return None
 
 

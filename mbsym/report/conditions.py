@@ -41,7 +41,7 @@ class Statement:
 
     ``formula`` is None where the statement cannot hold, or is too long to be written out; ``note`` says so.  ``never``
     is the polynomial, as it arises, of a statement that cannot hold.  ``place``: what follows where it fails.
-    ``told``: the same in the coefficients of the characteristic polynomial, where ``formula`` is long.
+    ``in_coefficients``: the same in the coefficients of the characteristic polynomial, where ``formula`` is long.
     """
 
     label: str
@@ -50,7 +50,7 @@ class Statement:
     note: str = ""
     never: Formula | None = None
     place: Place = Place.NECESSARY
-    told: InCoefficients | None = None
+    in_coefficients: InCoefficients | None = None
 
     @property
     def opposite(self) -> bool:
@@ -98,7 +98,7 @@ class Labels:
 def label_meanings(ring: Ring, requirements: Sequence[Requirement]) -> Labels:
     """The meaning of the labels where these requirements are told."""
     forms = [form for requirement in requirements if (form := in_coefficients(ring, requirement)) is not None]
-    same = {x for one in requirements if is_letter(Formula(ring, one.polynomial), x := _bare(one.label))}
+    same = {x for labelled in requirements if is_letter(Formula(ring, labelled.polynomial), x := _bare(labelled.label))}
     return Labels(frozenset(name for form in forms for name in form.names), names_in(ring) - same)
 
 
@@ -115,10 +115,10 @@ def statements(
             yield from _stated(ring, requirement, told)
 
 
-def _stated(ring: Ring, requirement: Requirement, told: Labels) -> Iterator[Statement]:
-    condition, label, place = requirement.condition, told(requirement.label), requirement.place
+def _stated(ring: Ring, requirement: Requirement, labels: Labels) -> Iterator[Statement]:
+    condition, label, place = requirement.condition, labels(requirement.label), requirement.place
     note = "holds: the kinetic energy is positive definite" if requirement.by_mass else ""
-    if _bare(label) in told.letters and condition.kind in ("inequality", "nonzero", "always"):
+    if _bare(label) in labels.letters and condition.kind in ("inequality", "nonzero", "always"):
         relation = "!=" if condition.kind == "nonzero" else requirement.relation
         at = requirement.strict if condition.kind == "nonzero" else place
         yield Statement(label, Formula(ring, requirement.polynomial), relation, note, None, at)
@@ -160,16 +160,16 @@ def _part(label: str, which: Message) -> Message:
     return part if bare == label else Message(REVERSED, label=part)
 
 
-def _alternative(ring: Ring, requirement: Requirement, told: Labels) -> Statement:
+def _alternative(ring: Ring, requirement: Requirement, labels: Labels) -> Statement:
     """One requirement as one statement: p > 0 and f != 0 together are p f^2 > 0, several f != 0 are their product."""
     condition = requirement.condition
-    if condition.kind not in ("inequality", "nonzero") or _bare(requirement.label) in told.letters:
-        return next(_stated(ring, requirement, told))
+    if condition.kind not in ("inequality", "nonzero") or _bare(requirement.label) in labels.letters:
+        return next(_stated(ring, requirement, labels))
     whole, power = condition.polynomial, 2 if condition.kind == "inequality" else 1
     for polynomial in condition.nonzero:
         whole = whole * polynomial**power
     relation = requirement.relation if condition.kind == "inequality" else "!="
-    return Statement(told(requirement.label), Formula(ring, whole), relation)
+    return Statement(labels(requirement.label), Formula(ring, whole), relation)
 
 
 @dataclass(frozen=True)
@@ -192,21 +192,21 @@ class CaseStatement:
         return bool(self.all_of or self.any_of or self.otherwise)
 
 
-def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = False) -> list[CaseStatement]:
-    """The cases that can occur, what an earlier one says left out of each.  ``told``: what labels mean beside them.
+def cases(ring: Ring, candidates: Sequence[Case], labels: Labels, uncovered: bool = False) -> list[CaseStatement]:
+    """The cases that can occur, what an earlier one says left out of each.  ``labels``: what labels mean beside them.
 
     ``uncovered``: parameters are known at which none of them holds; that these are undecided is the last.
     """
-    certain = next((k for k, case in enumerate(found) if case.always), len(found))
+    certain = next((k for k, case in enumerate(candidates) if case.always), len(candidates))
     possible = (
         CaseStatement(
-            *_required(ring, case, told),
+            *_required(ring, case, labels),
             case.verdict.word,
             case.verdict.theorems,
             case.verdict.explanation,
-            case.always and any(not other.never for other in found[:k]),
+            case.always and any(not other.never for other in candidates[:k]),
         )
-        for k, case in enumerate(found[: certain + 1])
+        for k, case in enumerate(candidates[: certain + 1])
         if not case.never
     )
     listed = list(_without_repeats(possible))
@@ -216,7 +216,7 @@ def cases(ring: Ring, found: Sequence[Case], told: Labels, uncovered: bool = Fal
     return listed
 
 
-def _required(ring: Ring, case: Case, told: Labels) -> tuple[tuple[Statement, ...], tuple[Statement, ...]]:
+def _required(ring: Ring, case: Case, labels: Labels) -> tuple[tuple[Statement, ...], tuple[Statement, ...]]:
     """What all of has to hold, and what one of; the only alternative that can hold is told in its parts."""
     every, some = case.all_of, [r for r in case.any_of if not r.never]
     some = [r for r in some if not any(_suffices(other, r) for other in some)]
@@ -224,7 +224,7 @@ def _required(ring: Ring, case: Case, told: Labels) -> tuple[tuple[Statement, ..
         some = []
     elif len(some) == 1 and some[0].condition.kind == "inequality" and some[0].condition.nonzero:
         every, some = (*every, *some), []
-    return tuple(statements(ring, every, told=told)), tuple(_alternative(ring, r, told) for r in some)
+    return tuple(statements(ring, every, told=labels)), tuple(_alternative(ring, r, labels) for r in some)
 
 
 def _suffices(wide: Requirement, narrow: Requirement) -> bool:
@@ -237,11 +237,11 @@ def _suffices(wide: Requirement, narrow: Requirement) -> bool:
     return more and ratio is not None and ratio > 0
 
 
-def _without_repeats(found: Iterable[CaseStatement]) -> Iterator[CaseStatement]:
+def _without_repeats(possible: Iterable[CaseStatement]) -> Iterator[CaseStatement]:
     """Cases read in order: without those, and those alternatives, that cannot hold where no earlier case does."""
     before: list[tuple[list[Statement], list[Statement]]] = []
     sufficed: list[Statement] = []
-    for case in found:
+    for case in possible:
         every, some = _once(case.all_of), _once(case.any_of)
         some = [x for x in some if x.relation == "!=" or not any(_says(y, x, "!=") for y in some)]
         strict = [x for x in (*every, *(some if len(some) == 1 else ())) if x.relation in ("<", ">")]
@@ -257,10 +257,10 @@ def _without_repeats(found: Iterable[CaseStatement]) -> Iterator[CaseStatement]:
 
 
 def _once(items: Iterable[Statement]) -> list[Statement]:
-    found: list[Statement] = []
+    distinct: list[Statement] = []
     for item in items:
-        found += [] if any(_says(item, other) for other in found) else [item]
-    return found
+        distinct += [] if any(_says(item, other) for other in distinct) else [item]
+    return distinct
 
 
 def _alike(some: Sequence[Statement], others: Sequence[Statement]) -> bool:
@@ -308,11 +308,11 @@ class Shown:
         if statement.formula is not None and self.reference(statement) is None:
             self._shown.append((statement.label, statement.formula))
 
-    def unshown(self, told: InCoefficients) -> tuple[tuple[Formula, Formula], ...]:
+    def unshown(self, form: InCoefficients) -> tuple[tuple[Formula, Formula], ...]:
         """The letters of a form that do not stand for what was shown under their names."""
         return tuple(
             (letter, value)
-            for letter, value in told.letters
+            for letter, value in form.letters
             if not any(label == str(letter) and shown.polynomial == value.polynomial for label, shown in self._shown)
         )
 
@@ -342,15 +342,15 @@ _HELD = (
 )
 
 
-def provided(found: Stability, motion: Equilibrium | None, inputs: bool = False) -> str:
+def provided(stability: Stability, motion: Equilibrium | None, inputs: bool = False) -> str:
     """What the verdicts presume: that the motion exists, for which problem 4 has the conditions, and what inputs do.
 
     Where other angles were judged more may have to hold than in singular ones, which is then told itself.
     """
-    own, count = () if motion is None else motion.conditions, len(found.presumed)
-    known = [x for x in found.presumed if any(rational_ratio(x.polynomial, y.polynomial) is not None for y in own)]
+    own, count = () if motion is None else motion.conditions, len(stability.presumed)
+    known = [x for x in stability.presumed if any(rational_ratio(x.polynomial, y.polynomial) is not None for y in own)]
     if motion is not None and len(known) < count:
-        message = joined((Message("$[[left]] = 0$", left=x) for x in found.presumed), ", ")
+        message = joined((Message("$[[left]] = 0$", left=x) for x in stability.presumed), ", ")
         if inputs:
             return Message(
                 "while the inputs keep their values on the unperturbed motion, for [[wanted]]", wanted=message
@@ -370,17 +370,17 @@ def factors(part: SubsystemStability) -> list[tuple[list[Formula], int]]:
     Their signs are those of the conditions, where a leading coefficient is positive.
     """
     even = part.theory.variable == "lambda^2"
-    wanted = {item.label: item.polynomial for item in part.theory.requirements}
-    found = []
+    required = {item.label: item.polynomial for item in part.theory.requirements}
+    factored = []
     for number, factor in enumerate(part.theory.factors, 1):
         powers = list(factor.coefficients)
         labels = [f"v{2 * k} of factor {number}" if even else f"a{k} of factor {number}" for k in range(len(powers))]
-        if any(x and label in wanted and wanted[label] == -x for label, x in zip(labels, powers, strict=True)):
+        if any(x and label in required and required[label] == -x for label, x in zip(labels, powers, strict=True)):
             powers = [-x for x in powers]
         if even:
             powers = [x for power in powers for x in (power, part.ring.zero)][:-1]
-        found.append(([Formula(part.ring, x) for x in powers], factor.multiplicity))
-    return found
+        factored.append(([Formula(part.ring, x) for x in powers], factor.multiplicity))
+    return factored
 
 
 # Long conditions in the coefficients of the characteristic polynomial: v4^2 v2^2 - 4 v2^3 v6 - ..., as papers print.
@@ -441,8 +441,8 @@ def in_coefficients(ring: Ring, requirement: Requirement) -> InCoefficients | No
     names = _letters("discriminant" in label, [Formula(ring, x) for x in coefficients], factor, names_in(ring))
     present = [(name, x) for name, x in zip(names, coefficients, strict=True) if x != 0]
     own = Ring((), (), [name for name, _ in reversed(present)], {})
-    given = [own.generator("parameter", n) if own.has("parameter", n) else own.zero for n in names]
-    value = _made(label, given)
+    symbols = [own.generator("parameter", n) if own.has("parameter", n) else own.zero for n in names]
+    value = _made(label, symbols)
     if value is None or not 2 * len(value) < len(condition.polynomial) or len(value) > MOST_TERMS:
         return None
     standing = dict(present)
@@ -461,9 +461,9 @@ def _letters(even: bool, coefficients: list[Formula], factor: str, taken: frozen
     listed = ([f"{stem}{power * k}{end}" for k in range(count)] for stem in stems)
     free = next(
         (
-            one
-            for one in listed
-            if all(x not in taken or is_letter(c, x) for x, c in zip(one, coefficients, strict=True))
+            names
+            for names in listed
+            if all(x not in taken or is_letter(c, x) for x, c in zip(names, coefficients, strict=True))
         ),
         None,
     )

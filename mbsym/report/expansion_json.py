@@ -22,81 +22,82 @@ if TYPE_CHECKING:
 
 
 def expansion_json(
-    system: System, values: Mapping[str, Fraction], found: Expansion, measured: Measured | str = ""
+    system: System, values: Mapping[str, Fraction], expansion: Expansion, measured: Measured | str = ""
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    manifold = expansion_data(found, str)
+    manifold = expansion_data(expansion, str)
     measurement = measured_data(measured)
     return written(doc.Expansion.from_result(manifold, system=system.name, values=values, measured=measurement))
 
 
-def expansion_data(found: Expansion, write: Write) -> doc.SlowManifold[Any]:
+def expansion_data(expansion: Expansion, write: Write) -> doc.SlowManifold[Any]:
     """A slow manifold; ``write`` turns formulas into text."""
-    manifold = found.manifold
+    manifold = expansion.manifold
     steady = manifold.steady
     return doc.SlowManifold.from_result(
         manifold.field,
         order=manifold.order,
-        provided_nonzero=[write(x) for x in found.provided],
+        provided_nonzero=[write(x) for x in expansion.provided],
         manifold=[
-            doc.FastVariable(variable=name, residual=left, coefficients=_series(found, function, write))
+            doc.FastVariable(variable=name, residual=left, coefficients=_series(expansion, function, write))
             for name, function, left in zip(manifold.fast, manifold.functions, manifold.residuals, strict=True)
         ],
         flow=[
-            doc.SlowVariable(variable=name, coefficients=_series(found, series, write))
+            doc.SlowVariable(variable=name, coefficients=_series(expansion, series, write))
             for name, series in zip(manifold.slow, manifold.flow, strict=True)
         ],
         roots=UNSET
-        if found.choice is Choice.ONLY
+        if expansion.choice is Choice.ONLY
         else doc.Roots(
-            chosen=found.choice,
-            others=[{n: write(x) for n, x in zip(manifold.fast, values, strict=True)} for values in found.others],
-            unknown=found.unknown,
-            positive=_positive(found, found.real, write),
+            chosen=expansion.choice,
+            others=[{n: write(x) for n, x in zip(manifold.fast, values, strict=True)} for values in expansion.others],
+            unknown=expansion.unknown,
+            positive=_positive(expansion, expansion.real, write),
         ),
-        missing=found.missing if steady is None else UNSET,
+        missing=expansion.missing if steady is None else UNSET,
         steady=UNSET
         if steady is None
         else doc.Steady(
             zeros=steady.zeros,
             divided_up_to=steady.remainder - 1,
-            attracts=_hurwitz(found, steady.fast, *found.fast, write),
-            flow=_hurwitz(found, steady.slow, *found.slow, write),
+            attracts=_hurwitz(expansion, steady.fast, *expansion.fast, write),
+            flow=_hurwitz(expansion, steady.slow, *expansion.slow, write),
             free=list(steady.free),
-            stabilizable=found.stabilizable[0] if steady.free else None,
+            stabilizable=expansion.stabilizable[0] if steady.free else None,
         ),
     )
 
 
-def measured_data(told: Measured | str) -> doc.Measured:
+def measured_data(measurement: Measured | str) -> doc.Measured:
     """A measurement in two digits, so that it is the same wherever it is made; ``reason``: why there is none."""
-    if isinstance(told, str):
-        return doc.Measured(reason=told)
+    if isinstance(measurement, str):
+        return doc.Measured(reason=measurement)
     return doc.Measured(
-        time=float(f"{told.time:.4g}"),
-        parts=[str(part) for part in told.parts],
-        distances=[float(f"{x:.2g}") for x in told.distances],
-        orders=[round(x, 1) for x in told.orders],
-        expected=told.expected,
+        time=float(f"{measurement.time:.4g}"),
+        parts=[str(part) for part in measurement.parts],
+        distances=[float(f"{x:.2g}") for x in measurement.distances],
+        orders=[round(x, 1) for x in measurement.orders],
+        expected=measurement.expected,
     )
 
 
-def _series(found: Expansion, one: Series, write: Write) -> list[doc.Coefficient[Any]]:
+def _series(expansion: Expansion, series: Series, write: Write) -> list[doc.Coefficient[Any]]:
     return [
-        doc.Coefficient(order=k, formula=write(found.formula(one.coefficients[k]))) for k in sorted(one.coefficients)
+        doc.Coefficient(order=k, formula=write(expansion.formula(series.coefficients[k])))
+        for k in sorted(series.coefficients)
     ]
 
 
 def _hurwitz(
-    found: Expansion, hurwitz: Hurwitz, outcome: Outcome, conditions: tuple[Condition, ...], write: Write
+    expansion: Expansion, hurwitz: Hurwitz, outcome: Outcome, conditions: tuple[Condition, ...], write: Write
 ) -> doc.Hurwitz[Any]:
-    ring = found.transfer.ring
-    positive = _positive(found, conditions, write)
+    ring = expansion.transfer.ring
+    positive = _positive(expansion, conditions, write)
     nonzero = [write(Formula(ring, p)) for c in conditions for p in c.nonzero]
-    polynomial = [_series(found, c, write) for c in hurwitz.polynomial]
+    polynomial = [_series(expansion, c, write) for c in hurwitz.polynomial]
     return doc.Hurwitz(outcome=outcome, positive=positive, nonzero=nonzero, polynomial=polynomial)
 
 
-def _positive(found: Expansion, conditions: tuple[Condition, ...], write: Write) -> list[Any]:
-    ring = found.transfer.ring
+def _positive(expansion: Expansion, conditions: tuple[Condition, ...], write: Write) -> list[Any]:
+    ring = expansion.transfer.ring
     return [write(Formula(ring, c.polynomial)) for c in conditions if c.kind == "inequality"]

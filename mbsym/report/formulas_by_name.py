@@ -208,9 +208,9 @@ def _determinants(analysis: Analysis) -> Iterator[Line]:
         rows = (
             _freed(part.ring, part.known, zip(*(m[i] for m in by_power), strict=True)) for i in range(matrices.size)
         )
-        told = tuple(tuple(_in_factors(part, entry) for entry in row) for row in rows)
+        entries = tuple(tuple(_in_factors(part, entry) for entry in row) for row in rows)
         remark = Message("of [[names]], up to a positive factor", names=", ".join(matrices.names))
-        yield Line(f"Lambda{k}", Determinant(told), remark=remark)
+        yield Line(f"Lambda{k}", Determinant(entries), remark=remark)
 
 
 def _in_factors(part: SubsystemStability, entry: Sequence[Polynomial]) -> InPowers:
@@ -254,8 +254,8 @@ def _conditions(analysis: Analysis) -> Iterator[Line]:
         shown = Shown()
         for item in items:
             formula: Any = item.formula or item.never or item.note
-            if item.told is not None:
-                formula, letters = item.told.formula, shown.unshown(item.told)
+            if item.in_coefficients is not None:
+                formula, letters = item.in_coefficients.formula, shown.unshown(item.in_coefficients)
                 yield from (Line(letter, value) for letter, value in letters if not is_letter(value, str(letter)))
             yield Line("", formula, item.relation, _remark(item, of))
             shown.show(item)
@@ -383,23 +383,23 @@ def carried_lines(formulas: Formulas, name: str) -> Iterator[Line]:
             yield replace(line, value=formulas.formula(line.value))
 
 
-def reduced_lines(found: Reduced) -> Iterator[Line]:
+def reduced_lines(reduced: Reduced) -> Iterator[Line]:
     """Step by step what is put in; then the equations and integrals that are left, by powers of eps, and the check."""
-    flow, first = found.reduction.flow, found.reduction.steps[0]
-    remainder = "" if found.asked.known is None else f"O({found.asked.small}^{found.asked.known})"
-    for k, step in enumerate(found.reduction.steps[1:], start=1):
+    flow, first = reduced.reduction.flow, reduced.reduction.steps[0]
+    remainder = "" if reduced.request.known is None else f"O({reduced.request.small}^{reduced.request.known})"
+    for k, step in enumerate(reduced.reduction.steps[1:], start=1):
         yield Line("", joined((f"{k}.", worded(step.how.value))))
-        yield from (Line(found.variable(place), InSmall(found.terms(x))) for place, x in step.images.items())
+        yield from (Line(reduced.variable(place), InSmall(reduced.terms(x))) for place, x in step.images.items())
     head = Message("equations of motion, without [[rest]]", rest=remainder) if remainder else "equations of motion"
     yield Line("", worded(head))
     for place, x in flow.rates.items():
-        rate = found.rate(place)
+        rate = reduced.rate(place)
         if rate is not None and flow.velocities.get(place) not in flow.rates:
-            yield Line(rate, InSmall(found.terms(x)))
+            yield Line(rate, InSmall(reduced.terms(x)))
     for x in flow.integrals:
-        yield Line("", InSmall(found.terms(x)), "=" if flow.fixed else "= const", Message("integral"))
+        yield Line("", InSmall(reduced.terms(x)), "=" if flow.fixed else "= const", Message("integral"))
     text = "each step satisfies the original equations[[but]]: checked at random exact states"
-    if found.reduction.steps == (first,):
+    if reduced.reduction.steps == (first,):
         text = "they satisfy the original equations[[but]]: checked at random exact states"
     yield Line("", Message(text, but=Message(" but for [[rest]]", rest=remainder) if remainder else ""))
 
@@ -434,12 +434,12 @@ def remarked(words: str, language: str) -> str:
 def _sum(terms: Sequence[tuple[Formula, str]], language: str) -> str:
     """The sum of coefficients times multipliers, or powers, that are written already; "" is 1."""
     times = {"latex": "\\, ", "text": " "}.get(language, "*")
-    found = []
+    summands = []
     for coefficient, name in terms:
         value = _WRITERS[language](coefficient)
         factor = f"({value})" if _is_sum(value) else value
-        found.append(value if not name else {"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
-    return " + ".join(found).replace("+ -", "- ")
+        summands.append(value if not name else {"1": name, "-1": f"-{name}"}.get(value, f"{factor}{times}{name}"))
+    return " + ".join(summands).replace("+ -", "- ")
 
 
 #: How a power of lambda is written; Python has a word of that name.
@@ -461,14 +461,14 @@ def _in_powers(value: InPowers, language: str) -> str:
 def _in_small(value: InSmall, language: str) -> str:
     """From the lowest power on, each before its coefficient."""
     times = {"latex": "\\, ", "text": " "}.get(language, "*")
-    found = []
+    summands = []
     for coefficient, power in value.terms:
         name, own = _WRITERS[language](power), _WRITERS[language](coefficient)
         minus = "-" * (own.startswith("-") and not _is_sum(own) and name != "1")
         own = own.removeprefix(minus)
         factor = f"({own})" if _is_sum(own) or own[:1].isdigit() else own
-        found.append(own if name == "1" else minus + (name if own == "1" else f"{name}{times}{factor}"))
-    return " + ".join(found).replace("+ -", "- ") or "0"
+        summands.append(own if name == "1" else minus + (name if own == "1" else f"{name}{times}{factor}"))
+    return " + ".join(summands).replace("+ -", "- ") or "0"
 
 
 def _is_sum(text: str) -> bool:
@@ -538,7 +538,7 @@ def _wolfram(value: Value) -> str:
 
 
 def _decimal(text: str) -> str:
-    return re.sub(r"e([-+]?\d+)", lambda found: f"*^{int(found[1])}", text)
+    return re.sub(r"e([-+]?\d+)", lambda match: f"*^{int(match[1])}", text)
 
 
 def _python(value: Value) -> str:

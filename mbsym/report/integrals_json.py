@@ -82,10 +82,13 @@ def _darboux(darboux: DarbouxPolynomials, variables: Sequence[str], text: Write,
         text,
         weights=zip(variables, darboux.weights, strict=True),
         polynomials=[
-            doc.Polynomial.from_result(one, text, cofactor=factor(one.cofactor)) for one in darboux.polynomials
+            doc.Polynomial.from_result(polynomial, text, cofactor=factor(polynomial.cofactor))
+            for polynomial in darboux.polynomials
         ],
         not_found=[
-            (one.weight, factor(one.cofactor), one.most - one.products) for one in darboux.counts if not one.complete
+            (count.weight, factor(count.cofactor), count.most - count.products)
+            for count in darboux.counts
+            if not count.complete
         ],
     )
 

@@ -38,15 +38,15 @@ FILE = Limit(6_000, 40_000)
 
 def withheld(results: Iterable[Any], limit: Limit) -> frozenset[int]:
     """The identities (``id``) of the formulas in some problems' results that are not printed."""
-    found: set[int] = set()
+    identities: set[int] = set()
     for result in results:
         room = limit.whole
         for formula in sorted(formulas(result), key=lambda formula: formula.terms):
             if formula.terms > min(limit.longest, room):
-                found.add(id(formula))
+                identities.add(id(formula))
             else:
                 room -= formula.terms
-    return frozenset(found)
+    return frozenset(identities)
 
 
 def formulas(result: Any) -> Iterator[Formula]:
@@ -72,12 +72,12 @@ def not_printed(formula: Formula) -> Said:
     return say("[[count]] terms, not printed", count=str(formula.terms))
 
 
-def length(formula: Formula, kept: bool = True) -> Said:
-    """What stands in the place of a polynomial that nobody would read; ``kept``: results.json has it in full."""
+def length(formula: Formula, in_full: bool = True) -> Said:
+    """What stands in the place of a polynomial that nobody would read; ``in_full``: results.json has it in full."""
     degree = max(map(sum, formula.polynomial.monoms()))
     text = (
         "[[terms]] terms, of degree [[degree]]; in full in results.json"
-        if kept
+        if in_full
         else "[[terms]] terms, of degree [[degree]]"
     )
     return say(text, terms=str(formula.terms), degree=str(degree))

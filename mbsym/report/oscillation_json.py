@@ -22,25 +22,27 @@ if TYPE_CHECKING:
 
 
 def oscillations_json(
-    system: System, values: Mapping[str, Fraction], told: Oscillating, measured: MeasuredOrders | str
+    system: System, values: Mapping[str, Fraction], solution: Oscillating, measured: MeasuredOrders | str
 ) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
-    return written(doc.Oscillations.from_result(oscillation_data(told, measured), system=system.name, values=values))
+    return written(
+        doc.Oscillations.from_result(oscillation_data(solution, measured), system=system.name, values=values)
+    )
 
 
-def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
+def oscillation_data(solution: Oscillating, measured: MeasuredOrders | str) -> doc.Oscillation:
     """A periodic solution; formulas in Python syntax."""
-    oscillation = told.found
+    oscillation = solution.oscillation
 
     def text(x: Any) -> str:
-        return str(told.formula(x))
+        return str(solution.formula(x))
 
     # The ring grows as formulas are made, and their shape with it: in the order of the file.
     return doc.Oscillation.from_result(
         oscillation,
-        phase=told.phase,
-        amplitude=_amplitude(told),
-        exponent=_exponent(told),
+        phase=solution.phase,
+        amplitude=_amplitude(solution),
+        exponent=_exponent(solution),
         constants=[(name, text(x)) for name, x in oscillation.constants],
         frequency=text(oscillation.frequency),
         corrections=list(map(text, oscillation.corrections)),
@@ -55,46 +57,52 @@ def oscillation_data(told: Oscillating, measured: MeasuredOrders | str) -> doc.O
         ),
         solution=[
             doc.Solution(
-                variable=name, residual=left, function=_function(told, name, one), coefficients=_series(told, one)
+                variable=name,
+                residual=left,
+                function=_function(solution, name, series),
+                coefficients=_series(solution, series),
             )
-            for name, one, left in zip(oscillation.names, oscillation.series, oscillation.residuals, strict=False)
+            for name, series, left in zip(oscillation.names, oscillation.series, oscillation.residuals, strict=False)
         ],
-        drifts=[(one.variable, list(map(text, one.rates)), _series(told, one.waves)) for one in oscillation.drifts],
+        drifts=[
+            (drift.variable, list(map(text, drift.rates)), _series(solution, drift.waves))
+            for drift in oscillation.drifts
+        ],
         resonances=[
             doc.Resonance.from_result(
                 divisor,
-                vanishes=str(numerator(told, divisor.value)),
-                vanishes_too=UNSET if divisor.damping is None else str(numerator(told, divisor.damping)),
+                vanishes=str(numerator(solution, divisor.value)),
+                vanishes_too=UNSET if divisor.damping is None else str(numerator(solution, divisor.damping)),
             )
             for divisor in oscillation.divisors
         ],
         left_out=[(names, text(x)) for names, x in oscillation.others],
-        taylor=told.taylor,
-        conditions=[str(x) for x in _positive(told)],
+        taylor=solution.taylor,
+        conditions=[str(x) for x in _positive(solution)],
         measured=measured_data(measured),
     )
 
 
-def _amplitude(told: Oscillating) -> doc.AmplitudeValue:
-    oscillation, others = told.found, told.found.other_amplitudes
-    value = str(told.formula(oscillation.amplitude))
-    return doc.AmplitudeValue(oscillation.kind, value, UNSET if others is None else str(told.formula(others)))
+def _amplitude(solution: Oscillating) -> doc.AmplitudeValue:
+    oscillation, others = solution.oscillation, solution.oscillation.other_amplitudes
+    value = str(solution.formula(oscillation.amplitude))
+    return doc.AmplitudeValue(oscillation.kind, value, UNSET if others is None else str(solution.formula(others)))
 
 
-def _exponent(told: Oscillating) -> doc.CycleExponent | UnsetType:
-    if told.found.exponent is None:
+def _exponent(solution: Oscillating) -> doc.CycleExponent | UnsetType:
+    if solution.oscillation.exponent is None:
         return UNSET
-    power, x = told.found.exponent
-    return doc.CycleExponent(power, str(told.formula(x)), UNSET if told.attracts is None else told.attracts)
+    power, x = solution.oscillation.exponent
+    return doc.CycleExponent(power, str(solution.formula(x)), UNSET if solution.attracts is None else solution.attracts)
 
 
-def _positive(told: Oscillating) -> Iterator[Formula]:
+def _positive(solution: Oscillating) -> Iterator[Formula]:
     """Squares that have to be positive for frequency and amplitude to be real, and are not known to be."""
-    oscillation = told.found
-    if not told.real:
-        yield told.formula(oscillation.frequency * oscillation.frequency)
-    if not told.real_amplitude:
-        yield told.formula(oscillation.amplitude * oscillation.amplitude)
+    oscillation = solution.oscillation
+    if not solution.real:
+        yield solution.formula(oscillation.frequency * oscillation.frequency)
+    if not solution.real_amplitude:
+        yield solution.formula(oscillation.amplitude * oscillation.amplitude)
 
 
 def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
@@ -121,12 +129,16 @@ def _two_digits(error: float) -> float | None:
     return finite(float(f"{error:.2g}"))
 
 
-def _function(told: Oscillating, name: str, series: Sequence[Harmonics]) -> str:
+def _function(solution: Oscillating, name: str, series: Sequence[Harmonics]) -> str:
     """The variable itself, which the series stand for without its power of the small parameter."""
-    shift = dict(told.found.powers).get(name, 0)
-    parts = [(n + shift, told.written(harmonics)) for n, harmonics in enumerate(series) if not harmonics.is_zero]
-    return sum_of_powers(parts, told.found.small, "**") or "0"
+    shift = dict(solution.oscillation.powers).get(name, 0)
+    parts = [(n + shift, solution.written(harmonics)) for n, harmonics in enumerate(series) if not harmonics.is_zero]
+    return sum_of_powers(parts, solution.oscillation.small, "**") or "0"
 
 
-def _series(told: Oscillating, series: Sequence[Harmonics]) -> list[doc.WaveCoefficient]:
-    return [doc.WaveCoefficient(order=n, formula=told.written(one)) for n, one in enumerate(series) if not one.is_zero]
+def _series(solution: Oscillating, series: Sequence[Harmonics]) -> list[doc.WaveCoefficient]:
+    return [
+        doc.WaveCoefficient(order=n, formula=solution.written(harmonics))
+        for n, harmonics in enumerate(series)
+        if not harmonics.is_zero
+    ]

@@ -48,12 +48,12 @@ class Outline:
 
 def outlines(scenario: Scenario, motions: BodyMotions) -> tuple[Outline, ...]:
     """Of every body that has shapes, and whose mass centre is at rest in its axes."""
-    found = []
+    outlined = []
     for k, name in enumerate(motions.names):
         lines = body_lines(scenario.system.body(name), scenario.parameters)
         if lines:
-            found.append(Outline(name, lines, motions.axes[k], motions.places[k]))
-    return tuple(found)
+            outlined.append(Outline(name, lines, motions.axes[k], motions.places[k]))
+    return tuple(outlined)
 
 
 def body_lines(body: Body, values: Mapping[str, Fraction]) -> tuple[Any, ...]:

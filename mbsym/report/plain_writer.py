@@ -387,7 +387,7 @@ class Writer:
                     while len(padded) > 1 and not padded[-1][0].strip():
                         padded.pop()
                     last = ((padded[-1][0].rstrip(), padded[-1][1]),)
-                    yield Line(tuple(x for one in padded[:-1] for x in (one, ("  ", ""))) + last, whole=True)
+                    yield Line(tuple(x for piece in padded[:-1] for x in (piece, ("  ", ""))) + last, whole=True)
 
     @staticmethod
     def _wrapped(text: str, width: int) -> list[str]:

@@ -83,21 +83,21 @@ def keys_of(theorem: str) -> tuple[str, ...]:
     return _OF_THEOREM.get(theorem, ())
 
 
-def theorems_named(found: Stability) -> Iterator[str]:
+def theorems_named(stability: Stability) -> Iterator[str]:
     """Every theorem that problem 6 names, in the order of the report, with repetitions."""
-    for part in found.subsystems:
+    for part in stability.subsystems:
         theory = part.theory
         for case in cases(part.ring, theory.cases, label_meanings(part.ring, theory.requirements), theory.uncovered):
             yield from case.theorems if case.conditional else ()
         yield from theory.verdict.theorems
-    yield from found.verdict.theorems
-    if found.numerical is not None:
-        yield from found.numerical.theorems
+    yield from stability.verdict.theorems
+    if stability.numerical is not None:
+        yield from stability.numerical.theorems
 
 
-def references(found: Stability | None, source: str = "") -> tuple[Reference, ...]:
+def references(stability: Stability | None, source: str = "") -> tuple[Reference, ...]:
     """The literature that is needed, each once: the ``source`` of the system (in LaTeX), and that of the theorems."""
-    named = [] if found is None else list(theorems_named(found))
+    named = [] if stability is None else list(theorems_named(stability))
     keys = dict.fromkeys(key for theorem in named for key in keys_of(theorem))
     own = (Reference(SOURCE, source),) if source else ()
     return own + tuple(Reference(key, text) for key, text in _LITERATURE.items() if key in keys)

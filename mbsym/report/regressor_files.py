@@ -28,14 +28,14 @@ def named(standard: Standard) -> str:
 
 def sum_of(base: Base) -> str:
     """``Jzz(one) + l**2 m(two)``."""
-    told = named(base.kept)
+    formula = named(base.parameter)
     for other, factor in base.others:
         text = _number(factor) or str(factor)
         sign, text = ("-", text[1:]) if text.startswith("-") and not set(text[1:]) & set("+-") else ("+", text)
         if set(text) & set("+-"):
             text = f"({text})"
-        told += f" {sign} {named(other)}" if text == "1" else f" {sign} {text}*{named(other)}"
-    return told
+        formula += f" {sign} {named(other)}" if text == "1" else f" {sign} {text}*{named(other)}"
+    return formula
 
 
 def _number(factor: Formula) -> str:
@@ -44,47 +44,47 @@ def _number(factor: Formula) -> str:
     return "" if number.denominator % 5 else decimal_text(number)
 
 
-def regressor_json(found: Regressor) -> str:
+def regressor_json(regressor: Regressor) -> str:
     """The file's text."""
     content = doc.Regressor(
-        system=found.system.name,
-        description_sha256=meaning(found.system),
-        coordinates=list(found.system.coordinates),
-        standard=len(found.standard),
+        system=regressor.system.name,
+        description_sha256=meaning(regressor.system),
+        coordinates=list(regressor.system.coordinates),
+        standard=len(regressor.standard),
         base=[
             doc.Base.from_result(
-                base.kept,
+                base.parameter,
                 others=[doc.Share(other.body, other.kind, str(factor)) for other, factor in base.others],
                 value=str(base.value),
             )
-            for base in found.base
+            for base in regressor.base
         ],
-        without_effect=[doc.Parameter(standard.body, standard.kind) for standard in found.without_effect],
-        other_loads=found.besides,
+        without_effect=[doc.Parameter(standard.body, standard.kind) for standard in regressor.without_effect],
+        other_loads=regressor.besides,
     )
     return written(content)
 
 
-def regressor_latex(found: Regressor) -> str:
+def regressor_latex(regressor: Regressor) -> str:
     """``align`` environments with a label; bodies are numbers, in a comment with their names."""
-    numbers = {body.name: k for k, body in enumerate(found.system.bodies, start=1)}
+    numbers = {body.name: k for k, body in enumerate(regressor.system.bodies, start=1)}
     lines = [
         "% Base parameters: tau = Y(q, q', q'') beta; needs amsmath.  J about the connection point, h = m c.",
         *(f"% {k}: {name}" for name, k in numbers.items()),
         r"\begin{align}",
     ]
     rows = []
-    for k, base in enumerate(found.base, start=1):
-        told = _symbol(base.kept, numbers)
+    for k, base in enumerate(regressor.base, start=1):
+        formula = _symbol(base.parameter, numbers)
         for other, factor in base.others:
             text = _number(factor) or factor.latex()
             if text == "1":
-                told += f" + {_symbol(other, numbers)}"
+                formula += f" + {_symbol(other, numbers)}"
             elif text == "-1":
-                told += f" - {_symbol(other, numbers)}"
+                formula += f" - {_symbol(other, numbers)}"
             else:
-                told += rf" + \left({text}\right) {_symbol(other, numbers)}"
-        rows.append(rf"  \beta_{{{k}}} &= {told}")
+                formula += rf" + \left({text}\right) {_symbol(other, numbers)}"
+        rows.append(rf"  \beta_{{{k}}} &= {formula}")
     return "\n".join([*lines, " \\\\\n".join(rows), r"\end{align}"]) + "\n"
 
 
@@ -93,19 +93,19 @@ def _symbol(standard: Standard, numbers: dict[str, int]) -> str:
     return f"{letter}_{{{numbers[standard.body]}{',' + index if index else ''}}}"
 
 
-def regressor_module(found: Regressor) -> str:
+def regressor_module(regressor: Regressor) -> str:
     """``regressor.py``: Y and the values of the base parameters, of NumPy alone."""
     from mbsym.report.code.functions import Functions, parameters_of
     from mbsym.report.code.python_module import DIALECT, RESERVED, default, plain
     from mbsym.report.environment import rendered
 
-    system = found.system
+    system = regressor.system
     taken = RESERVED | {"BASE", "regressor", "base_parameters"}
     writer = Functions(system, DIALECT, taken, lambda name: name + "_" if name in taken else name, "np.pi")
-    n, rank = len(system.coordinates), len(found.base)
-    entries = [(i, j, column[i]) for j, column in enumerate(found.columns) for i in range(n)]
-    kept = [(i, j, x) for i, j, x in entries if not found.program.vanishes(x)]
-    program, values = _values(found)
+    n, rank = len(system.coordinates), len(regressor.base)
+    entries = [(i, j, column[i]) for j, column in enumerate(regressor.columns) for i in range(n)]
+    nonzero = [(i, j, x) for i, j, x in entries if not regressor.program.vanishes(x)]
+    program, values = _values(regressor)
     return rendered(
         "regressor.py.j2",
         {},
@@ -113,36 +113,36 @@ def regressor_module(found: Regressor) -> str:
         title=plain(system.name),
         n=n,
         rank=rank,
-        base=[(named(base.kept), plain(sum_of(base))) for base in found.base],
+        base=[(named(base.parameter), plain(sum_of(base))) for base in regressor.base],
         meanings=[(item.name, plain(item.told)) for item in parameters_of(system, writer) if item.told],
         defaults=[(item.name, default(item.value)) for item in system.parameters],
-        places=[(i, j) for i, j, _ in kept],
-        Y=writer.function(found.program, [x for _, _, x in kept]),
+        places=[(i, j) for i, j, _ in nonzero],
+        Y=writer.function(regressor.program, [x for _, _, x in nonzero]),
         values=writer.function(program, values),
-        besides=found.besides,
+        besides=regressor.besides,
     )
 
 
-def _values(found: Regressor) -> tuple[Program, list[Node]]:
+def _values(regressor: Regressor) -> tuple[Program, list[Node]]:
     program = Program()
-    environment = program_environment(found.system, program)
-    rings = {id(base.value.ring): base.value.ring for base in found.base}
+    environment = program_environment(regressor.system, program)
+    rings = {id(base.value.ring): base.value.ring for base in regressor.base}
     carry = {key: Carrier(ring, program, environment) for key, ring in rings.items()}
-    return program, [carry[id(base.value.ring)](base.value.polynomial) for base in found.base]
+    return program, [carry[id(base.value.ring)](base.value.polynomial) for base in regressor.base]
 
 
-def sentences(found: Regressor) -> Iterator[tuple[str, str]]:
+def sentences(regressor: Regressor) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    rank, standard = len(found.base), len(found.standard)
+    rank, standard = len(regressor.base), len(regressor.standard)
     kinds = f"{', '.join(KINDS[:2])}, ..., {', '.join(KINDS[6:])}"
     text = "[[rank]] of [[count]] parameters ([[kinds]] of each body) determine all generalised forces"
     yield "base", Message(text, rank=rank, count=standard, kinds=kinds)
-    for k, base in enumerate(found.base, start=1):
+    for k, base in enumerate(regressor.base, start=1):
         yield f"{k}", sum_of(base)
-    if found.without_effect:
-        names = ", ".join(map(named, found.without_effect))
+    if regressor.without_effect:
+        names = ", ".join(map(named, regressor.without_effect))
         yield "none", Message("without effect on any motion: [[names]]", names=names)
     text = "exact: relations are identities of T and U; that there are no others is the rank, for almost all values"
     yield "how", Message(text)
-    if found.besides:
+    if regressor.besides:
         yield "besides", Message("tau = Y base leaves out the loads that are no uniform gravity")

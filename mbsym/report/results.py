@@ -50,7 +50,7 @@ class Results:
         return self.analysis.system
 
     @cached_property
-    def found(self) -> dict[int, Any]:
+    def by_problem(self) -> dict[int, Any]:
         """By number, the results that there are."""
         stages = {number: self.analysis.stage(number) for number in self.problems}
         return {number: stage.value for number, stage in stages.items() if stage.failure is None}
@@ -62,9 +62,9 @@ class Results:
         return {number: stage.failure for number, stage in stages.items() if stage.failure is not None}
 
     @cached_property
-    def told(self) -> dict[int, Compact]:
+    def compact(self) -> dict[int, Compact]:
         """By number, the problems whose formulas are told through named intermediates."""
-        return compact(self.analysis, {number: self.found.get(number) for number in self.problems})
+        return compact(self.analysis, {number: self.by_problem.get(number) for number in self.problems})
 
     @cached_property
     def forms(self) -> Denominators:
@@ -97,20 +97,20 @@ class Results:
     @cached_property
     def presumed(self) -> tuple[Inline, ...]:
         """What the verdicts of problem 6 presume, after a comma."""
-        found = self.found.get(6)
+        stability = self.by_problem.get(6)
         motion = self.analysis.optional("equilibrium")
-        if found is None:
+        if stability is None:
             return ()
-        text, linear = provided(found, motion, bool(self.system.inputs)), self.analysis.optional("linearisation")
+        text, linear = provided(stability, motion, bool(self.system.inputs)), self.analysis.optional("linearisation")
         assumed = () if linear is None or linear.constrained is None else linear.constrained.assumed
         where = say("where [[conditions]]", conditions=[Relation(x, "!=", 0) for x in assumed])
         return (*((", ", worded(text)) if text else ()), *((", ", where) if assumed else ()))
 
     def intermediates(self, number: int) -> Iterator[Block]:
         """The named quantities through which the formulas of a problem are told; none is defined a second time."""
-        told = self.told[number]
-        before = () if self.apart else [one for k, one in self.told.items() if k < number]
-        defined = {item.name for one in before for passage in one.passages for item in passage.definitions}
+        told = self.compact[number]
+        before = () if self.apart else [earlier for k, earlier in self.compact.items() if k < number]
+        defined = {item.name for earlier in before for passage in earlier.passages for item in passage.definitions}
         new = told.passages
         if defined:
             new = passages(told.system.told, self.system, told_formulas(told.system, number), defined)
@@ -152,8 +152,8 @@ class Section(Generic[T]):
         known = self.known
         letters = known.analysis.letters if self.lettered else ()
         with in_letters(known.system, letters or () if self.asked else letters) as used:
-            told: Any = self.write(with_meanings(self.build(known), known.system, used, self.told))
-            return cast("T", iter(list(told)) if isinstance(told, Iterator) else told)
+            written: Any = self.write(with_meanings(self.build(known), known.system, used, self.told))
+            return cast("T", iter(list(written)) if isinstance(written, Iterator) else written)
 
     @property
     def title(self) -> Said:
@@ -169,7 +169,7 @@ def contents(known: Results, write: Callable[[Iterator[Block]], T]) -> dict[int 
 
     modules: dict[int | str, Any] = {number: section_of(PROBLEMS[number]) for number in known.problems}
     modules |= {name: import_module(f"mbsym.report.sections.{name}") for name in BESIDE}
-    notation = frozenset(one.name for one in known.system.notation)
+    notation = frozenset(symbol.name for symbol in known.system.notation)
     return {
         key: Section(x.content, known, write, key != "claims", notation if key == 5 else frozenset(), key == "summary")
         for key, x in modules.items()

@@ -40,8 +40,8 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
 
 def results(analysis: Analysis, problems: Sequence[int]) -> dict[str, Any]:
     """The file as nested lists and dictionaries."""
-    found: dict[str, Any] = plain(results_document(analysis, problems))
-    return found
+    document: dict[str, Any] = plain(results_document(analysis, problems))
+    return document
 
 
 def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results:
@@ -70,7 +70,7 @@ def results_document(analysis: Analysis, problems: Sequence[int]) -> doc.Results
         initial=_initial(system) or UNSET,
         inputs=[doc.Input.from_result(x, text) for x in system.inputs] or UNSET,
         outputs=[doc.Output.from_result(x, text) for x in system.outputs] or UNSET,
-        accepted_inertias=[doc.AcceptedInertia.from_result(one) for one in accepted.items()] or UNSET,
+        accepted_inertias=[doc.AcceptedInertia.from_result(inertia) for inertia in accepted.items()] or UNSET,
         claims=[_claim(result, system) for result in analysis.claims] if system.claims else UNSET,
         unavailable=unavailable,
         **sections,
@@ -82,7 +82,7 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
     from mbsym.analysis import PROBLEMS
 
     system = analysis.system
-    found: dict[str, Any] = {}
+    derived: dict[str, Any] = {}
     stages = {number: analysis.stage(number) for number in problems}
     forms = forms_of(analysis, problems)
     long = withheld([*(stages[number].value for number in COUNTED if number in stages), *forms.results], FILE)
@@ -93,16 +93,16 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
     for number, stage in stages.items():
         key = PROBLEMS[number].attribute
         if stage.failure is None:
-            found[key] = section_of(PROBLEMS[number]).data(stage.value, system, write)
+            derived[key] = section_of(PROBLEMS[number]).data(stage.value, system, write)
         else:
             unavailable[key] = doc.Failure.from_result(stage.failure)
     if 5 in stages and stages[5].failure is None:
-        told = first_order(analysis, stages[5].value)
-        if told["first_order"] is not None:
-            found["state_space"] = linearisation.StateSpace.from_result(told["first_order"], write)
+        linear = first_order(analysis, stages[5].value)
+        if linear["first_order"] is not None:
+            derived["state_space"] = linearisation.StateSpace.from_result(linear["first_order"], write)
     if forms.some:
         sections, missing = canonical_data(forms, write, doc.Failure.from_result)
-        found |= sections
+        derived |= sections
         unavailable |= missing
     if system.reactions and 3 in problems:
         from mbsym.report.sections.equations import reaction_data
@@ -110,25 +110,25 @@ def _sections(analysis: Analysis, problems: Sequence[int], unavailable: dict[str
         stage = analysis.stage_of("reactions")
         if stage.failure is None:
             tied = analysis.constraints if system.constraints else None
-            found["reactions"] = reaction_data(stage.value, tied, write)
+            derived["reactions"] = reaction_data(stage.value, tied, write)
         else:
             unavailable["reactions"] = doc.Failure.from_result(stage.failure)
     state = analysis.optional("first_order") if system.speeds and 5 in problems else None
     if state is not None:
-        found["first_order"] = linearisation.FirstOrder.from_result(state, write)
-    return found
+        derived["first_order"] = linearisation.FirstOrder.from_result(state, write)
+    return derived
 
 
 def _initial(system: System) -> dict[str, doc.Initial]:
     """What the description says of the state at t = 0, and of where prescribed motions begin, by name."""
-    given = [(value.coordinate, value.position, value.velocity) for value in system.initial]
-    given += [(value.coordinate, value.position, None) for value in system.start]
-    given += [(prescribed.name, prescribed.initial, None) for prescribed in system.prescribed]
-    found: dict[str, dict[str, Any]] = {
+    conditions = [(value.coordinate, value.position, value.velocity) for value in system.initial]
+    conditions += [(value.coordinate, value.position, None) for value in system.start]
+    conditions += [(prescribed.name, prescribed.initial, None) for prescribed in system.prescribed]
+    initial_by_name: dict[str, dict[str, Any]] = {
         name: {key: text(x) for key, x in (("position", position), ("velocity", velocity)) if x is not None}
-        for name, position, velocity in given
+        for name, position, velocity in conditions
     }
-    return {name: doc.Initial(**said) for name, said in found.items() if said}
+    return {name: doc.Initial(**said) for name, said in initial_by_name.items() if said}
 
 
 def counted(formula: Formula) -> Counted:

@@ -84,8 +84,8 @@ def document(name: str) -> type[Struct]:
     module = import_module(f"mbsym.report.documents.{_MODULES.get(name, name)}")
     for kind, where in getattr(module, "LATER", {}).items():
         setattr(module, kind, _later(f"{module.__name__}.{where}", kind))
-    found: type[Struct] = getattr(module, "".join(word.title() for word in name.split("_")))
-    return found
+    document_type: type[Struct] = getattr(module, "".join(word.title() for word in name.split("_")))
+    return document_type
 
 
 def _later(module: str, kind: str) -> Any:
@@ -128,50 +128,50 @@ class _Writer:
         found = self._object(self.of, _generic(self.of, {})[2])
         return found | ({"$defs": self.definitions} if self.definitions else {})
 
-    def _count(self, hint: Any, given: Mapping[Any, Any]) -> None:
-        origin, hint, given = _generic(hint, given)
+    def _count(self, hint: Any, bindings: Mapping[Any, Any]) -> None:
+        origin, hint, bindings = _generic(hint, bindings)
         if isinstance(origin, type) and issubclass(origin, Struct):
             self.met[hint] += 1
             if self.met[hint] == 1:
                 for inner in _fields(origin).values():
-                    self._count(inner, given)
+                    self._count(inner, bindings)
         else:
             for inner in get_args(hint):
                 if origin is not Literal:
-                    self._count(inner, given)
+                    self._count(inner, bindings)
 
-    def _of(self, hint: Any, given: Mapping[Any, Any]) -> Schema:
-        origin, hint, given = _generic(hint, given)
+    def _of(self, hint: Any, bindings: Mapping[Any, Any]) -> Schema:
+        origin, hint, bindings = _generic(hint, bindings)
         if origin is Annotated:
-            return self._annotated(hint, given)
+            return self._annotated(hint, bindings)
         if origin in (Union, UnionType):
-            return self._one_of([x for x in get_args(hint) if x is not UnsetType], given)
+            return self._one_of([x for x in get_args(hint) if x is not UnsetType], bindings)
         if origin is Literal:
             choices = list(get_args(hint))
             return {"const": choices[0]} if len(choices) == 1 else {"enum": choices}
         if hint in _SIMPLE:
             return {"type": _SIMPLE[hint]}
         if origin in (list, tuple):
-            return {"type": "array", "items": self._of(get_args(hint)[0], given)}
+            return {"type": "array", "items": self._of(get_args(hint)[0], bindings)}
         if origin is dict:
             key, value = get_args(hint)
-            return self._mapping(key, value, given)
+            return self._mapping(key, value, bindings)
         if isinstance(hint, type) and issubclass(hint, Enum):
             return {"enum": [item.value for item in hint]}
         if isinstance(origin, type) and issubclass(origin, Struct):
             if self.met[hint] == 1:
-                return self._object(origin, given)
-            return self._defined(hint, _snake(origin.__name__), lambda: self._object(origin, given))
+                return self._object(origin, bindings)
+            return self._defined(hint, _snake(origin.__name__), lambda: self._object(origin, bindings))
         assert hint is Any, hint
         return {}
 
-    def _annotated(self, hint: Any, given: Mapping[Any, Any]) -> Schema:
+    def _annotated(self, hint: Any, bindings: Mapping[Any, Any]) -> Schema:
         kind, *remarks = get_args(hint)
         named = next((k for k, item in enumerate(remarks) if isinstance(item, Named)), None)
         if named is None:
-            return _remarked(self._of(kind, given), remarks)
+            return _remarked(self._of(kind, bindings), remarks)
         name, of_type, remarks = str(remarks[named]), remarks[:named], remarks[named + 1 :]
-        return _remarked(self._defined(name, name, lambda: _remarked(self._of(kind, given), of_type)), remarks)
+        return _remarked(self._defined(name, name, lambda: _remarked(self._of(kind, bindings), of_type)), remarks)
 
     def _defined(self, key: Any, name: str, write: Callable[[], Schema]) -> Schema:
         if key not in self.named:
@@ -182,27 +182,27 @@ class _Writer:
             self.definitions[name] = write()
         return {"$ref": f"#/$defs/{self.named[key]}"}
 
-    def _object(self, of: type[Struct], given: Mapping[Any, Any]) -> Schema:
+    def _object(self, of: type[Struct], bindings: Mapping[Any, Any]) -> Schema:
         fields = _fields(of)
         needed = [key for key, hint in fields.items() if not _left_out(hint)]
         found: Schema = {"description": text} if (text := _documented(of)) else {}
         found |= {"type": "object", "additionalProperties": False, "required": needed}
-        return found | {"properties": {key: self._property(hint, given) for key, hint in fields.items()}}
+        return found | {"properties": {key: self._property(hint, bindings) for key, hint in fields.items()}}
 
-    def _property(self, hint: Any, given: Mapping[Any, Any]) -> Schema:
+    def _property(self, hint: Any, bindings: Mapping[Any, Any]) -> Schema:
         """Where a field does not say what it is, its type does."""
-        found = self._of(hint, given)
+        found = self._of(hint, bindings)
         return found if "description" in found else {"description": _documented(hint)} | found
 
-    def _mapping(self, key: Any, value: Any, given: Mapping[Any, Any]) -> Schema:
+    def _mapping(self, key: Any, value: Any, bindings: Mapping[Any, Any]) -> Schema:
         found: Schema = {"type": "object"}
         if key is not str:
-            found["propertyNames"] = self._of(key, given)
-        inner = self._of(value, given)
+            found["propertyNames"] = self._of(key, bindings)
+        inner = self._of(value, bindings)
         return found | {"additionalProperties": inner} if inner else found
 
-    def _one_of(self, choices: list[Any], given: Mapping[Any, Any]) -> Schema:
-        written = [self._of(choice, given) for choice in choices]
+    def _one_of(self, choices: list[Any], bindings: Mapping[Any, Any]) -> Schema:
+        written = [self._of(choice, bindings) for choice in choices]
         others = [one for one in written if one != {"type": "null"}]
         if len(written) == 1:
             return written[0]
@@ -218,20 +218,20 @@ def _or_null(found: Schema) -> Schema:
     return found | kinds | ({"enum": [*found["enum"], None]} if "enum" in found else {})
 
 
-def _generic(hint: Any, given: Mapping[Any, Any]) -> tuple[Any, Any, Mapping[Any, Any]]:
+def _generic(hint: Any, bindings: Mapping[Any, Any]) -> tuple[Any, Any, Mapping[Any, Any]]:
     """The origin of a type, the type with what is given for its variables, and what is given within it."""
     if isinstance(hint, TypeVar):
-        return _generic(given[hint], given)
+        return _generic(bindings[hint], bindings)
     origin = get_origin(hint)
     if isinstance(origin, type) and issubclass(origin, Struct):
-        values = tuple(given.get(x, x) if isinstance(x, TypeVar) else x for x in get_args(hint))
+        values = tuple(bindings.get(x, x) if isinstance(x, TypeVar) else x for x in get_args(hint))
         variables = origin.__parameters__  # type: ignore[attr-defined]
         return origin, origin[values], dict(zip(variables, values, strict=True))  # type: ignore[index]
     if isinstance(hint, type) and issubclass(hint, Struct):
-        given = {}
-        for base in (x for one in hint.__mro__ for x in vars(one).get("__orig_bases__", ())):
-            given |= dict(zip(getattr(get_origin(base), "__parameters__", ()), get_args(base), strict=False))
-    return (origin or hint), hint, given
+        bindings = {}
+        for base in (x for ancestor in hint.__mro__ for x in vars(ancestor).get("__orig_bases__", ())):
+            bindings |= dict(zip(getattr(get_origin(base), "__parameters__", ()), get_args(base), strict=False))
+    return (origin or hint), hint, bindings
 
 
 def _documented(hint: Any) -> str:
@@ -250,8 +250,10 @@ def _left_out(hint: Any) -> bool:
 def _fields(of: type[Struct]) -> dict[str, Any]:
     """Key in the file -> type, in the order of the file."""
     hints = get_type_hints(of, include_extras=True)
-    found = {key: hints[name] for name, key in zip(of.__struct_fields__, of.__struct_encode_fields__, strict=True)}
-    return headed(found)
+    hints_by_key = {
+        key: hints[name] for name, key in zip(of.__struct_fields__, of.__struct_encode_fields__, strict=True)
+    }
+    return headed(hints_by_key)
 
 
 def _remarked(found: Schema, remarks: list[Any]) -> Schema:

@@ -29,7 +29,7 @@ class Target:
     """``needs``: the problems whose results the file can hold (None: all); of these it shows those asked for.
 
     ``program``: it is made from the straight-line program, which is checked then.  ``companions`` are written beside
-    it, as a header is, where they are ``wanted``: a part of a report is not, without what it would tell.  ``remark``:
+    it, as a header is, where they are ``applies``: a part of a report is not, without what it would tell.  ``remark``:
     what is to be told of a file that was made here, or "".
     """
 
@@ -41,7 +41,7 @@ class Target:
     companions: tuple[Target, ...] = ()
     program: bool = False
     remark: Callable[[], str] | None = None
-    wanted: Callable[[Analysis, Sequence[int]], bool] = always
+    applies: Callable[[Analysis, Sequence[int]], bool] = always
 
     @property
     def shows(self) -> tuple[int, ...]:
@@ -88,7 +88,7 @@ def _fragment(name: str, number: int | None, title: str) -> Target:
             return bool(analysis.system.bodies)
         return number is None or number in problems
 
-    return Target(name, f"fragments/{name}.tex", None, f"a part of the appendix: {title}", text, wanted=wanted)
+    return Target(name, f"fragments/{name}.tex", None, f"a part of the appendix: {title}", text, applies=wanted)
 
 
 _FRAGMENTS = (

@@ -100,9 +100,9 @@ class TreePrinter(ABC, Generic[Symbols]):
                 return self.sum(self._within(left, 1), operator, self._within(right, 2 if operator == "-" else 1)), 1
         raise TypeError(f"not an expression: {value!r}")
 
-    def _within(self, value: Expression, wanted: int) -> str:
+    def _within(self, value: Expression, minimum: int) -> str:
         text, precedence = self._written(value)
-        return text if precedence >= wanted else self.bracketed(text)
+        return text if precedence >= minimum else self.bracketed(text)
 
 
 def _is_fraction(value: Expression) -> bool:

@@ -18,7 +18,7 @@ def pretty(unit: str | None) -> str | None:
     """For people on screens and axes: ``kg\u00b7m\u00b2/s\u00b2``."""
     if not unit:
         return unit
-    raised = _POWER.sub(lambda found: _raised(found[1] or found[2]), unit)
+    raised = _POWER.sub(lambda match: _raised(match[1] or match[2]), unit)
     return re.sub(r"\s*\*\s*", "\u00b7", raised)
 
 
@@ -35,21 +35,21 @@ def latex(unit: str | None) -> str:
     r"""Mathematical LaTeX: ``\mathrm{kg}\,\mathrm{m}^{2}``; "" for a pure number, and where the unit is not known."""
     if not unit:
         return ""
-    found = []
+    pieces = []
     place = 0
     while place < len(unit):
         power = _POWER.match(unit, place)
         if power:
-            found.append(f"^{{{power[1] or power[2]}}}")
+            pieces.append(f"^{{{power[1] or power[2]}}}")
             place = power.end()
             continue
         token = _TOKEN.match(unit, place)
         assert token is not None
-        found.append(
+        pieces.append(
             f"\\mathrm{{{token[0]}}}" if token[0].isalpha() else _LATEX.get(token[0].strip(), token[0].strip())
         )
         place = token.end()
-    return "".join(found)
+    return "".join(pieces)
 
 
 def bracketed(unit: str | None, space: str = "") -> str:

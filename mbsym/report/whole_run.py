@@ -42,7 +42,7 @@ class Rendered:
 
 def rendered(target: Target, analysis: Analysis, problems: Sequence[int]) -> tuple[Rendered, ...]:
     """A target's files, its companions with it: all of them, or none."""
-    targets = [part for part in target.companions if part.wanted(analysis, problems)]
+    targets = [part for part in target.companions if part.applies(analysis, problems)]
     without = tuple(Rendered(part.filename, None) for part in target.companions if part not in targets)
     files = tuple(_rendered(part, analysis, problems) for part in (target, *targets))
     failed = next((file for file in files if file.text is None), None)
@@ -170,13 +170,13 @@ def derive_all(
         with writing():
             return checks, _made(early, analysis, _silent)
 
-    with beside(work, lambda found: len(analysis.defects) == defects and _whole(found[1])) as found:
+    with beside(work, lambda outcome: len(analysis.defects) == defects and _whole(outcome[1])) as outcome:
         with analysis.unvouched():
             derive(late=True)
             if helped:
                 _prepare(formats, analysis, writing)
         say(write.said(Said("Self-check")))
-        checks, files = found()
+        checks, files = outcome()
     analysis.take(checks)
     if analysis.system.claims:
         say(write.said(Said("Claims")))
@@ -230,12 +230,12 @@ def lost(analysis: Analysis, files: Iterable[Rendered]) -> list[tuple[str, NoRes
     failures = [
         (Message("problem [[number]]", number=number), analysis.stage(number).failure) for number in analysis.problems
     ]
-    found: list[tuple[str, NoResult]] = [
+    losses: list[tuple[str, NoResult]] = [
         (where, failure) for where, failure in failures if failure is not None and failure.error is not None
     ]
     for file in files:
         if file.failure is not None:
-            found.append((Message("[[file]] cannot be written", file=file.filename), file.failure))
+            losses.append((Message("[[file]] cannot be written", file=file.filename), file.failure))
         text = "[[file]]: problem [[number]] cannot be written"
-        found += [(Message(text, file=file.filename, number=number), why) for number, why in file.withheld]
-    return found
+        losses += [(Message(text, file=file.filename, number=number), why) for number, why in file.withheld]
+    return losses

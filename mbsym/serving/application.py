@@ -95,9 +95,9 @@ class Editor:
             if content.digest:
                 body = {"text": content.text, "format": looking.spelling(content.text, path.name)}
                 self.jobs.ahead(self._task("derive", body))
-            told = self._file()
+            document = self._file()
             with suppress(Exception):  # whoever asks hears of it
-                looking.view(told["text"], self._named(told), self._folder)
+                looking.view(document["text"], self._named(document), self._folder)
         self.jobs.warm()
 
     async def _watch(self) -> None:
@@ -142,14 +142,14 @@ class Editor:
     # --- the page and the file ----------------------------------------------------------------------------------------
 
     async def static(self, request: Request) -> Response:
-        found = STATIC.get(request.path_params.get("name", ""))
-        if found is None:
+        asset = STATIC.get(request.path_params.get("name", ""))
+        if asset is None:
             return refused(404, "not-found", "there is nothing here")
         try:
-            content = await asyncio.to_thread(files("mbsym.serving").joinpath("page", found[0]).read_bytes)
+            content = await asyncio.to_thread(files("mbsym.serving").joinpath("page", asset[0]).read_bytes)
         except OSError:
             return refused(404, "not-built", "the page is not built: make page")
-        return Response(content, media_type=found[1])
+        return Response(content, media_type=asset[1])
 
     async def file(self, request: Request) -> Response:
         last = self.told.last  # before the file is read: what becomes of it then is told to who listens from here
@@ -249,21 +249,21 @@ class Editor:
 
     async def hover(self, body: Mapping[str, Any], _: Request) -> Any:
         text, offset = text_of(body), whole(body, "offset")
-        found = await asyncio.to_thread(looking.hovered, text, offset)
-        if found is not None:
-            return found
-        told = await self._result({**self._task("hover", body), "offset": offset})
-        return told.get("value") if told["kind"] == "hover" else None
+        explanation = await asyncio.to_thread(looking.hovered, text, offset)
+        if explanation is not None:
+            return explanation
+        outcome = await self._result({**self._task("hover", body), "offset": offset})
+        return outcome.get("value") if outcome["kind"] == "hover" else None
 
     async def convert(self, body: Mapping[str, Any], _: Request) -> Any:
         to = text_of(body, "to")
         if to not in ("yaml", "text"):
             raise Wrong("to is yaml or text")
-        found = await asyncio.to_thread(looking.converted, text_of(body), self._named(body), to, self._folder)
-        if "text" not in found:
-            words = "; ".join(x["message"] for x in found["complaints"][:3])
-            return JSONResponse({"error": "mistakes", "message": words, **found}, status_code=422)
-        return found
+        conversion = await asyncio.to_thread(looking.converted, text_of(body), self._named(body), to, self._folder)
+        if "text" not in conversion:
+            words = "; ".join(x["message"] for x in conversion["complaints"][:3])
+            return JSONResponse({"error": "mistakes", "message": words, **conversion}, status_code=422)
+        return conversion
 
     async def formula(self, body: Mapping[str, Any], _: Request) -> Any:
         return await asyncio.to_thread(looking.typed_formula, text_of(body, "source"))
@@ -272,10 +272,10 @@ class Editor:
         async with self._slow:
             if await request.is_disconnected():
                 return {}
-            told = await self._while_there({**self._task("picture", body), "set": mapping(body, "set")}, request)
-        if told["kind"] == "picture":
-            return told["value"]
-        return {"complaints": [_whole_complaint(told.get("words", ""))]}
+            outcome = await self._while_there({**self._task("picture", body), "set": mapping(body, "set")}, request)
+        if outcome["kind"] == "picture":
+            return outcome["value"]
+        return {"complaints": [_whole_complaint(outcome.get("words", ""))]}
 
     # --- jobs ---------------------------------------------------------------------------------------------------------
 
@@ -298,8 +298,8 @@ class Editor:
         async def begin(body: Mapping[str, Any], _: Request) -> Any:
             task = self._task(kind, body)
             task |= {name: mapping(body, name) for name in ("set", "x", "y") if name in body}
-            given = [name for name in ("time", "method", "language") if body.get(name) is not None]
-            task |= {name: str(body[name])[:100] for name in given}
+            settings = [name for name in ("time", "method", "language") if body.get(name) is not None]
+            task |= {name: str(body[name])[:100] for name in settings}
             if body.get("problems") is not None:
                 task["problems"] = _chosen(listed(body, "problems", int))
             _known_language(task.get("language"))
@@ -322,12 +322,12 @@ class Editor:
         if body.get("problems") is not None:
             task["problems"] = _chosen(listed(body, "problems", int))
         _known_language(task["language"])
-        told = await asyncio.to_thread(self.jobs.result, task, "", 600.0)
-        if told["kind"] != "files":
-            return refused(422, "no-report", str(told.get("words", "nothing was made")))
-        folder, words = self.services.folder, list(told["words"])
+        outcome = await asyncio.to_thread(self.jobs.result, task, "", 600.0)
+        if outcome["kind"] != "files":
+            return refused(422, "no-report", str(outcome.get("words", "nothing was made")))
+        folder, words = self.services.folder, list(outcome["words"])
         try:
-            written = await asyncio.to_thread(self.services.deliver, folder, told["files"], "run", told["gone"])
+            written = await asyncio.to_thread(self.services.deliver, folder, outcome["files"], "run", outcome["gone"])
         except OSError as error:
             return refused(422, "unwritable", error.strerror or str(error))
         return {"files": [str(path) for path in written], "words": words}
@@ -421,8 +421,8 @@ def posted(work: Work) -> Handler:
             return refused(400, "json", "JSON is wanted")
         if not isinstance(body, dict):
             return refused(400, "json", "an object is wanted")
-        found = await work(body, request)
-        return found if isinstance(found, Response) else JSONResponse(found)
+        answer = await work(body, request)
+        return answer if isinstance(answer, Response) else JSONResponse(answer)
 
     return safely(handle)
 

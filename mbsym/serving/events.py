@@ -102,7 +102,7 @@ class Events:
     async def _stream(self, after: int, lost: bool) -> AsyncIterator[str]:
         queue: Queue = asyncio.Queue(MOST_WAITING)
         self._pages.add(queue)
-        missed = [told for told in self._kept if told.number > after]
+        missed = [event for event in self._kept if event.number > after]
         try:
             yield "retry: 1000\n\n"
             if lost:
@@ -121,5 +121,5 @@ class Events:
         finally:
             self._pages.discard(queue)
 
-    def _lines(self, told: SentEvent) -> str:
-        return f"id: {self._name(told.number)}\ndata: {told.text}\n\n"
+    def _lines(self, event: SentEvent) -> str:
+        return f"id: {self._name(event.number)}\ndata: {event.text}\n\n"

@@ -101,7 +101,7 @@ class _Job:
     #: Nothing is loaded yet, so that its process begins by itself instead of waiting for one to be forked from.
     cold: bool = False
     #: What nobody has asked for yet.
-    kept: list[Event] | None = None
+    waiting: list[Event] | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def say(self, event: Event) -> None:
@@ -110,14 +110,14 @@ class _Job:
             if self.over:
                 return
             self.over = event["kind"] in _ENDS
-            (self.tell if self.kept is None else self.kept.append)({"job": self.name, **event})
+            (self.tell if self.waiting is None else self.waiting.append)({"job": self.name, **event})
 
     def tell_kept(self) -> None:
         """From now on it is told to somebody, what was kept first; of what is being done only the last word."""
         with self.lock:
-            kept, self.kept = self.kept or [], None
-            for k, event in enumerate(kept):
-                if event["kind"] != "progress" or k == len(kept) - 1:
+            events, self.waiting = self.waiting or [], None
+            for k, event in enumerate(events):
+                if event["kind"] != "progress" or k == len(events) - 1:
                     self.tell(event)
 
     def end(self, words: str, kind: str = "cancelled") -> None:
@@ -149,7 +149,7 @@ class Jobs:
 
     def ahead(self, task: Mapping[str, Any]) -> None:
         """Begins what a page will ask for; the first task of its kind that is another one ends it."""
-        job = _Job(str(next(self._numbers)), str(task["kind"]), "", self._tell, cold=True, kept=[])
+        job = _Job(str(next(self._numbers)), str(task["kind"]), "", self._tell, cold=True, waiting=[])
         with self._lock:
             if self._closed or self._ahead is not None:
                 return
@@ -161,8 +161,8 @@ class Jobs:
         """The job that was begun ahead where it is this one; where it is of another text it ends."""
         if self._ahead is None or self._ahead[0]["kind"] != task["kind"]:
             return None
-        (asked, job), self._ahead = self._ahead, None
-        if asked == dict(task) and not (job.kept and job.kept[-1]["kind"] == "cancelled"):
+        (begun_task, job), self._ahead = self._ahead, None
+        if begun_task == dict(task) and not (job.waiting and job.waiting[-1]["kind"] == "cancelled"):
             return job
         threading.Thread(target=job.end, args=("another text is asked for",), daemon=True).start()
         return None
@@ -186,8 +186,8 @@ class Jobs:
             others = [x for x in own if x not in old] if tell is None else []
             if begun is None:
                 self._running[job.name] = job
-        for one in old:
-            one.end("begun again")
+        for previous in old:
+            previous.end("begun again")
         for other in others[: max(0, len(others) + 1 - MOST_AT_ONCE)]:
             other.end("it made room for another")
         if begun is None:

@@ -91,30 +91,30 @@ def content_of(shown: Mapping[str, Any]) -> str | None:
     SHA-256 of the keys and values as spelled, in their order.  None where the text cannot be read as a whole: what is
     left out of the tree then could say anything.
     """
-    if shown["tree"] is None or any(one["severity"] == "error" for one in shown["complaints"]):
+    if shown["tree"] is None or any(complaint["severity"] == "error" for complaint in shown["complaints"]):
         return None
-    found = hashlib.sha256(str(shown["format"]).encode())
+    digest = hashlib.sha256(str(shown["format"]).encode())
     waiting = [shown["tree"]]
     while waiting:
         node = waiting.pop()
         item = [node["kind"], node["path"], node.get("source")]
-        found.update(json.dumps(item, ensure_ascii=True).encode() + b"\n")
+        digest.update(json.dumps(item, ensure_ascii=True).encode() + b"\n")
         waiting += node.get("children", ())
-    return found.hexdigest()
+    return digest.hexdigest()
 
 
 def changed(text: str, name: str, operations: list[Any], folder: Path | None) -> dict[str, Any]:
     """What text edits operations mean, or why they mean none."""
     from mbsym.editing.document import changes
 
-    found: dict[str, Any] = Offsets(text).in_units(changes(text, name, operations, folder))
-    return found
+    edits: dict[str, Any] = Offsets(text).in_units(changes(text, name, operations, folder))
+    return edits
 
 
-def complaints_json(found: list[Complaint], places: Offsets) -> list[dict[str, Any]]:
+def complaints_json(complaints: list[Complaint], places: Offsets) -> list[dict[str, Any]]:
     """Complaints of the seam."""
     listed = []
-    for complaint in found:
+    for complaint in complaints:
         start, end = places.of_span(complaint.span)
         listed.append(
             {
@@ -137,7 +137,7 @@ def completed(text: str, offset: int, system: System | None) -> dict[str, Any]:
     before = text[: places.characters(offset)]
     start = before.rfind("\n") + 1
     word = _WORD.search(before)
-    found = suggestions(text, before.count("\n"), len(before) - start, system)
+    proposals = suggestions(text, before.count("\n"), len(before) - start, system)
     items = [
         {
             "label": suggestion.label,
@@ -146,7 +146,7 @@ def completed(text: str, offset: int, system: System | None) -> dict[str, Any]:
             "insert": suggestion.insert or suggestion.label,
             "documentation": suggestion.meaning,
         }
-        for suggestion in found
+        for suggestion in proposals
     ]
     return {"from": places.units(word.start() if word else len(before)), "items": items}
 
@@ -168,8 +168,8 @@ def word_at(text: str, offset: int) -> tuple[int, int, int, int]:
 def hovered(text: str, offset: int) -> dict[str, Any] | None:
     """What a word means as far as the reader's tables tell; nothing is derived for it."""
     line, column, start, end = word_at(text, offset)
-    told = explanation(text, line, column)
-    return None if told is None else {"from": start, "to": end, "markdown": told}
+    markdown = explanation(text, line, column)
+    return None if markdown is None else {"from": start, "to": end, "markdown": markdown}
 
 
 def converted(text: str, name: str, to: str, folder: Path | None) -> dict[str, Any]:
@@ -259,42 +259,42 @@ class Wrong(Exception):
 
 def text_of(body: Mapping[str, Any], name: str = "text") -> str:
     """Raises Wrong where it is no text, here and below."""
-    found = body.get(name)
-    if not isinstance(found, str):
+    text = body.get(name)
+    if not isinstance(text, str):
         raise Wrong(f"{name} is a text")
-    return found
+    return text
 
 
 def flag(body: Mapping[str, Any], name: str) -> bool:
     """False where it is left out."""
-    found = body.get(name, False)
-    if not isinstance(found, bool):
+    value = body.get(name, False)
+    if not isinstance(value, bool):
         raise Wrong(f"{name} is true or false")
-    return found
+    return value
 
 
 def whole(body: Mapping[str, Any], name: str) -> int:
     """A number from 0 on."""
-    found = body.get(name)
-    if type(found) is not int or found < 0:
+    number = body.get(name)
+    if type(number) is not int or number < 0:
         raise Wrong(f"{name} is a whole number from 0 on")
-    return found
+    return number
 
 
 def listed(body: Mapping[str, Any], name: str, kind: type[T]) -> list[T]:
     """Of at most a thousand of a kind."""
-    found = body.get(name)
-    if not isinstance(found, list) or len(found) > 1000 or any(type(x) is not kind for x in found):
+    values = body.get(name)
+    if not isinstance(values, list) or len(values) > 1000 or any(type(x) is not kind for x in values):
         raise Wrong(f"{name} is a list")
-    return found
+    return values
 
 
 def mapping(body: Mapping[str, Any], name: str) -> dict[str, str]:
     """Names with short texts; numbers become texts.  Empty where it is left out."""
-    found = body.get(name)
-    if found is None:
+    entries = body.get(name)
+    if entries is None:
         return {}
     kinds = (str, int, float)
-    if not isinstance(found, dict) or len(found) > 1000 or any(type(x) not in kinds for x in found.values()):
+    if not isinstance(entries, dict) or len(entries) > 1000 or any(type(x) not in kinds for x in entries.values()):
         raise Wrong(f"{name} has names with numbers")
-    return {key: str(value)[:200] for key, value in found.items()}
+    return {key: str(value)[:200] for key, value in entries.items()}

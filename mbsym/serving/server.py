@@ -33,10 +33,14 @@ class Connection(H11Protocol):
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
         if len(self.connections) > MOST_CONNECTIONS // 2:
-            silent = [one for one in self.connections if isinstance(one, Connection) and one.cycle is None]
-            for one in silent:
-                if one is not self and one.transport is not None:
-                    one.transport.close()
+            silent = [
+                connection
+                for connection in self.connections
+                if isinstance(connection, Connection) and connection.cycle is None
+            ]
+            for connection in silent:
+                if connection is not self and connection.transport is not None:
+                    connection.transport.close()
 
 
 class Server(uvicorn.Server):
@@ -54,18 +58,18 @@ class Server(uvicorn.Server):
 
 def bound(port: int) -> socket.socket:
     """A socket that listens at the loopback address; a free port for 0.  Raises OSError where the port is taken."""
-    found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         # Else a port is "in use" for a minute after its server ended; on Windows the option would let two in.
         if os.name == "posix":
-            found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        found.bind((LOOPBACK, port))
-        found.listen(128)  # only this takes the port from others that ask for the same option
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((LOOPBACK, port))
+        listener.listen(128)  # only this takes the port from others that ask for the same option
     except BaseException:
-        found.close()
+        listener.close()
         raise
-    found.set_inheritable(False)
-    return found
+    listener.set_inheritable(False)
+    return listener
 
 
 def _server(path: Path, services: Services, line: socket.socket) -> tuple[Server, str]:

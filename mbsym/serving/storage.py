@@ -110,8 +110,8 @@ class Storage:
     def stamp(self) -> tuple[int, int, int] | None:
         """Changes whenever the file is written, as far as the system tells; None where there is none."""
         with suppress(OSError):
-            found = self.path.stat()
-            return found.st_mtime_ns, found.st_size, found.st_ino
+            status = self.path.stat()
+            return status.st_mtime_ns, status.st_size, status.st_ino
         return None
 
     def save(self, text: str, digest: str, force: bool = False) -> str:

@@ -176,8 +176,8 @@ def _derive(task: Task, system: System) -> Iterator[Message]:
     from mbsym.analysis.given import chosen
     from mbsym.report.html.report import title
 
-    asked = task.get("problems")
-    problems = tuple(sorted(asked)) if asked else chosen(system, USUAL_PROBLEMS)
+    requested_problems = task.get("problems")
+    problems = tuple(sorted(requested_problems)) if requested_problems else chosen(system, USUAL_PROBLEMS)
     analysis = Analysis(system, problems)
     analysis.language = task.get("language") or ""
     yield {"kind": "plan", "sections": [[str(x), title(analysis, x)] for x in _plan(analysis)]}
@@ -239,8 +239,8 @@ def _export(task: Task, system: System) -> Iterator[Message]:
     from mbsym.report.whole_run import derive_all, lost, rendered_all
 
     formats = [name for name in task["formats"] if name in FORMATS]
-    asked = task.get("problems")
-    problems = tuple(sorted(asked)) if asked else chosen(system, shown_by(formats))
+    requested_problems = task.get("problems")
+    problems = tuple(sorted(requested_problems)) if requested_problems else chosen(system, shown_by(formats))
     analysis = Analysis(system, problems)
     analysis.language = task.get("language") or ""
     said: list[str] = []
@@ -273,8 +273,8 @@ def _hover(task: Task, system: System) -> Iterator[Message]:
     from mbsym.serving.looking import word_at
 
     line, column, start, end = word_at(task["text"], task["offset"])
-    told = explanation(task["text"], line, column, Analysis(system))
-    value = None if told is None else {"from": start, "to": end, "markdown": told}
+    markdown = explanation(task["text"], line, column, Analysis(system))
+    value = None if markdown is None else {"from": start, "to": end, "markdown": markdown}
     yield {"kind": "hover", "value": value}
 
 
@@ -293,9 +293,9 @@ def _simulate(task: Task, system: System) -> Iterator[Message]:
         raise Refused("the time is a number above 0")
     yield {"kind": "progress", "words": "the equations are integrated"}
     request = Request(time=until, method=str(task.get("method") or "auto"))
-    found = motion(system, request, overrides)
-    wanted = [name for name in picture(system, overrides).program.inputs if name.endswith("_dot")]
-    yield {"kind": "motion", "value": motion_json(found, wanted)}
+    solved_motion = motion(system, request, overrides)
+    velocity_names = [name for name in picture(system, overrides).program.inputs if name.endswith("_dot")]
+    yield {"kind": "motion", "value": motion_json(solved_motion, velocity_names)}
 
 
 def _equilibria(task: Task, system: System) -> Iterator[Message]:
@@ -362,11 +362,13 @@ def _map(task: Task, system: System) -> Iterator[Message]:
         raise Refused("a map has an axis or two")
     yield {"kind": "progress", "words": "the plane is divided" if len(axes) == 2 else "the line is divided"}
     analysis, settings, language = Analysis(system), _numbers(task), Language(task.get("language") or "")
-    found = exact_map(analysis, axes, settings)
-    image = next(iter(map_figure(system, found, language, ("png",)).values()))
+    verdict_map = exact_map(analysis, axes, settings)
+    image = next(iter(map_figure(system, verdict_map, language, ("png",)).values()))
     words = []
-    if found.check is not None and not found.check.holds:
-        words = [f"withdrawn, as the map's own check fails: {finding.mistake}" for finding in found.check.findings[:20]]
+    if verdict_map.check is not None and not verdict_map.check.holds:
+        words = [
+            f"withdrawn, as the map's own check fails: {finding.mistake}" for finding in verdict_map.check.findings[:20]
+        ]
     yield {"kind": "map", "image": f"data:image/png;base64,{b64encode(image).decode()}", "words": words}
 
 

@@ -32,20 +32,20 @@ FINER, REPEATS = {"tolerance": 0.1, "step": 0.5}, 2
 UNSHOWN = (Lacking.TOO_LONG, Lacking.CUT, Lacking.BREAKS_DOWN, Lacking.INTERRUPTED, Lacking.CONTRADICTED)
 
 
-def read_accuracy(system: System, given: float | Mapping[str, float]) -> Accuracy:
+def read_accuracy(system: System, accuracy: float | Mapping[str, float]) -> Accuracy:
     """An error for everything, or errors by quantity, for everything else by the name "".
 
     Raises ValueError with everything that is wrong.
     """
-    errors = given if isinstance(given, Mapping) else {"accuracy": given}
+    errors = accuracy if isinstance(accuracy, Mapping) else {"accuracy": accuracy}
     known = ("", *system.coordinates, *system.velocities, ENERGY)
-    wrong = [f"there is no quantity {name}" for name in errors if isinstance(given, Mapping) and name not in known]
+    wrong = [f"there is no quantity {name}" for name in errors if isinstance(accuracy, Mapping) and name not in known]
     wrong += [f"{name}: an error is between 0 and 0.5, not {x}" for name, x in errors.items() if not 0 < x <= 0.5]
     if wrong or not errors:
         raise ValueError("; ".join(wrong) or "no error is given")
-    if not isinstance(given, Mapping):
-        return Accuracy(float(given))
-    return Accuracy(given.get(""), {name: x for name, x in given.items() if name})
+    if not isinstance(accuracy, Mapping):
+        return Accuracy(float(accuracy))
+    return Accuracy(accuracy.get(""), {name: x for name, x in accuracy.items() if name})
 
 
 def settled_by(request: Request) -> Pins:
@@ -126,14 +126,14 @@ def simulate_accurately(
     )
 
 
-def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
+def _raised(plan: Plan, simulation: Simulation) -> tuple[Bound, ...]:
     """The bounds; where the run's own estimate is more than what was measured for the plan, that takes its place.
 
     A single bound for everything is that of the quantity which now has the least room.
     """
-    if not isinstance(found.error, ErrorEstimate):
+    if not isinstance(simulation.error, ErrorEstimate):
         return plan.bounds
-    errors = {difference.name: difference.largest / difference.scale for difference in found.error.quantities}
+    errors = {difference.name: difference.largest / difference.scale for difference in simulation.error.quantities}
     others = {name: error for name, error in errors.items() if name not in plan.accuracy.named}
     bounds = []
     for bound in plan.bounds:
@@ -146,12 +146,12 @@ def _raised(plan: Plan, found: Simulation) -> tuple[Bound, ...]:
     return tuple(bounds)
 
 
-def _proved(bound: Bound, found: Simulation) -> Bound:
+def _proved(bound: Bound, simulation: Simulation) -> Bound:
     """The bound with what the certificate proves of the run's error at the rows, where all of them are enclosed."""
-    names = (*found.system.coordinates, *found.system.velocities)
-    if found.certificate is None or not found.certificate.whole or bound.quantity not in names:
+    names = (*simulation.system.coordinates, *simulation.system.velocities)
+    if simulation.certificate is None or not simulation.certificate.whole or bound.quantity not in names:
         return bound
-    return replace(bound, proved=found.certificate.error_of(names.index(bound.quantity)))
+    return replace(bound, proved=simulation.certificate.error_of(names.index(bound.quantity)))
 
 
 def _with_error(bound: Bound, error: float) -> Bound:
@@ -166,17 +166,17 @@ def _with_error(bound: Bound, error: float) -> Bound:
     return replace(bound, shares=shares)
 
 
-def _missed(plan: Plan, found: Simulation, times: float) -> str:
+def _missed(plan: Plan, simulation: Simulation, times: float) -> str:
     """What the estimate, so many times, says against the plan; empty where it agrees or there is none.
 
     A plan that does not reach its accuracy promises as many times less.
     """
-    if not isinstance(found.error, ErrorEstimate):
+    if not isinstance(simulation.error, ErrorEstimate):
         return ""
-    names = [quantity.name for quantity in found.error.quantities]
+    names = [quantity.name for quantity in simulation.error.quantities]
     bound = plan.bound
     targets = plan.accuracy.targets(names) * max(1.0, bound.total / bound.target)
-    for quantity, target in zip(found.error.quantities, targets, strict=True):
+    for quantity, target in zip(simulation.error.quantities, targets, strict=True):
         error = quantity.largest / quantity.scale
         if isfinite(target) and times * error > target:
             more = Message("which is" if error > target else "and twice that is")

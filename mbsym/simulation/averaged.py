@@ -30,7 +30,7 @@ NOISE = 1e-6
 def measured(
     system: System,
     averaged: System,
-    found: Averaged,
+    average: Averaged,
     time: float | None = None,
     watch: Callable[[str], None] = lambda what: None,
 ) -> Measured:
@@ -38,20 +38,20 @@ def measured(
 
     Raises Incomplete where numbers are missing, NoClosedForm where a motion does not last, or both are the same.
     """
-    given = scenario(system)
-    values = dict(given.parameters)
-    rate = min(abs(float(values[one])) for one in found.rates)
+    base = scenario(system)
+    values = dict(base.parameters)
+    rate = min(abs(float(values[rate_name])) for rate_name in average.rates)
     time = PERIODS * 2 * pi / rate if time is None else time
     distances = []
     for part in PARTS:
         watch(f"eps/{part.denominator}" if part != 1 else "eps")
         scaled: dict[str, Expression] = {
-            name: number(Fraction(values[name]) * part**power) for name, power in found.orders
+            name: number(Fraction(values[name]) * part**power) for name, power in average.orders
         }
-        scaled |= {one: number(Fraction(values[one]) / part) for one in found.rates}
+        scaled |= {rate_name: number(Fraction(values[rate_name]) / part) for rate_name in average.rates}
         own = scenario(system, scaled)
         exact = simulate(own, Request(time=time, samples=ROWS, estimate=False))
-        start = _start(own, found)
+        start = _start(own, average)
         slow = simulate(scenario(averaged, {**scaled, **start}), Request(time=time, samples=ROWS, estimate=False))
         q, Q = np.asarray(exact.coordinates), np.asarray(slow.coordinates)
         if q.shape != Q.shape or not (np.isfinite(q).all() and np.isfinite(Q).all()):
@@ -64,14 +64,14 @@ def measured(
     return Measured(time, PARTS, tuple(distances))
 
 
-def _start(own: Scenario, found: Averaged) -> Mapping[str, Expression]:
+def _start(own: Scenario, average: Averaged) -> Mapping[str, Expression]:
     """Q' = q' + M^-1 a at the beginning: the same momenta."""
     values: dict[str, Any] = {name: rationals.ball(x) for name, x in own.parameters.items()}
     places = dict(zip(own.system.coordinates, own.positions, strict=True))
     places |= {name: initial for name, (initial, _) in own.prescribed.items()}
     values |= {name: rationals.ball(x) for name, x in places.items()}
     start = {}
-    for name, velocity, swing in zip(own.system.coordinates, own.velocities, found.swings, strict=True):
+    for name, velocity, swing in zip(own.system.coordinates, own.velocities, average.swings, strict=True):
         shift = float(swing.ring.evaluate(swing.polynomial, values).mid())
         start[velocity_name(name)] = number(velocity + Fraction(shift))
     return start

@@ -49,12 +49,12 @@ def simulate_many(
     values = drawn(system, spread.variations, spread.members, spread.seed, spread.sampling)
     names = [variation.name for variation in spread.variations]
     free = [name for name in names if name in system.parameter_names]
-    found = members(parametrised(begun, free, overrides, request.fixed), names, values)
+    population = members(parametrised(begun, free, overrides, request.fixed), names, values)
     method = "dop853" if request.method == "auto" else request.method
     fixed = request.step is not None
     tolerance = None if fixed else request.tolerance or TOLERANCE["float64"]
     setting = Setting(tolerance, request.step, request.step_limit, request.longest)
-    return ensemble(found, method, setting, _times(request, begun), threads, watch)
+    return ensemble(population, method, setting, _times(request, begun), threads, watch)
 
 
 def _times(request: Request, scenario: Scenario) -> Any:

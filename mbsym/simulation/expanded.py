@@ -74,7 +74,7 @@ class Measured:
 
 def measured(
     system: System,
-    found: Expansion,
+    expansion: Expansion,
     time: float | None = None,
     values: Mapping[str, Fraction] | None = None,
     watch: Callable[[str], None] = lambda what: None,
@@ -89,7 +89,7 @@ def measured(
     base = scenario_in_states(begins) if system.speeds else closed(begins).scenario
     names = (*base.system.coordinates, *base.system.velocities)
     start = {name: Fraction(float(value)) for name, value in zip(names, base.state, strict=True)}
-    manifold = found.manifold
+    manifold = expansion.manifold
     scales = dict(system.small.powers) or {system.small.name: 1}
     distances: list[float] = []
     for part in PARTS:
@@ -97,7 +97,7 @@ def measured(
         scaled = {name: number(base.parameters[name] * part**power) for name, power in scales.items()}
         own = scenario(system, overrides | scaled, declared=True)
         eps = part * (Fraction(1) if system.small.powers else base.parameters[system.small.name])
-        here = _Numbers(found, base.parameters, eps)
+        here = _Numbers(expansion, base.parameters, eps)
         flow, first = here.flow(), [start[name] for name in manifold.slow]
         begun = start | dict(zip(manifold.fast, here.on_manifold(first), strict=True))
         if time is None:
@@ -121,7 +121,7 @@ class _Numbers:
     """The series of an expansion at numbers for its parameters, and eps."""
 
     def __init__(self, found: Expansion, parameters: Mapping[str, Fraction], eps: Fraction) -> None:
-        self.found, self.eps = found, eps
+        self.expansion, self.eps = found, eps
         field, root = found.manifold.field.field, found.manifold.root
         names = [root.instead if root is not None and name == root.label else name for name in found.names]
         self.places = [names.index(name) for name in found.manifold.slow]
@@ -135,7 +135,7 @@ class _Numbers:
         at = [fmpq(0) if x is None else x for x in self.known]
         for place, x in zip(self.places, s, strict=True):
             at[place] = rationals.exact(x)
-        root = self.found.manifold.root
+        root = self.expansion.manifold.root
         if root is not None:
             square = rationals.fraction(root.square(*at))
             if square < 0:
@@ -147,7 +147,7 @@ class _Numbers:
         """h(s, eps), exactly but for its square root."""
         at = self._at(s)
         total = []
-        for function in self.found.manifold.functions:
+        for function in self.expansion.manifold.functions:
             value = fmpq(0)
             for k, c in function.coefficients.items():
                 value += c.top(*at) / c.bottom(*at) * rationals.exact(self.eps) ** k
@@ -156,8 +156,8 @@ class _Numbers:
 
     def flow(self) -> Flow:
         """s -> s', in floating point, cut off after the order of the expansion."""
-        rows = [self._row(series) for series in self.found.manifold.flow]
-        root = self.found.manifold.root
+        rows = [self._row(series) for series in self.expansion.manifold.flow]
+        root = self.expansion.manifold.root
         if root is None:
             return lambda s: np.array([sum(top(s) / bottom(s) for top, bottom in row) for row in rows])
         square = self._polynomial(root.square, Fraction(1), None)
@@ -169,7 +169,7 @@ class _Numbers:
         return moved
 
     def _row(self, series: Series) -> list[tuple[Evaluated, Evaluated]]:
-        root = self.found.manifold.root
+        root = self.expansion.manifold.root
         place = None if root is None else root.place
         return [
             (self._polynomial(c.top, self.eps**k, place), self._polynomial(c.bottom, Fraction(1), place))
@@ -184,7 +184,7 @@ class _Numbers:
             for k, (x, e) in enumerate(zip(self.known, monomial, strict=True)):
                 value = value * x ** int(e) if x is not None and e and k != root else value
             powers = [int(monomial[place]) if place != root else 0 for place in self.places]
-            if self.found.manifold.root is not None:
+            if self.expansion.manifold.root is not None:
                 powers.append(0 if root is None else int(monomial[root]))
             exponents.append(powers)
             numbers.append(int(value.p) / int(value.q))

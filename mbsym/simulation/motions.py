@@ -104,7 +104,7 @@ def lyapunov_exponents(
 
 
 def gradient_of(
-    system: System, values: Mapping[str, Expression], functional: str, wanted: Sequence[str], time: float
+    system: System, values: Mapping[str, Expression], functional: str, variables: Sequence[str], time: float
 ) -> Gradient:
     """See ``mbsym.numerics.orbits.variational``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
@@ -115,11 +115,11 @@ def gradient_of(
         f"unknown name {name}" for name in sorted((names(expression) if expression is not None else set()) - known)
     ]
     following = {relation.name for relation in system.relations}
-    wrong += [f"there is nothing called {name} to differentiate by" for name in wanted if name not in known - {"pi"}]
-    wrong += [f"{name} follows from other parameters" for name in wanted if name in following]
+    wrong += [f"there is nothing called {name} to differentiate by" for name in variables if name not in known - {"pi"}]
+    wrong += [f"{name} follows from other parameters" for name in variables if name in following]
     if wrong or expression is None:
         raise ValueError("; ".join(wrong))
-    return gradient_at_end(scenario_of(system, values), expression, wanted, time, values)
+    return gradient_at_end(scenario_of(system, values), expression, variables, time, values)
 
 
 # How a motion answers to changes of its initial state and of parameters, along the whole of it.
@@ -178,13 +178,13 @@ def sensitivities(
     if request.every is None and request.samples is None and step is None:
         times = np.linspace(0.0, request.time, SAMPLES)
     setting = Setting(tolerance, step, request.step_limit, request.longest)
-    found = integrated(augmented, method, setting, times)
-    states, values = split(found.states, len(scenario.state))
-    error = _error(augmented, method, setting, found) if found.breakdown is None else float("nan")
-    return Sensitivities(scenario.system, tuple(names), found.times, states, values, name, error, found.breakdown)
+    solution = integrated(augmented, method, setting, times)
+    states, values = split(solution.states, len(scenario.state))
+    error = _error(augmented, method, setting, solution) if solution.breakdown is None else float("nan")
+    return Sensitivities(scenario.system, tuple(names), solution.times, states, values, name, error, solution.breakdown)
 
 
-def _error(augmented: Variational, method: Method, setting: Setting, found: Any) -> float:
+def _error(augmented: Variational, method: Method, setting: Setting, solution: Any) -> float:
     if setting.tolerance is not None and setting.tolerance < FINEST:
         return float("nan")
     finer = Setting(
@@ -193,14 +193,14 @@ def _error(augmented: Variational, method: Method, setting: Setting, found: Any)
         4 * setting.step_limit,
         setting.longest,
     )
-    better = integrated(augmented, method, finer, found.times)
+    better = integrated(augmented, method, finer, solution.times)
     if better.breakdown is not None:
         return float("nan")
     states, values = split(better.states, len(augmented.states))
-    differences = np.max(np.abs(values - split(found.states, len(states))[1]), axis=2)
+    differences = np.max(np.abs(values - split(solution.states, len(states))[1]), axis=2)
     own = np.max(np.abs(values), axis=2)
     # What rests but for rounding answers by rounding: it is measured by what the others' answers come to.
-    scene = sizes_of_scene(dynamics_of(augmented.base.scenario), found.times, states)
+    scene = sizes_of_scene(dynamics_of(augmented.base.scenario), solution.times, states)
     sizes = scaled(np.max(np.abs(states), axis=1), scene)
     usual = sizes * np.max(own / sizes, axis=1, keepdims=True)
     return float(np.max(differences / scaled(own, usual, differences), initial=0.0))

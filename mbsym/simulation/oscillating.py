@@ -60,7 +60,7 @@ class MeasuredOrders:
 
 def measured_orders(
     system: System,
-    told: Oscillating,
+    solution: Oscillating,
     values: Mapping[str, Fraction] | None = None,
     watch: Callable[[str], None] = lambda what: None,
 ) -> MeasuredOrders:
@@ -69,12 +69,12 @@ def measured_orders(
     Raises Incomplete where some are missing, NoClosedForm where nothing oscillates.
     """
     put = {name: number(x) for name, x in (values or {}).items() if name in system.parameter_names}
-    given = scenario(system, put)
-    oscillation = told.found
-    parameters = {name: Fraction(value) for name, value in given.parameters.items()}
+    base = scenario(system, put)
+    oscillation = solution.oscillation
+    parameters = {name: Fraction(value) for name, value in base.parameters.items()}
     powers = dict(oscillation.powers)
-    whole = parameters[oscillation.small] if oscillation.small in told.field.parameters else Fraction(1)
-    symbols = symbol_values(given, told, powers, whole, values or {})
+    whole = parameters[oscillation.small] if oscillation.small in solution.field.parameters else Fraction(1)
+    symbols = symbol_values(base, solution, powers, whole, values or {})
     errors: list[list[float]] = [[] for _ in oscillation.names]
     sizes: list[list[float]] = [[] for _ in oscillation.names]
     time = 0.0
@@ -85,15 +85,15 @@ def measured_orders(
         numbers = {name: value * part ** powers.get(name, 0) for name, value in parameters.items()}
         if oscillation.small in numbers:
             numbers[oscillation.small] = eps
-        series = Numeric(told, parameters | symbols, eps)
+        series = Numeric(solution, parameters | symbols, eps)
         time = 2 * pi / abs(series.rate)  # a root in the frequency may stand above what is negative
         times = [time * k / ROWS for k in range(1, ROWS + 1)]
         try:
             if simulated:
-                rows = _simulated(system, put, given, told, numbers, powers, series, times, whole, part)
+                rows = _simulated(system, put, base, solution, numbers, powers, series, times, whole, part)
             else:
                 start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in oscillation.names]
-                rows = _integrated(told.field, oscillation.names, numbers, start, times)
+                rows = _integrated(solution.field, oscillation.names, numbers, start, times)
         except (Failure, ArithmeticError, ValueError):
             if part != 1:
                 raise
@@ -126,71 +126,72 @@ def _order(errors: Sequence[float], noise: float) -> tuple[float | None, int]:
 
     It is the last halving before which and after which there is more than rounding; None where there is none.
     """
-    kept = [k for k in range(len(errors) - 1) if min(errors[k : k + 2]) > noise]
-    if kept:
-        return log(errors[kept[-1]] / errors[kept[-1] + 1], 2), kept[-1]
+    places = [k for k in range(len(errors) - 1) if min(errors[k : k + 2]) > noise]
+    if places:
+        return log(errors[places[-1]] / errors[places[-1] + 1], 2), places[-1]
     last = len(errors) - 2
     return (log(noise / errors[-1], 2) if errors[-1] > noise else None), last
 
 
 def symbol_values(
-    given: Scenario, told: Oscillating, powers: Mapping[str, int], eps: Fraction, put: Mapping[str, Fraction]
+    base: Scenario, solution: Oscillating, powers: Mapping[str, int], eps: Fraction, put: Mapping[str, Fraction]
 ) -> dict[str, Fraction]:
     """The amplitude and the constants that belong to the initial state, by their symbols in the tower.
 
     Raises NoClosedForm where an amplitude is needed, not ``put`` in, and zero.
     """
-    oscillation = told.found
-    if given.system.speeds:
-        seen = scenario_in_states(given)
+    oscillation = solution.oscillation
+    if base.system.speeds:
+        seen = scenario_in_states(base)
         state = dict(zip((*seen.system.coordinates, *seen.system.velocities), seen.state, strict=True))
     else:
-        state = dict(zip((*given.system.coordinates, *given.system.velocities), given.state, strict=True))
-        for name, value in on_the_motion(given.system, told, given).items():
+        state = dict(zip((*base.system.coordinates, *base.system.velocities), base.state, strict=True))
+        for name, value in on_the_motion(base.system, solution, base).items():
             state[name] -= value
     scaled = {name: Fraction(value) / eps ** powers.get(name, 0) for name, value in state.items()}
     values = {f"#{name}": scaled[name] for name, _ in oscillation.constants if name in scaled}
     values[AMPLITUDE] = scaled[oscillation.leading]
-    needed = oscillation.kind is Amplitude.FREE and told.symbols.get(AMPLITUDE) not in put
+    needed = oscillation.kind is Amplitude.FREE and solution.symbols.get(AMPLITUDE) not in put
     if needed and values[AMPLITUDE] == 0:
         text = "[[name]] begins at zero: the initial state gives no amplitude"
         raise NoClosedForm(Message(text, name=oscillation.leading))
     return values
 
 
-def on_the_motion(system: System, told: Oscillating, given: Scenario) -> dict[str, Fraction]:
+def on_the_motion(system: System, solution: Oscillating, base: Scenario) -> dict[str, Fraction]:
     """What deviations are of: coordinates and velocities on the unperturbed motion; nothing where none is asked for."""
-    found: dict[str, Fraction] = {}
-    for entry in system.motion if told.taylor else ():
-        found[entry.coordinate] = value_of(entry.value, given)
-        found[velocity_name(entry.coordinate)] = value_of(entry.rate, given)
-    return found
+    reference: dict[str, Fraction] = {}
+    for entry in system.motion if solution.taylor else ():
+        reference[entry.coordinate] = value_of(entry.value, base)
+        reference[velocity_name(entry.coordinate)] = value_of(entry.rate, base)
+    return reference
 
 
-def value_of(x: Expression, given: Scenario) -> Fraction:
+def value_of(x: Expression, base: Scenario) -> Fraction:
     """An expression in parameters at their numbers."""
-    return exact(x, given.parameters)
+    return exact(x, base.parameters)
 
 
 class Numeric:
     """The series at numbers, in balls."""
 
     def __init__(self, told: Oscillating, values: Mapping[str, Fraction], eps: Fraction) -> None:
-        self.found, tower = told.found, told.found.tower
+        self.oscillation, tower = told.oscillation, told.oscillation.tower
         balls = {name: rationals.ball(x) for name, x in values.items()}
         plain = [name for name in tower.parameters if angle_in(name) is None]
         self._values = dict.fromkeys(plain, arb(0)) | balls
         self.eps = rationals.ball(eps)
         with ctx.workprec(BITS):
-            speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.found.corrections)), arb(1))
-            speed = speed * self._of(self.found.frequency)
+            speed = sum((self._of(x) * self.eps ** (k + 1) for k, x in enumerate(self.oscillation.corrections)), arb(1))
+            speed = speed * self._of(self.oscillation.frequency)
             self.waves = {
-                name: self._summed(series) for name, series in zip(self.found.names, self.found.series, strict=True)
+                name: self._summed(series)
+                for name, series in zip(self.oscillation.names, self.oscillation.series, strict=True)
             }
         self.speed, self.rate = speed, float(speed)
 
     def _of(self, x: Element) -> Any:
-        return self.found.tower.enclosed(x, self._values).real
+        return self.oscillation.tower.enclosed(x, self._values).real
 
     def _summed(self, series: Sequence[Harmonics]) -> dict[int, tuple[Any, Any]]:
         total: dict[int, tuple[Any, Any]] = {}
@@ -211,19 +212,19 @@ class Numeric:
         """x and x' at many times, shape (2, m), in double precision."""
         import numpy as np
 
-        phase, found = self.rate * times, np.zeros((2, len(times)))
+        phase, values = self.rate * times, np.zeros((2, len(times)))
         for k, pair in self.waves[name].items():
             c, s = (float(x.mid()) for x in pair)
-            found[0] += c * np.cos(k * phase) + s * np.sin(k * phase)
-            found[1] += k * self.rate * (s * np.cos(k * phase) - c * np.sin(k * phase))
-        return found
+            values[0] += c * np.cos(k * phase) + s * np.sin(k * phase)
+            values[1] += k * self.rate * (s * np.cos(k * phase) - c * np.sin(k * phase))
+        return values
 
 
 def _simulated(
     system: System,
     put: Mapping[str, Expression],
-    given: Scenario,
-    told: Oscillating,
+    base: Scenario,
+    solution: Oscillating,
     numbers: Mapping[str, Fraction],
     powers: Mapping[str, int],
     series: Numeric,
@@ -235,16 +236,16 @@ def _simulated(
     import numpy as np
 
     eps = whole * part
-    changed = {told.found.small, *powers}
+    changed = {solution.oscillation.small, *powers}
     chosen = {**put, **{name: number(x) for name, x in numbers.items() if name in changed}}
-    shift = on_the_motion(system, told, given)
+    shift = on_the_motion(system, solution, base)
     start = {}
     if system.constraints:  # what they tie begins near the motion, on the branch that is expanded
         chosen |= {name: number(value) for name, value in shift.items()}
-    for name in told.found.names:
+    for name in solution.oscillation.names:
         start[name] = Fraction(float(series.at(0.0, name))) * eps ** powers.get(name, 0)
         chosen[name] = number(start[name] + shift.get(name, 0))
-    fixed = told.found.names if system.constraints else ()
+    fixed = solution.oscillation.names if system.constraints else ()
     request = Request(time=times[-1], samples=len(times) + 1, estimate=False, tolerance=TOLERANCE, fixed=tuple(fixed))
     run = simulate(scenario(system, chosen), request)
     columns = {
@@ -253,7 +254,7 @@ def _simulated(
     columns |= {
         name: np.asarray(run.velocities)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.velocities)
     }
-    return [[arb(float(columns[name][k])) for name in told.found.names] for k in range(1, len(times) + 1)]
+    return [[arb(float(columns[name][k])) for name in solution.oscillation.names] for k in range(1, len(times) + 1)]
 
 
 def _integrated(
@@ -295,8 +296,8 @@ def _step(parts: Sequence[Any], state: Sequence[Any], step: Any) -> list[Any]:
             ctx.cap = length
             series = [arb_series(x) for x in known]
             below, *above = [_polynomial(terms, series) for terms in parts]
-            for place, one in enumerate(above):
-                rate = one / below
+            for place, numerator in enumerate(above):
+                rate = numerator / below
                 known[place].append(rate[length - 1] / length)
     finally:
         ctx.cap = before
@@ -314,8 +315,8 @@ def _polynomial(terms: Sequence[Any], series: Sequence[Any]) -> Any:
     total = arb_series([0])
     for key, c in terms:
         term = arb_series([arb(c)])
-        for one, e in zip(series, key, strict=True):
+        for factor, e in zip(series, key, strict=True):
             for _ in range(e):
-                term = term * one
+                term = term * factor
         total = total + term
     return total

@@ -56,7 +56,7 @@ class Paths:
 
 
 def oscillation_paths(
-    system: System, told: Oscillating, values: Mapping[str, Fraction] | None = None, periods: float = 3.0
+    system: System, solution: Oscillating, values: Mapping[str, Fraction] | None = None, periods: float = 3.0
 ) -> Paths:
     """Both over so many periods of the series, at the numbers of the description and ``values``.
 
@@ -64,21 +64,27 @@ def oscillation_paths(
     ends early.
     """
     put: dict[str, Expression] = {n: number(x) for n, x in (values or {}).items() if n in system.parameter_names}
-    given = scenario(system, put)
-    parameters = {name: Fraction(value) for name, value in given.parameters.items()}
-    powers = dict(told.found.powers)
-    eps = parameters[told.found.small] if told.found.small in told.field.parameters else Fraction(1)
-    numeric = Numeric(told, parameters | symbol_values(given, told, powers, eps, values or {}), eps)
-    units = {name: float(eps) ** powers.get(name, 0) for name in told.found.names}
+    base = scenario(system, put)
+    parameters = {name: Fraction(value) for name, value in base.parameters.items()}
+    powers = dict(solution.oscillation.powers)
+    eps = (
+        parameters[solution.oscillation.small]
+        if solution.oscillation.small in solution.field.parameters
+        else Fraction(1)
+    )
+    numeric = Numeric(solution, parameters | symbol_values(base, solution, powers, eps, values or {}), eps)
+    units = {name: float(eps) ** powers.get(name, 0) for name in solution.oscillation.names}
     period = 2 * pi / abs(numeric.rate)
     times = np.linspace(0.0, periods * period, int(SAMPLES * max(1.0, periods)) + 1)
-    waves = {name: units[name] * numeric.over(times, name) for name in told.found.names}
-    start = {name: Fraction(float(numeric.at(0.0, name))) * Fraction(units[name]) for name in told.found.names}
-    names = tuple(name for name in told.found.names if name not in told.velocities)
+    waves = {name: units[name] * numeric.over(times, name) for name in solution.oscillation.names}
+    start = {
+        name: Fraction(float(numeric.at(0.0, name))) * Fraction(units[name]) for name in solution.oscillation.names
+    }
+    names = tuple(name for name in solution.oscillation.names if name not in solution.velocities)
     if not system.speeds:
-        motion = _in_coordinates(system, put, given, told, start, times)
+        motion = _in_coordinates(system, put, base, solution, start, times)
         return Paths(times, period, float(eps), names, {x: waves[x] for x in names}, motion, {})
-    own, declared = scenario(system, put, declared=True), scenario_in_states(given)
+    own, declared = scenario(system, put, declared=True), scenario_in_states(base)
     states = (*declared.system.coordinates, *declared.system.velocities)
     begun = dict(zip(states, declared.state, strict=True)) | start
     run = simulate(
@@ -88,22 +94,22 @@ def oscillation_paths(
     if not run.whole:
         raise NoClosedForm("the motion ends early")
     columns = {name: np.asarray(run[name], dtype=float) for name in states}
-    rates = _rates(told.field, parameters, columns)
+    rates = _rates(solution.field, parameters, columns)
     motion = {name: np.array([columns[name], rates[name]]) for name in names}
-    angles, missing = _angles(system, given, waves, columns, times, begun)
+    angles, missing = _angles(system, base, waves, columns, times, begun)
     return Paths(times, period, float(eps), names, waves, motion, angles, missing)
 
 
 def _in_coordinates(
     system: System,
     put: Mapping[str, Expression],
-    given: Scenario,
-    told: Oscillating,
+    base: Scenario,
+    solution: Oscillating,
     start: Mapping[str, Fraction],
     times: Floats,
 ) -> dict[str, Floats]:
     """(q, q') of the motion, from the rest that deviations are of."""
-    shift = on_the_motion(system, told, given)
+    shift = on_the_motion(system, solution, base)
     begun = {name: number(value + shift.get(name, 0)) for name, value in start.items()}
     run = simulate(
         scenario(system, {**put, **begun}),
@@ -131,7 +137,7 @@ def _rates(field: PolynomialField, parameters: Mapping[str, Fraction], columns: 
 
 def _angles(
     system: System,
-    given: Scenario,
+    base: Scenario,
     waves: Mapping[str, Floats],
     columns: Mapping[str, Floats],
     times: Floats,
@@ -142,21 +148,21 @@ def _angles(
 
     form = SpeedForm(system, ring_of(system))
     positions, speeds = [x.name for x in form.positions], [u.name for u in form.speeds]
-    wanted = [name for name in system.coordinates if name not in positions]
-    if not wanted:
+    angle_names = [name for name in system.coordinates if name not in positions]
+    if not angle_names:
         return {}, ""
     if system.prescribed:
         return {}, "quantities are prescribed"
     if any(name not in waves for name in speeds):
         return {}, "a speed is no variable of the series"
-    states = _states(form, system, given)
-    q = np.array([float(x) for x in given.positions])
+    states = _states(form, system, base)
+    q = np.array([float(x) for x in base.positions])
     target = np.array([float(begun[name]) for name in positions])
     for _ in range(STEPS):  # Gauss and Newton: the smallest change, angles that are free stay
         step = 1e-6 * np.vstack([np.zeros_like(q), np.eye(len(q)), -np.eye(len(q))])
-        found = states(q + step, np.zeros_like(step))[: len(positions)]
-        slopes = (found[:, 1 : 1 + len(q)] - found[:, 1 + len(q) :]) / 2e-6
-        q = q + np.linalg.pinv(slopes, rcond=1e-8) @ (target - found[:, 0])
+        values = states(q + step, np.zeros_like(step))[: len(positions)]
+        slopes = (values[:, 1 : 1 + len(q)] - values[:, 1 + len(q) :]) / 2e-6
+        q = q + np.linalg.pinv(slopes, rcond=1e-8) @ (target - values[:, 0])
     along = []
     for rows in ({name: waves[name][0] for name in speeds}, columns):
         path = _followed(states, CubicSpline(times, np.array([rows[name] for name in speeds]).T), q, times)
@@ -164,16 +170,16 @@ def _angles(
             return {}, "the angles become singular"
         along.append(path)
     place = {name: k for k, name in enumerate(system.coordinates)}
-    return {name: (along[0][place[name]], along[1][place[name]]) for name in wanted}, ""
+    return {name: (along[0][place[name]], along[1][place[name]]) for name in angle_names}, ""
 
 
-def _states(form: SpeedForm, system: System, given: Scenario) -> Callable[[Floats, Floats], Floats]:
+def _states(form: SpeedForm, system: System, base: Scenario) -> Callable[[Floats, Floats], Floats]:
     """(q, q') of shape (m, n) -> (s, u) of shape (2 n', m)."""
     program = Program()
     nodes = tuple(form.state_in_coordinates(program))
-    names = ("t", "pi", *given.parameters, *system.coordinates, *system.velocities)
+    names = ("t", "pi", *base.parameters, *system.coordinates, *system.velocities)
     run = arrays.kernel(Code(program, names, nodes))
-    known = np.array([0.0, pi, *(float(x) for x in given.parameters.values())])
+    known = np.array([0.0, pi, *(float(x) for x in base.parameters.values())])
 
     def states(q: Floats, v: Floats) -> Floats:
         inputs = np.vstack([np.repeat(known[:, None], len(q), axis=1), np.asarray(q).T, np.asarray(v).T])
@@ -190,8 +196,8 @@ def _followed(states: Callable[[Floats, Floats], Floats], speeds: Any, q: Floats
     units = np.vstack([np.zeros((1, n)), np.eye(n)])
 
     def rate(t: float, q: Floats) -> Floats:
-        found = states(np.repeat(q[None], n + 1, axis=0), units)[-n:]
-        return np.linalg.solve(found[:, 1:] - found[:, :1], speeds(t) - found[:, 0])
+        values = states(np.repeat(q[None], n + 1, axis=0), units)[-n:]
+        return np.linalg.solve(values[:, 1:] - values[:, :1], speeds(t) - values[:, 0])
 
     try:
         with np.errstate(all="ignore"):

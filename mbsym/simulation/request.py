@@ -80,7 +80,7 @@ class Request:
         return self.store is not None and self.certify is None and (self.rows or 0) > SHOWN
 
 
-def read_values(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+def read_values(system: System, values: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Values by name as expressions: numbers, or text such as ``pi/6`` made of numbers, pi and parameters.
 
     A name is that of a parameter, a coordinate (its initial position), ``<coordinate>_dot`` (its initial velocity), or
@@ -88,8 +88,8 @@ def read_values(system: System, given: Mapping[str, Expression | Fraction | floa
     """
     known = (*system.parameter_names, *system.coordinates, *system.velocities, *system.variables)
     expressions: dict[str, Expression] = {}
-    wrong = [f"there is nothing called {name} to set" for name in given if name not in known]
-    for name, value in given.items():
+    wrong = [f"there is nothing called {name} to set" for name in values if name not in known]
+    for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
             read = parse_expression(value, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))

@@ -255,9 +255,9 @@ class Dense:
             raise ValueError(f"a time or an array of times, not one of shape {at.shape}")
         flat = np.atleast_1d(at)
         order = np.argsort(flat, kind="stable")
-        found = self._ordered(flat[order])
-        states = np.empty_like(found)
-        states[:, order] = found
+        sorted_states = self._ordered(flat[order])
+        states = np.empty_like(sorted_states)
+        states[:, order] = sorted_states
         return states if at.ndim else states[:, 0]
 
     def _ordered(self, times: Any) -> Any:
@@ -283,9 +283,9 @@ class Dense:
                     self._too_many = True
                     return
                 pieces.append(run.step())
-        except Breakdown as found:
+        except Breakdown as breakdown:
             if not pieces or pieces[-1].end < self.end:
-                raise found
+                raise breakdown
         if not pieces:  # it ended where it began
             state = np.array(run.state)
             pieces.append(Piece(self.begin, self.end, lambda times: np.repeat(state[:, None], len(times), axis=1)))

@@ -90,7 +90,7 @@ def simulate(
     wrong = list(wrong_with(request))
     if wrong:
         raise ValueError("; ".join(wrong))
-    given = scenario
+    original = scenario
     scenario, closed = prepared(scenario, request)
     with stage(COMPILING):
         analysis = _analysis(scenario) if request.invariants else None
@@ -120,7 +120,7 @@ def simulate(
         pivot = nearest_to_singular(dynamics, trajectory, dense, chosen.method, request.arithmetic)
         trajectory, dense = replace(trajectory, least_pivot=pivot), replace(dense, least_pivot=pivot)
         both = energies(dynamics, dense, held)
-        kept = kept_integrals(dynamics, trajectory, integrals, held, dense)
+        followed = kept_integrals(dynamics, trajectory, integrals, held, dense)
         own = cost(dynamics, trajectory.method, request.arithmetic, trajectory.work)
         if trajectory.whole and (request.estimate or (request.estimate is None and own < SOON_DONE)):
             limit = inf if request.estimate else max(LEAST, AT_MOST * own)
@@ -133,11 +133,11 @@ def simulate(
 
         with stage(CERTIFYING):
             seen = None if happened is None else happened.occurrences
-            asked = (request.certify, request.certify_seconds, request.certify_limit)
-            certificate = certified(dynamics, trajectory.times, trajectory.states, *asked, watch, seen)
+            certification = (request.certify, request.certify_seconds, request.certify_limit)
+            certificate = certified(dynamics, trajectory.times, trajectory.states, *certification, watch, seen)
     return Simulation(
-        *(scenario, dynamics, request, chosen, trajectory, *both, kept, error, missing),
-        *(certificate, happened, given, None, closed),
+        *(scenario, dynamics, request, chosen, trajectory, *both, followed, error, missing),
+        *(certificate, happened, original, None, closed),
         None if closed is None else drift_along(dynamics, trajectory),
         () if closed is None else stepped_over(dynamics, dense.times, dense.states, trajectory.work.singular),
     )
@@ -182,11 +182,11 @@ def refuse_in_run(system: System, request: Request) -> None:
         refuse_constraints(system, "linearised equations in numbers")
     if not runs_in_states(system, request):
         return
-    asked = {
+    features = {
         "a linear model": request.model.linear,
         "going on from an earlier run": request.earlier is not None,
     }
-    wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in asked.items() if there]
+    wrong = [f"{what} {NOT_IN_STATES}: take variables='{COORDINATES}'" for what, there in features.items() if there]
     if wrong:
         raise ValueError("; ".join(wrong))
     if request.method in METHODS and METHODS[request.method].traits.conservative:
@@ -198,11 +198,11 @@ def _dynamics(scenario: Scenario, ring: Ring | None, request: Request) -> Dynami
     return LinearisedDynamics(scenario, ring) if request.model.linear else dynamics_of(scenario, ring, request.whole)
 
 
-def drift_along(dynamics: Dynamics, found: integration.Trajectory) -> Drift | None:
+def drift_along(dynamics: Dynamics, trajectory: integration.Trajectory) -> Drift | None:
     """How far the rows of a run stray from the constraints."""
     from mbsym.numerics.constrained import drift_of
 
-    return drift_of(dynamics, found.times, found.states)
+    return drift_of(dynamics, trajectory.times, trajectory.states)
 
 
 def _trajectory(
@@ -249,55 +249,59 @@ def _integrals(analysis: Analysis | None, scenario: Scenario) -> tuple[tuple[Any
 # How far a run keeps its energies and first integrals, and how it is known that they are constant.
 
 
-def energies(dynamics: Dynamics, found: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
+def energies(dynamics: Dynamics, trajectory: Trajectory, held: Collection[str]) -> tuple[Conservation, Conservation]:
     """Of T2 - T0 - U, and of T - U; the coordinates ``held`` provably rest."""
-    points = _seen(found, "change", found.change)
-    scale, near = found.energy_scale, _near(found)
+    points = _seen(trajectory, "change", trajectory.change)
+    scale, near = trajectory.energy_scale, _near(trajectory)
     if isinstance(dynamics, LinearisedDynamics):
         # The energy is that of the whole system, the motion that of the linear equations: no theorem joins them.
         known, doubt = standing(dynamics, dynamics.relative_energy, 0, points, held, near)
     else:
-        known, doubt = energy_standing(dynamics, points, scale / max(float(found.times[-1]), 1e-300), held, near)
-    moving = Measure.KINETIC if found.largest_kinetic else Measure.INITIAL
-    measure = moving if moving is Measure.KINETIC or found.generalized_energy[0] else Measure.UNIT
+        known, doubt = energy_standing(dynamics, points, scale / max(float(trajectory.times[-1]), 1e-300), held, near)
+    moving = Measure.KINETIC if trajectory.largest_kinetic else Measure.INITIAL
+    measure = moving if moving is Measure.KINETIC or trajectory.generalized_energy[0] else Measure.UNIT
     if dynamics.natural:
-        same = confronted("energy", known, found.change, scale, doubt, measure)
+        same = confronted("energy", known, trajectory.change, scale, doubt, measure)
         return same, same
-    generalized = confronted("generalised energy", known, found.change, scale, doubt, measure)
-    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(found, "energy", found.energy), held, near)
-    return generalized, confronted("energy", known, found.energy, scale, doubt, measure)
+    generalized = confronted("generalised energy", known, trajectory.change, scale, doubt, measure)
+    known, doubt = standing(dynamics, dynamics.energies, 0, _seen(trajectory, "energy", trajectory.energy), held, near)
+    return generalized, confronted("energy", known, trajectory.energy, scale, doubt, measure)
 
 
-def _seen(found: Trajectory, name: str, values: Any) -> Any:
+def _seen(trajectory: Trajectory, name: str, values: Any) -> Any:
     """States of a run at which a quantity changes most, and others: among all rows, where these are some of them."""
-    return visited(found.times, found.states, values) if found.table is None else found.table.visited[name]
+    return (
+        visited(trajectory.times, trajectory.states, values)
+        if trajectory.table is None
+        else trajectory.table.visited[name]
+    )
 
 
-def _near(found: Trajectory) -> list[list[float]]:
+def _near(trajectory: Trajectory) -> list[list[float]]:
     """States beside the motion, where something acts for less than the distance of two rows."""
-    met = found.passed
-    return [] if met is None else between_switches(found.times, found.states, met.switches, met.inside)
+    met = trajectory.passed
+    return [] if met is None else between_switches(trajectory.times, trajectory.states, met.switches, met.inside)
 
 
 def kept_integrals(
-    dynamics: Dynamics, found: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
+    dynamics: Dynamics, trajectory: Trajectory, integrals: tuple[Any, ...], held: Collection[str], dense: Trajectory
 ) -> tuple[FollowedIntegral, ...]:
-    """First integrals at the rows of ``found``; judged along ``dense``, the same run with places between its rows.
+    """First integrals at the rows of ``trajectory``; judged along ``dense``, the same run with places between its rows.
 
     One that is not proved is looked at where the run goes.
     """
     if not integrals:
         return ()
     known = invariants(dynamics, integrals, columns(dynamics.system, dynamics.natural))
-    shown, seen = (list(values(known, run.times, run.states)) for run in (found, dense))
-    kept = []
+    shown, seen = (list(values(known, run.times, run.states)) for run in (trajectory, dense))
+    followed = []
     for item, (column, _), (course, size) in zip(known, shown, seen, strict=True):
         state, doubt = Standing.PROVED, None
         if not item.proved or isinstance(dynamics, LinearisedDynamics):
             state, doubt = standing(dynamics, item.code, 0, _seen(dense, item.column, course), held, _near(dense))
-        kept.append(
+        followed.append(
             FollowedIntegral(
                 item.column, column, confronted(item.name, state, course, size, doubt, Measure.TERMS), item.unit
             )
         )
-    return tuple(kept)
+    return tuple(followed)

@@ -65,8 +65,8 @@ def sample_times(request: Request, frequency: float, system: System) -> Any:
         return times
     if request.samples is not None:
         return np.linspace(0.0, request.time, request.samples)
-    wanted = SAMPLES_A_PERIOD * frequency * request.time / (2 * pi)
-    fitting = min(max(SAMPLES, int(min(wanted, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
+    samples = SAMPLES_A_PERIOD * frequency * request.time / (2 * pi)
+    fitting = min(max(SAMPLES, int(min(samples, MOST_SAMPLES))), MOST_SAMPLES, most_rows(system))
     if request.step is None:
         return np.linspace(0.0, request.time, fitting)
     # A polynomial knows less than a method of fixed step: rows stand at whole numbers of steps, and at the end.

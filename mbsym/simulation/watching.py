@@ -109,9 +109,9 @@ def read_watch(
 
     def read(option: str, text: str) -> Condition | None:
         complaints = Complaints()
-        found = parse_condition(text, known, complaints, _place)
+        parsed_condition = parse_condition(text, known, complaints, _place)
         complain(option, text, complaints)
-        return found
+        return parsed_condition
 
     marks = [read("event", text) for text in events]
     ends = [read("stop", text) for text in stops]
@@ -156,11 +156,11 @@ class Watching:
 
     def __init__(self, dynamics: Dynamics, method: Method, asked: Watch) -> None:
         self._asked, self._dynamics = asked, dynamics
-        wanted = [("event", one, Action.RECORD) for one in asked.events]
-        wanted += [("stop", stop, Action.STOP) for stop in asked.stops]
-        wanted += [("section", asked.section.condition, Action.RECORD)] if asked.section is not None else []
+        conditions = [("event", recorded, Action.RECORD) for recorded in asked.events]
+        conditions += [("stop", stop, Action.STOP) for stop in asked.stops]
+        conditions += [("section", asked.section.condition, Action.RECORD)] if asked.section is not None else []
         events: list[Event] = []
-        for option, condition, action in wanted:
+        for option, condition, action in conditions:
             try:
                 events.append(event(dynamics, condition, action))
             except Failure as reason:
@@ -168,32 +168,36 @@ class Watching:
         self._axes = None if asked.section is None else _axes(dynamics, asked.section)
         self.method = Watched(method, dynamics, events)
 
-    def happened(self, found: Trajectory) -> tuple[Trajectory, Happened]:
+    def happened(self, trajectory: Trajectory) -> tuple[Trajectory, Happened]:
         """The trajectory, whole where it ended as it was asked to, and what happened along it."""
-        everything = self.method.occurrences(float(found.times[-1]))
-        if found.breakdown is not None and found.breakdown.kind == Cause.STOPPED:
-            found = replace(found, breakdown=None)
+        everything = self.method.occurrences(float(trajectory.times[-1]))
+        if trajectory.breakdown is not None and trajectory.breakdown.kind == Cause.STOPPED:
+            trajectory = replace(trajectory, breakdown=None)
         if self._axes is None or self._asked.section is None:
-            return found, Happened(everything)
+            return trajectory, Happened(everything)
         last = len(everything.events) - 1
         own = everything.which == last
         times, turns, states = everything.times[own], everything.turns[own], everything.states[:, own]
         points = _wrapped(kernel(self._axes)(np.vstack([times, states])) if len(times) else np.empty((0, 0)))
         section = SectionPoints(self._asked.section, times, turns, points, states)
-        return found, Happened(_without(everything, last), section)
+        return trajectory, Happened(_without(everything, last), section)
 
 
-def _without(found: Occurrences, event: int) -> Occurrences:
+def _without(occurrences: Occurrences, event: int) -> Occurrences:
     """Without the last of the events, which is the section."""
-    rest = found.which != event
+    rest = occurrences.which != event
     return replace(
-        found,
-        events=found.events[:event],
-        times=found.times[rest],
-        which=found.which[rest],
-        turns=found.turns[rest],
-        states=found.states[:, rest],
-        undecided=tuple(one for one in found.undecided if one is not found.events[event]),
+        occurrences,
+        events=occurrences.events[:event],
+        times=occurrences.times[rest],
+        which=occurrences.which[rest],
+        turns=occurrences.turns[rest],
+        states=occurrences.states[:, rest],
+        undecided=tuple(
+            undecided_event
+            for undecided_event in occurrences.undecided
+            if undecided_event is not occurrences.events[event]
+        ),
     )
 
 
@@ -212,6 +216,6 @@ def _axes(dynamics: Dynamics, section: Section) -> Code:
 
 def _wrapped(values: Any) -> Any:
     """Values, each less a multiple of its period."""
-    found, periods = values[0::2], values[1::2]
+    quantities, periods = values[0::2], values[1::2]
     with np.errstate(all="ignore"):
-        return np.where(periods > 0, found - periods * np.round(found / periods), found)
+        return np.where(periods > 0, quantities - periods * np.round(quantities / periods), quantities)

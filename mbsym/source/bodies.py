@@ -72,8 +72,8 @@ def draft_bodies(node: Node | None, reading: Reading) -> list[Draft]:
 
 def _draft(number: int, node: Node, reading: Reading) -> Draft:
     fields = reading.fields(node, Message("body [[number]]", number=number), BODY)
-    given = fields.require("name")
-    scalar = None if given is None else reading.scalar(given, "the name of a body")
+    name_node = fields.require("name")
+    scalar = None if name_node is None else reading.scalar(name_node, "the name of a body")
     if scalar is None:
         return Draft(number, f"body {number}", node.span, fields, [])
     name = " ".join(scalar.text.split())
@@ -157,21 +157,21 @@ def _assume_forgotten(draft: Draft, reading: Reading) -> None:
     point = draft.fields.get("connection point")
     for node in (*_angles(draft), *(point.items if isinstance(point, Sequence) else ())):
         tree = parse_expression(node.text, Complaints(), node.place) if isinstance(node, Scalar) else None
-        for one in walk(tree) if tree is not None else ():
-            if not isinstance(one, Name) or one.name in (*CONSTANTS, *scope.assumed) or why_no_name(one.name):
+        for symbol in walk(tree) if tree is not None else ():
+            if not isinstance(symbol, Name) or symbol.name in (*CONSTANTS, *scope.assumed) or why_no_name(symbol.name):
                 continue
-            close = did_you_mean(one.name, scope.of_kind(*RADIUS.kinds))
-            if scope.kind_of(one.name) is not None or (close and isinstance(listed, Sequence)):
+            close = did_you_mean(symbol.name, scope.of_kind(*RADIUS.kinds))
+            if scope.kind_of(symbol.name) is not None or (close and isinstance(listed, Sequence)):
                 continue
             if listed is None or isinstance(listed, (Scalar, Sequence)):
                 reading.error(
                     "unknown-name",
-                    Message("unknown name '[[name]]'", name=one.name),
-                    one.span,
-                    _coordinate_hint(one, draft, close),
+                    Message("unknown name '[[name]]'", name=symbol.name),
+                    symbol.span,
+                    _coordinate_hint(symbol, draft, close),
                 )
-            scope.assumed.add(one.name)
-            draft.coordinates.append(Scalar(one.name, one.span or node.span, literal=False))
+            scope.assumed.add(symbol.name)
+            draft.coordinates.append(Scalar(symbol.name, symbol.span or node.span, literal=False))
             draft.whole = False
 
 
@@ -373,8 +373,8 @@ def _accepted(node: Node, fields: Fields, reading: Reading) -> tuple[Node, bool]
     """The tensor alone, and whether ``{tensor: ..., accept: true}`` says to take it as given."""
     if not isinstance(node, Mapping):
         return node, False
-    given = reading.fields(node, Message("the inertia of [[what]]", what=worded(fields.what)), INERTIA)
-    tensor, accept = given.require("tensor"), given.get("accept")
+    inertia = reading.fields(node, Message("the inertia of [[what]]", what=worded(fields.what)), INERTIA)
+    tensor, accept = inertia.require("tensor"), inertia.get("accept")
     word = None if accept is None else reading.word(accept, "'accept'", ("true", "false"))
     return tensor or Sequence(tuple(Scalar("0", node.span, literal=False) for _ in range(3)), node.span), word == "true"
 

@@ -63,7 +63,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         reading.scope.by_use = {}
     _check_version(fields, reading)
     fields.require("name")
-    if "linear system" not in fields.found:
+    if "linear system" not in fields.entries:
         fields.require("bodies")
     tables = read_tables(fields.get("tables"), reading)
     parameters = read_parameters(fields.get("parameters"), reading)
@@ -126,7 +126,7 @@ def build(node: Node, complaints: Complaints, editor: bool = False, folder: Path
         dependent=dependent,
         reactions=_reactions(fields, [body.name for body in bodies], reading),
         linear=matrices,
-        dependent_span=fields.key_span("dependent") if "dependent" in fields.found else None,
+        dependent_span=fields.key_span("dependent") if "dependent" in fields.entries else None,
     )
     if any(body.speeds or body.orientation for body in bodies):
         tied = tuple(constraint_in_coordinates(constraint, system) for constraint in constraints)
@@ -158,7 +158,7 @@ def _constraints(
     node, dependent = fields.get("constraints"), fields.get("dependent")
     if node is None and dependent is None:
         return (), ()
-    found = read_constraints(node, [x.name for x in bodies], reading)
+    constraints = read_constraints(node, [x.name for x in bodies], reading)
     if "speed" in reading.scope.kinds.values():
         named = _coordinates(fields, "dependent", "a dependent coordinate or speed", reading, ("coordinate", "speed"))
     else:
@@ -166,7 +166,7 @@ def _constraints(
     if dependent is not None and (node is None or (isinstance(node, Sequence) and not node.items)):
         message = "nothing depends on anything: there are no 'constraints'"
         reading.error("idle-constraint", message, fields.key_span("dependent"), "leave 'dependent' out")
-    return found, named
+    return constraints, named
 
 
 def _reactions(fields: Fields, bodies: list[str], reading: Reading) -> tuple[str, ...]:
@@ -245,9 +245,17 @@ def read_inputs(node: Node | None, reading: Reading) -> tuple[Input, ...]:
     if node is None:
         return ()
     if isinstance(node, Sequence):
-        inputs = [one for item in reading.items(node, "'inputs'") if (one := _listed(item, reading)) is not None]
+        inputs = [
+            system_input
+            for item in reading.items(node, "'inputs'")
+            if (system_input := _listed(item, reading)) is not None
+        ]
     else:
-        inputs = [one for entry in reading.entries(node, "'inputs'") if (one := _input(entry, reading)) is not None]
+        inputs = [
+            system_input
+            for entry in reading.entries(node, "'inputs'")
+            if (system_input := _input(entry, reading)) is not None
+        ]
     _bound(len(inputs), "inputs", node, reading)
     return tuple(inputs)
 

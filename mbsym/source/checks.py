@@ -142,7 +142,7 @@ def _values_hint(*expressions: Expression) -> str | None:
 
 
 def _place(draft: Draft, key: str) -> Span:
-    return draft.fields.found[key].value.span
+    return draft.fields.entries[key].value.span
 
 
 def _check_inertia(system: System, body: Body, draft: Draft, values: Mapping[str, Fraction], reading: Reading) -> None:
@@ -191,9 +191,9 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
     if body.inertia.accepted and body.inertia.about == "joint" and _is_fixed(system, body):
         about = replace(body, inertia=replace(body.inertia, about="mass centre"))
     if body_violation(body, values, ROUNDING) is None:
-        told = Message("no body has exactly this inertia: [[violation]]", violation=violation)
+        warning = Message("no body has exactly this inertia: [[violation]]", violation=violation)
         hint = "taken for rounding, as it is less than a millionth; the numbers are used as they stand"
-        reading.complaints.warning("rounded-inertia", told, span, hint)
+        reading.complaints.warning("rounded-inertia", warning, span, hint)
     elif has_negative_energy(about, values) and not _is_possible_elsewhere(body, values):
         if body.inertia.accepted:
             message = joined([message, Message("its kinetic energy would be negative")], "; ")
@@ -215,7 +215,7 @@ def _check_numbers(system: System, body: Body, values: Mapping[str, Fraction], s
 def _is_fixed(system: System, body: Body) -> bool:
     """Whether the body's connection point rests in space, for sure."""
     moving = {*system.coordinates, *(prescribed.name for prescribed in system.prescribed), "t"}
-    bodies = {one.name: one for one in system.bodies}
+    bodies = {member.name: member for member in system.bodies}
     for _ in bodies:
         if any(names(x) & moving for x in body.connection_point):
             return False
@@ -256,8 +256,8 @@ def _check_single_moment(
         return
     violation = offset_violation(tensor, mass, centre, (alone,), ROUNDING)
     if violation is not None:
-        given = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
-        reading.error("bad-inertia", "no body has this inertia: [[violation]]", span, given, violation=violation)
+        values_hint = _values_hint(*(entry for row in body.inertia.tensor for entry in row))
+        reading.error("bad-inertia", "no body has this inertia: [[violation]]", span, values_hint, violation=violation)
 
 
 def _is_enough(system: System, body: Body, index: int) -> bool:
@@ -270,7 +270,7 @@ def _is_enough(system: System, body: Body, index: int) -> bool:
     if system.newtonian_fields:
         return False
     moving = {*system.coordinates, *(prescribed.name for prescribed in system.prescribed), "t"}
-    bodies = {one.name: one for one in system.bodies}
+    bodies = {member.name: member for member in system.bodies}
     direction: list[float] | None = [float(k == index) for k in range(3)]  # in the axes after the turn; None: unknown
     part, passed = body, 0
     while passed <= len(bodies):
@@ -291,10 +291,10 @@ def _is_enough(system: System, body: Body, index: int) -> bool:
 def _turned_back(v: list[float], axis: int, angle: float) -> list[float]:
     """C_a(x)^T v: components before a turn about an axis from those after it."""
     first, second = axis % 3, (axis + 1) % 3
-    found = list(v)
-    found[first] = math.cos(angle) * v[first] - math.sin(angle) * v[second]
-    found[second] = math.sin(angle) * v[first] + math.cos(angle) * v[second]
-    return found
+    rotated = list(v)
+    rotated[first] = math.cos(angle) * v[first] - math.sin(angle) * v[second]
+    rotated[second] = math.sin(angle) * v[first] + math.cos(angle) * v[second]
+    return rotated
 
 
 def _rod_hint(moment: str, axis: int) -> str:
@@ -330,7 +330,11 @@ def _check_use(system: System, reading: Reading) -> None:
     declared += [(Message("prescribed motion"), prescribed.name, prescribed.span) for prescribed in system.prescribed]
     if system.linear is None:  # whose B has a column for each
         felt = set(_occurring(system.loads))
-        declared += [(Message("input"), one.name, one.span) for one in system.inputs if one.name not in felt]
+        declared += [
+            (Message("input"), system_input.name, system_input.span)
+            for system_input in system.inputs
+            if system_input.name not in felt
+        ]
     for what, name, span in declared:
         if name not in used or what == "input":
             message = Message("the [[what]] '[[name]]' is used nowhere", what=what, name=name)
@@ -365,17 +369,22 @@ def _check_given(system: System, reading: Reading) -> None:
     """With the given values of parameters, relations, initial values and limits are numbers, too."""
     known: dict[str, Any] = {}
     for parameter in system.parameters:
-        found = None if parameter.value is None else value_of(parameter.value)
-        if found is not None:
-            known[parameter.name] = found
+        value = None if parameter.value is None else value_of(parameter.value)
+        if value is not None:
+            known[parameter.name] = value
     for _ in system.relations:  # in whatever order they stand
         for relation in system.relations:
-            found = value_of(relation.value, known) if relation.name not in known else None
-            if found is not None:
-                known[relation.name] = found
+            value = value_of(relation.value, known) if relation.name not in known else None
+            if value is not None:
+                known[relation.name] = value
     held = [relation.value for relation in system.relations]
-    held += [one for entry in (*system.initial, *system.start) for one in (entry.position, entry.velocity) if one]
-    held += [one for limit in system.limits for one in (limit.lower, limit.upper)]
+    held += [
+        initial_value
+        for entry in (*system.initial, *system.start)
+        for initial_value in (entry.position, entry.velocity)
+        if initial_value
+    ]
+    held += [bound for limit in system.limits for bound in (limit.lower, limit.upper)]
     held += [prescribed.initial for prescribed in system.prescribed if prescribed.initial]
     for expression in held:
         if not names(expression) or not names(expression) <= known.keys():
@@ -416,7 +425,7 @@ def _check_assumption_values(system: System, reading: Reading) -> None:
 
     values = known_values(system)
     exactly = list(broken(system, values))
-    rounded = [found for found in broken(system, values, _ROUNDED_ROOTS, about) if found not in exactly]
+    rounded = [violation for violation in broken(system, values, _ROUNDED_ROOTS, about) if violation not in exactly]
     seen = set()
     for assumption, left, right in (*exactly, *rounded):
         if assumption in seen:

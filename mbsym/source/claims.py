@@ -117,7 +117,7 @@ def read_claims(
     ``small``: the description has a small parameter, be it understood or not.
     Claims alone may name momenta, of a system in generalised velocities.
     """
-    found: list[Claim] = []
+    accepted: list[Claim] = []
     kinds = reading.scope.kinds
     momenta = [] if system.speeds else [name for name in momentum_names(system).values() if name not in kinds]
     kinds.update(dict.fromkeys(momenta, "momentum"))
@@ -125,11 +125,11 @@ def read_claims(
     for item in () if node is None else reading.items(node, "'claims'"):
         errors = reading.errors
         claims = _claims(item, bodies, system, reading, small)
-        found += claims if reading.errors == errors else []
+        accepted += claims if reading.errors == errors else []
     reading.doubles = True
     for name in momenta:
         del kinds[name]
-    return tuple(found)
+    return tuple(accepted)
 
 
 def _claims(item: Node, bodies: list[str], system: System, reading: Reading, small: bool) -> list[Claim]:
@@ -151,8 +151,8 @@ def _claims(item: Node, bodies: list[str], system: System, reading: Reading, sma
 def _check_names(fields: Fields, reading: Reading) -> None:
     """Of a claim of unknown kind: complain about names that no claim could hold."""
     scope = reading.scope
-    given = fields.get("variable")
-    variable = given.text if isinstance(given, Scalar) and given.text not in scope.kinds else ""
+    variable_node = fields.get("variable")
+    variable = variable_node.text if isinstance(variable_node, Scalar) and variable_node.text not in scope.kinds else ""
     if variable:
         scope.kinds[variable] = "variable"
     allowed = Allowed("a claim", (*_PLACES, "acceleration", "variable"))
@@ -237,19 +237,27 @@ class _Reader:
             [] if scalar is None else read_comparisons(scalar, self.reading, Allowed("a condition", _CONSTANTS))
         )
         return [
-            Claim(self.word, one.left, relation=one.relation, right=one.right, role=word, place=place, span=span)
-            for one in assumptions
+            Claim(
+                self.word,
+                assumption.left,
+                relation=assumption.relation,
+                right=assumption.right,
+                role=word,
+                place=place,
+                span=span,
+            )
+            for assumption in assumptions
         ]
 
     def refuse_keys(self) -> None:
         """Keys that mean nothing for this kind of claim."""
-        kind, wanted = self.kind, keys_of(self.kind)
-        self.fields.exclude(f"claim: {self.word}", [key for key, needed in wanted.items() if not needed])
-        if "tolerance" in self.fields.found:
+        kind, needed_by_key = self.kind, keys_of(self.kind)
+        self.fields.exclude(f"claim: {self.word}", [key for key, needed in needed_by_key.items() if not needed])
+        if "tolerance" in self.fields.entries:
             self.fields.exclude("tolerance", ["digits"])
-        if kind.state and "state" not in self.fields.found:
+        if kind.state and "state" not in self.fields.entries:
             for key in ("tolerance", "digits"):
-                if key in self.fields.found:
+                if key in self.fields.entries:
                     hint = "add for example state: initial; formulas are compared exactly"
                     self.reading.error(
                         "missing-key", "'[[key]]' is about numbers at a state", self.fields.key_span(key), hint, key=key
@@ -280,7 +288,7 @@ class _Reader:
         if variable:
             del scope.kinds[variable]
         text = node.text.strip() if isinstance(node, Scalar) else ""
-        numerical = self.kind.state and "state" in self.fields.found
+        numerical = self.kind.state and "state" in self.fields.entries
         return value, text if numerical and _DECIMAL.match(text) else ""
 
     def variable(self) -> str:
@@ -304,11 +312,11 @@ class _Reader:
             hint = "add for example 'small parameter: eps'"
             self.reading.error("missing-key", message, self.fields.key_span("claim"), hint)
         if small is not None and small.name in names(equals):
-            given = self.fields.get("equals")
+            equals_node = self.fields.get("equals")
             message = Message(
                 "what stands before a power of the small parameter [[name]] does not hold it", name=small.name
             )
-            span = None if given is None else given.span
+            span = None if equals_node is None else equals_node.span
             self.reading.error("misplaced-name", message, span, "give the coefficient alone")
         node = self.fields.require("order", "write for example order: 1")
         scalar = None if node is None else self.reading.scalar(node, "'order'")
@@ -366,9 +374,14 @@ class _Reader:
         known = [*self.system.claimable, *(SUMS if self.kind.of == SUM else ())]
         if words not in known:
             hint = did_you_mean(words, known) or Message("one of: [[known]]", known=", ".join(known[:12]))
-            wanted = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
+            expected = "a coordinate" if self.kind.of == COORDINATE else "a quantity or a coordinate"
             self.reading.error(
-                "unknown-name", "[[words]] is not [[wanted]]", scalar.span, hint, words=ascii_safe(words), wanted=wanted
+                "unknown-name",
+                "[[words]] is not [[wanted]]",
+                scalar.span,
+                hint,
+                words=ascii_safe(words),
+                wanted=expected,
             )
         return words
 
@@ -432,7 +445,7 @@ class _Reader:
         node = self.fields.get("state") if self.kind.state else None
         if node is None or self.at_initial:
             return ()
-        found = []
+        values = []
         if isinstance(node, Scalar):
             self.reading.shape_error(node, "'state'", "'initial' or a mapping", "write state: {theta: pi/6}")
             return ()
@@ -442,8 +455,8 @@ class _Reader:
         for entry in self.reading.entries(node, "'state'"):
             value = self.reading.expression(entry.value, NUMBER)
             if self.reading.scope.check_name(entry.key.text, entry.key.span, _STATE):
-                found.append((entry.key.text, value))
-        return tuple(found)
+                values.append((entry.key.text, value))
+        return tuple(values)
 
 
 def _is_product(value: Expression) -> bool:

@@ -72,7 +72,9 @@ def _parameter(entry: Entry, reading: Reading) -> Parameter:
         return Parameter(name, span=span)
     if value is None or not names(value) <= set(CONSTANTS):
         close = did_you_mean(scalar.text.lower(), SIGNS) or decimal_comma(scalar.text)
-        unit = next((one.hint for one in refused if one.hint and re.match("[-+.0-9]", scalar.text)), None)
+        unit = next(
+            (complaint.hint for complaint in refused if complaint.hint and re.match("[-+.0-9]", scalar.text)), None
+        )
         hint = close or unit or Message("write a number or one of: [[signs]]", signs=", ".join(SIGNS))
         message = Message(
             "a parameter is described by a sign word or a number, not by [[what]]", what=ascii_safe(scalar.text)
@@ -112,13 +114,13 @@ def note_unit(name: str, fields: Fields, reading: Reading) -> None:
 
 def _sign(fields: Fields, reading: Reading) -> str | None:
     """``sign: positive`` or ``positive: true``, once; None where nothing is said."""
-    given = fields.get("sign")
+    sign_node = fields.get("sign")
     sign: str | None = fields.word("sign", "a sign") or None
     for word in SIGNS:
         flag = fields.get(word)
         if flag is None:
             continue
-        if sign is not None or given is not None:
+        if sign is not None or sign_node is not None:
             reading.error("conflicting-keys", Message("a second sign: '[[word]]'", word=word), fields.key_span(word))
         elif reading.word(flag, f"'{word}'", ("true",)) is not None:
             sign = word
@@ -128,8 +130,8 @@ def _sign(fields: Fields, reading: Reading) -> str | None:
 def _check_sign(parameter: Parameter, span: Span, reading: Reading) -> None:
     if parameter.value is None:
         return
-    found = sign_of(parameter.value)
-    if found is not None and not has_sign(Fraction(found), parameter.sign):
+    value_sign = sign_of(parameter.value)
+    if value_sign is not None and not has_sign(Fraction(value_sign), parameter.sign):
         reading.error(
             "sign-contradiction",
             Message("'[[name]]' is declared [[sign]], its value is not", name=parameter.name, sign=parameter.sign),

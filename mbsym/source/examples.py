@@ -15,7 +15,7 @@ _NAME = re.compile(r"^name:[ \t]*[\"']?(.*?)[\"']?[ \t]*$", re.MULTILINE)
 def example_names() -> tuple[str, ...]:
     """The names of the shipped systems, in alphabetical order: those of their files without the ending."""
     inside = files(_PACKAGE).iterdir()
-    return tuple(sorted(one.name.removesuffix(_SUFFIX) for one in inside if one.name.endswith(_SUFFIX)))
+    return tuple(sorted(file.name.removesuffix(_SUFFIX) for file in inside if file.name.endswith(_SUFFIX)))
 
 
 def example_text(name: str) -> str:
@@ -27,21 +27,21 @@ def example_text(name: str) -> str:
 
 def example_like(word: str) -> str | None:
     """The shipped system that a word means: its name, or the shortest name that ends in it or holds it."""
-    wanted = word.strip().lower().replace("_", "-").replace(" ", "-")
+    slug = word.strip().lower().replace("_", "-").replace(" ", "-")
     names = sorted(example_names(), key=lambda name: (len(name), name))
-    if wanted in names:
-        return wanted
-    ending = [name for name in names if name.endswith(f"-{wanted}")]
-    if wanted == "pendulum":
+    if slug in names:
+        return slug
+    ending = [name for name in names if name.endswith(f"-{slug}")]
+    if slug == "pendulum":
         return "simple-pendulum"  # the shortest name would be the pendulum on a cart
-    return next(iter(ending or [name for name in names if wanted and wanted in name]), None)
+    return next(iter(ending or [name for name in names if slug and slug in name]), None)
 
 
 @cache
 def example_titles() -> list[dict[str, str]]:
     """``name`` and ``title`` of each, as it is written there, for a list to begin with."""
-    found = []
+    titles = []
     for name in example_names():
         title = _NAME.search(example_text(name))
-        found.append({"name": name, "title": title[1] if title else name})
-    return found
+        titles.append({"name": name, "title": title[1] if title else name})
+    return titles

@@ -253,13 +253,13 @@ class Kind(Key):
         return self.type.keys if isinstance(self.type, Record) else {}
 
 
-def plain(one: Type) -> list[Type]:
+def plain(value_type: Type) -> list[Type]:
     """What a value, or an item of it, is: without lists and choices."""
-    match one:
+    match value_type:
         case Listed(item):
             return plain(item)
         case Either(types):
             return [inner for each in types for inner in plain(each)]
         case Ends(record):
             return [record]
-    return [one]
+    return [value_type]

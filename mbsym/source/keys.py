@@ -697,7 +697,7 @@ ALIASES = {
 
 def spellings(key: str) -> list[str]:
     """The other spellings of a key or word."""
-    return [other for other, one in ALIASES.items() if one == key]
+    return [other for other, canonical in ALIASES.items() if canonical == key]
 
 
 #: What other programs write, and what is written here: no slip of the pen for something else.

@@ -48,8 +48,8 @@ class Section:
     def read(self, node: Node | None, bodies: list[str], reading: Reading) -> tuple[Any, ...]:
         """Every item, in its order."""
         nodes = () if node is None else reading.items(node, f"'{self.what}s'")
-        found = (self._item(one, bodies, reading) for one in nodes)
-        return tuple(one for one in found if one is not None)
+        values = (self._item(item_node, bodies, reading) for item_node in nodes)
+        return tuple(value for value in values if value is not None)
 
     def _item(self, node: Node, bodies: list[str], reading: Reading) -> Any | None:
         if not isinstance(node, placed.Mapping) or len(node.entries) != 1:
@@ -113,7 +113,7 @@ class Item:
         self.fields = self.reading.fields(self.value, f"'{self.name}'", self.kind.keys, hint)
         way = self._way(self.fields)
         for key in self.kind.keys:
-            if key in way.keys if way is not None else all(key in one.keys for one in self.kind.ways):
+            if key in way.keys if way is not None else all(key in other.keys for other in self.kind.ways):
                 self._read_key(self.fields, key, self.kind.keys[key])
         return None if way is None else self._made(way, {key: self.kind.keys[key].type for key in way.keys})
 
@@ -138,7 +138,7 @@ class Item:
     def value_error(self, code: str, message: str, key: str, hint: str | None = None) -> None:
         """A complaint about the value of a key that is there."""
         assert self.fields is not None
-        self.reading.error(code, message, self.fields.found[key].value.span, hint)
+        self.reading.error(code, message, self.fields.entries[key].value.span, hint)
 
     def warning(self, code: str, message: str, key: str, hint: str | None = None) -> None:
         assert self.fields is not None
@@ -149,16 +149,16 @@ class Item:
         ways = self.kind.ways
         if len(ways) == 1:
             return ways[0]
-        found = [way for way in ways if way.keys[0] in fields.found]
-        if not found:
+        matching = [way for way in ways if way.keys[0] in fields.entries]
+        if not matching:
             names = " nor ".join(f"'{way.keys[0]}'" for way in ways)
             if fields.sound:  # else there was no mapping
                 self.reading.error(
                     "missing-key", "[[what]] has neither [[names]]", fields.span, what=worded(fields.what), names=names
                 )
             return None
-        fields.exclude(found[-1].keys[0], (key for key in self.kind.keys if key not in found[-1].keys))
-        return found[-1]
+        fields.exclude(matching[-1].keys[0], (key for key in self.kind.keys if key not in matching[-1].keys))
+        return matching[-1]
 
     def _read_key(self, fields: Fields, name: str, key: grammar.Key) -> None:
         node = fields.require(name) if key.required else fields.get(name)
@@ -175,15 +175,15 @@ class Item:
         if self.reading.errors == errors:
             self.sound.add(name)
 
-    def _value(self, wanted: grammar.Type, node: Node, what: str) -> Any:
+    def _value(self, value_type: grammar.Type, node: Node, what: str) -> Any:
         """The value of a node; where something is wrong with it, what can be gone on with, or None."""
-        match wanted:
+        match value_type:
             case grammar.Formula(allowed):
                 return self.reading.expression(node, allowed)
             case grammar.Vector(allowed, direction):
                 return self._vector(node, allowed, direction)
             case grammar.BodyName():
-                return self._body(node, wanted, what)
+                return self._body(node, value_type, what)
             case grammar.Name(of):
                 scalar = self.reading.scalar(node, what)
                 if scalar is not None:
@@ -195,7 +195,7 @@ class Item:
             case grammar.Ends(record):
                 return self._ends(node, record, what)
             case grammar.Equation():
-                return self._equation(node, wanted)
+                return self._equation(node, value_type)
             case grammar.Named(grammar.Formula(allowed), of):
                 return self._named(node, allowed, of)
         raise TypeError(f"{what} has no reader")
@@ -260,7 +260,7 @@ class Item:
 
     def _named(self, node: Node, allowed: Allowed, of: str) -> tuple[tuple[str, Expression], ...]:
         """Pairs of a name and an expression."""
-        found = []
+        pairs = []
         entries = list(self.reading.entries(node, f"'{self.name}'"))
         known = self.reading.scope.of_kind(of)
         if spelled := _spelled_out(entries, known, of):
@@ -275,8 +275,8 @@ class Item:
             sound = self.reading.scope.check_name(entry.key.text, entry.key.span, key)
             value = self.reading.expression(entry.value, allowed)
             if sound:
-                found.append((entry.key.text, value))
-        return tuple(found)
+                pairs.append((entry.key.text, value))
+        return tuple(pairs)
 
 
 def _spelled_out(entries: list[Entry], known: Any, of: str) -> str:
@@ -287,9 +287,9 @@ def _spelled_out(entries: list[Entry], known: Any, of: str) -> str:
     return value.text if isinstance(value, Scalar) and value.text in known else ""
 
 
-def _nothing(wanted: grammar.Type) -> Any:
+def _nothing(value_type: grammar.Type) -> Any:
     """What stands for a value that is not there."""
-    match wanted:
+    match value_type:
         case grammar.Formula():
             return ZERO
         case grammar.Vector():

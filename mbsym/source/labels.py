@@ -17,12 +17,12 @@ def _labelled(table: Mapping[str, Key]) -> dict[str, str]:
     return {key.label or name: name for name, key in table.items()}
 
 
-def _first(one: Type) -> Type:
-    return one.types[0] if isinstance(one, Either) else one
+def _first(value_type: Type) -> Type:
+    return value_type.types[0] if isinstance(value_type, Either) else value_type
 
 
-def _is_section(one: Type) -> bool:
-    first = _first(one)
+def _is_section(value_type: Type) -> bool:
+    first = _first(value_type)
     return isinstance(first, Record) or (isinstance(first, Named) and not first.one)
 
 
@@ -66,12 +66,12 @@ FREE = ("mechanical system", "description", "source", "name")
 def _inside(kinds: Mapping[str, Kind]) -> Iterator[tuple[str, Type]]:
     """The keys of all kinds with their types; of two ends with the labels of both."""
     for kind in kinds.values():
-        for name, one in {"": kind.type, **{name: key.type for name, key in kind.keys.items()}}.items():
-            if isinstance(one, Ends):
+        for name, value_type in {"": kind.type, **{name: key.type for name, key in kind.keys.items()}}.items():
+            if isinstance(value_type, Ends):
                 for which in ("first", "second"):
-                    yield from ((f"{which} {inner}", key.type) for inner, key in one.record.keys.items())
+                    yield from ((f"{which} {inner}", key.type) for inner, key in value_type.record.keys.items())
             else:
-                yield name, one
+                yield name, value_type
 
 
 _KINDS = [*_inside(keys.LOADS), *_inside(keys.CONSTRAINTS)]

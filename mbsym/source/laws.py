@@ -37,35 +37,35 @@ def read_law(
     return tree if len(complaints.items) == before else None
 
 
-def read_laws(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+def read_laws(system: System, laws: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Laws of inputs by name as expressions in t, coordinates, velocities, parameters and tables of the description.
 
     Raises ValueError with everything that is wrong.
     """
-    return _read(system, given, system.input_names, "input", LAW)
+    return _read(system, laws, system.input_names, "input", LAW)
 
 
-def read_motions(system: System, given: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
+def read_motions(system: System, motions: Mapping[str, Expression | Fraction | float | str]) -> dict[str, Expression]:
     """Motions of all coordinates by name as smooth expressions in t, parameters and prescribed motions.
 
     With constraints some of them, one at least.  Raises ValueError with everything that is wrong, coordinates without a
     motion included.
     """
-    return _read(system, given, system.coordinates, "coordinate", MOTION, not (system.constraints and given))
+    return _read(system, motions, system.coordinates, "coordinate", MOTION, not (system.constraints and motions))
 
 
 def _read(
     system: System,
-    given: Mapping[str, Expression | Fraction | float | str],
+    values: Mapping[str, Expression | Fraction | float | str],
     known: Sequence[str],
     kind: str,
     allowed: Allowed,
     every: bool = False,
 ) -> dict[str, Expression]:
     expressions: dict[str, Expression] = {}
-    wrong = [f"there is no {kind} called {name}" for name in given if name not in known]
-    wrong += [f"no motion is given for {name}" for name in known if every and name not in given]
-    for name, value in given.items():
+    wrong = [f"there is no {kind} called {name}" for name in values if name not in known]
+    wrong += [f"no motion is given for {name}" for name in known if every and name not in values]
+    for name, value in values.items():
         complaints = Complaints()
         if isinstance(value, str):
             law = read_law(value, system, complaints, _span, allowed)

@@ -25,14 +25,14 @@ def declare_linear(node: Node | None, whole: Fields, reading: Reading) -> tuple[
     if node is None:
         return None
     for key in OF_BODIES:
-        if key in whole.found:
+        if key in whole.entries:
             message = Message(
                 "[[key]] does not go with a 'linear system', which is given by its matrices", key=ascii_safe(key)
             )
             reading.error("conflicting-keys", message, whole.key_span(key), "leave one of them out")
     hint = "write {coordinates: [x, y], K: [[k1, 0], [0, k2]]}"
     fields = reading.fields(node, "a linear system", LINEAR_SYSTEM, hint)
-    names, found = fields.require("coordinates", hint), []
+    names, coordinates = fields.require("coordinates", hint), []
     items = () if names is None else reading.items(names, "'coordinates'")
     if names is not None and isinstance(names, Sequence) and not 1 <= len(items) <= MOST_COORDINATES:
         message = Message(
@@ -42,16 +42,16 @@ def declare_linear(node: Node | None, whole: Fields, reading: Reading) -> tuple[
     for item in items:
         scalar = reading.scalar(item, "a coordinate")
         if scalar is not None and reading.scope.declare(scalar.text, "coordinate", scalar.span):
-            found.append(scalar.text)
-    return fields, tuple(found)
+            coordinates.append(scalar.text)
+    return fields, tuple(coordinates)
 
 
 def read_linear(fields: Fields, coordinates: tuple[str, ...], inputs: int, reading: Reading) -> LinearModel:
     """The matrices, with every complaint about their shapes; ``inputs`` is how many columns B has."""
     for whole, parts in PARTS.items():
-        if whole in fields.found:
+        if whole in fields.entries:
             fields.exclude(whole, parts)
-    if not {*MATRICES} - {"B"} & {*fields.found}:
+    if not {*MATRICES} - {"B"} & {*fields.entries}:
         hint = "stiffness K, damping D, gyroscopic G, ...: K: [[k1, 0], [0, k2]]"
         reading.error("missing-key", "a linear system without matrices: x'' = 0", fields.span, hint)
     matrices, rows = [], len(coordinates)
@@ -61,9 +61,9 @@ def read_linear(fields: Fields, coordinates: tuple[str, ...], inputs: int, readi
             matrix = _matrix(key, node, (rows, inputs if key == "B" else rows), reading)
             if matrix is not None:
                 matrices.append(matrix)
-    if "B" in fields.found and not inputs:
+    if "B" in fields.entries and not inputs:
         reading.error("idle-inputs", "B has no inputs: there are none", fields.key_span("B"), "declare 'inputs: [u]'")
-    elif inputs and "B" not in fields.found:
+    elif inputs and "B" not in fields.entries:
         message = "the inputs act nowhere: there is no B"
         reading.error("missing-key", message, fields.span, "the equations are M x'' + ... = B u, B: [[1], [0]]")
     return LinearModel(coordinates, tuple(matrices), fields.span)
@@ -145,20 +145,20 @@ def _from_file(key: str, node: Node, shape: tuple[int, int], reading: Reading) -
         reading.error("matrix-file", why.message, scalar.span, why.hint)
         return None
     stated = fields.get("sha256")
-    wanted = None if stated is None else reading.scalar(stated, "'sha256'")
-    if wanted is not None and wanted.text.strip().lower() != read.digest:
+    expected = None if stated is None else reading.scalar(stated, "'sha256'")
+    if expected is not None and expected.text.strip().lower() != read.digest:
         message = Message(
             "[[file]] is not the file that is meant: its SHA-256 is [[digest]]", file=file, digest=read.digest
         )
-        reading.error("matrix-file", message, wanted.span, "leave the key out where any content will do")
+        reading.error("matrix-file", message, expected.span, "leave the key out where any content will do")
         return None
-    found = (len(read.rows), len(read.rows[0]))
-    if found != shape:
+    size = (len(read.rows), len(read.rows[0]))
+    if size != shape:
         message = Message(
             "[[file]] holds a matrix of [[found]] x [[found2]], and [[key]] is [[rows]] x [[columns]] here",
             file=file,
-            found=found[0],
-            found2=found[1],
+            found=size[0],
+            found2=size[1],
             key=key,
             rows=shape[0],
             columns=shape[1],

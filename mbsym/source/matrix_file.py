@@ -71,11 +71,11 @@ def _bytes(folder: Path | None, file: str) -> bytes:
     if folder is None:
         hint = "give mbsym this description as a file of its own, or write the matrix into it"
         raise Unreadable("files beside a description are read with it only: not in a batch, nor beside a text", hint)
-    wanted = PurePosixPath(file)
-    if wanted.is_absolute() or ".." in wanted.parts or "\\" in file or ":" in file:
+    relative = PurePosixPath(file)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in file or ":" in file:
         raise Unreadable(_BESIDE, "as in data/K.mtx")
     try:
-        path = (folder / wanted).resolve()
+        path = (folder / relative).resolve()
         if not path.is_relative_to(folder.resolve()):
             raise Unreadable(_BESIDE)
         if not path.is_file():
@@ -131,14 +131,14 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
     if not body:
         raise Unreadable(Message("[[name]] has no line of sizes", name=name))
     place, sizes = body[0]
-    wanted = 2 if layout == "array" else 3
-    if len(sizes) != wanted or not all(map(_WHOLE.match, sizes)):
+    size_count = 2 if layout == "array" else 3
+    if len(sizes) != size_count or not all(map(_WHOLE.match, sizes)):
         raise Unreadable(
             Message(
                 "[[name]]:[[place]]: the line of sizes holds [[wanted]] whole numbers",
                 name=name,
                 place=place,
-                wanted=wanted,
+                wanted=size_count,
             )
         )
     rows, columns = int(sizes[0]), int(sizes[1])
@@ -154,7 +154,7 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
                 columns=columns,
             )
         )
-    found = [[Fraction(0)] * columns for _ in range(rows)]
+    matrix = [[Fraction(0)] * columns for _ in range(rows)]
     if layout == "array":
         entries = _listed(body[1:], name, symmetry, rows, columns)
     else:
@@ -172,14 +172,14 @@ def _from_market(data: bytes, file: str, most: int) -> Numbers:
                 )
             )
         seen.add((i, j))
-        found[i][j] = value
+        matrix[i][j] = value
         if symmetry != "general" and i != j:
-            found[j][i] = value if symmetry == "symmetric" else -value
+            matrix[j][i] = value if symmetry == "symmetric" else -value
         if symmetry == "skew-symmetric" and i == j and value:
             raise Unreadable(
                 Message("[[name]]:[[number]]: the diagonal of a skew matrix is zero", name=name, number=number)
             )
-    return tuple(map(tuple, found))
+    return tuple(map(tuple, matrix))
 
 
 _Entries = list[tuple[int, int, int, Fraction]]

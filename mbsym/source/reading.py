@@ -34,10 +34,10 @@ _TWO_IN_ONE = re.compile(r"(?<=[\w)])\s+(?=[-+]?[\w(])")
 ZERO_VECTOR: Vector = (ZERO, ZERO, ZERO)
 
 
-def comma_hint(items: tuple[Node, ...], wanted: int) -> str | None:
+def comma_hint(items: tuple[Node, ...], count: int) -> str | None:
     """What may be wrong with the commas of a list that has not as many items as it should have."""
     texts = [item.text if isinstance(item, Scalar) else "" for item in items]
-    if len(texts) < wanted:
+    if len(texts) < count:
         if any(";" in text for text in texts):
             return "components are separated by commas"
         double = next((text for text in texts if _TWO_IN_ONE.search(text) and len(text) <= MAX_SHOWN), None)
@@ -89,13 +89,13 @@ _KEY_AND_VALUE = re.compile(r"\s*([A-Za-z][\w' -]*?)\s*[:=]\s*(\S.*?)\s*", re.DO
 _BRACKETED = re.compile(r"(?:diag|diagonal|vec|vector|array|list|tuple|Matrix)?\s*[(\[{]+(.*?)[)\]}]+\Z", re.DOTALL)
 
 
-def _bare_list(node: Node, wanted: int) -> str | None:
+def _bare_list(node: Node, count: int) -> str | None:
     """``a, b, c`` for a text that holds so many expressions between commas, whatever stands around them."""
     text = node.text.strip() if isinstance(node, Scalar) else ""
     bare = _BRACKETED.sub(r"\1", text)
     for parts in (text.split(","), bare.split(","), bare.split()):
         parts = [part.strip() for part in parts]
-        if len(parts) == wanted and len(text) <= 3 * MAX_SHOWN and all(map(_is_expression, parts)):
+        if len(parts) == count and len(text) <= 3 * MAX_SHOWN and all(map(_is_expression, parts)):
             return ", ".join(parts)
     return None
 
@@ -112,8 +112,8 @@ def _by_axis(node: Node, known: Container[str]) -> str | None:
         if texts and len(texts) == len(written) and set(texts) <= {*_AXES}:
             return ", ".join(texts.get(axis) or "0" for axis in _AXES)
     elif isinstance(node, Scalar) and (named := _AXIS.fullmatch(node.text.strip())):
-        one = named[2] if named[2] in known else "1"
-        return ", ".join(f"{named[1].strip('+')}{one}" if axis == named[2] else "0" for axis in _AXES)
+        component = named[2] if named[2] in known else "1"
+        return ", ".join(f"{named[1].strip('+')}{component}" if axis == named[2] else "0" for axis in _AXES)
     return None
 
 
@@ -164,14 +164,14 @@ class Reading:
         """How many errors there are so far: what was read without a new one is sound and may be judged."""
         return self.complaints.error_count
 
-    def shape_error(self, node: Node, what: str, wanted: str, hint: str | None = None) -> None:
+    def shape_error(self, node: Node, what: str, shape: str, hint: str | None = None) -> None:
         self.error(
             "wrong-shape",
             "[[what]] must be [[wanted]], not [[kind]]",
             node.span,
             hint,
             what=worded(what),
-            wanted=worded(wanted),
+            wanted=worded(shape),
             kind=worded(placed.kind(node)),
         )
 
@@ -222,8 +222,8 @@ class Reading:
         tables = self.scope.tables if named else NO_TABLES
         tree = parse_expression(scalar.text, self.complaints, scalar.place, named, tables=tables)
         if tree is None:
-            for one in names_apart(scalar.text, scalar.place, self.complaints.items[before:]):
-                self.scope.check(one, allowed)
+            for name in names_apart(scalar.text, scalar.place, self.complaints.items[before:]):
+                self.scope.check(name, allowed)
             if not scalar.text.isascii() and scalar.text.strip().isidentifier():
                 self.scope.assumed.add(in_latin(scalar.text.strip()))  # as it is written elsewhere, or will be
             return ZERO
@@ -366,8 +366,8 @@ class Reading:
         """A mapping with a fixed set of keys; an unknown one is complained about and taken for what it resembles."""
         entries: dict[str, Entry] = {}
         misspelt: dict[str, Entry] = {}
-        given = keys_of(node)
-        left = [key for key in known if key not in given]
+        written_keys = keys_of(node)
+        left = [key for key in known if key not in written_keys]
         other = self._other_keys(node, what, known)
         if hint is None and len(known) <= MOST_OTHER:
             hint = Message("the keys are: [[known]]", known=", ".join(known))
@@ -419,13 +419,13 @@ class Fields:
 
     reading: Reading
     what: str
-    found: dict[str, Entry]
+    entries: dict[str, Entry]
     span: Span
     sound: bool
     known: Mapping[str, Key]
 
     def get(self, key: str) -> Node | None:
-        entry = self.found.get(key)
+        entry = self.entries.get(key)
         return None if entry is None else entry.value
 
     def require(self, key: str, hint: str | None = None) -> Node | None:
@@ -444,7 +444,7 @@ class Fields:
         return node
 
     def key_span(self, key: str) -> Span:
-        return self.found[key].key.span
+        return self.entries[key].key.span
 
     def text(self, key: str) -> str:
         node = self.get(key)
@@ -455,9 +455,9 @@ class Fields:
         node, of = self.get(key), self.known[key].type
         if node is None or not isinstance(of, Word):
             return ""
-        words = [other for one in map(str, of.choices) for other in (one, *spellings(one))]
-        found = self.reading.word(node, what or f"'{key}'", words) or ""
-        return ALIASES.get(found, found)
+        words = [other for choice in map(str, of.choices) for other in (choice, *spellings(choice))]
+        spelled = self.reading.word(node, what or f"'{key}'", words) or ""
+        return ALIASES.get(spelled, spelled)
 
     def expression(self, key: str, allowed: Allowed) -> Expression | None:
         node = self.get(key)
@@ -470,6 +470,6 @@ class Fields:
     def exclude(self, key: str, others: Iterable[str]) -> None:
         """Complain about keys that make no sense beside another one."""
         for other in others:
-            if other in self.found:
+            if other in self.entries:
                 message = Message("[[other]] does not go with [[key]]", other=ascii_safe(other), key=ascii_safe(key))
                 self.reading.error("conflicting-keys", message, self.key_span(other))

@@ -53,8 +53,8 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
     known = {*system.parameter_names, *CONSTANTS}
     moving = (*system.coordinates, *system.variables)
     # A variable may keep its name.
-    own = {one.name for one in items if one.name in moving}
-    seen = [node.name for one in items for node in walk(one.value) if isinstance(node, Name)]
+    own = {assignment.name for assignment in items if assignment.name in moving}
+    seen = [node.name for assignment in items for node in walk(assignment.value) if isinstance(node, Name)]
     fresh = [name for name in dict.fromkeys(seen) if name not in known]
     taken = _taken(system)
     for item in items:
@@ -91,7 +91,11 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
             time = scaled
         else:
             variables.append(scaled)
-    images = _resolved({one.name: one.value for one in items if one.name in system.parameter_names}, items, complaints)
+    images = _resolved(
+        {assignment.name: assignment.value for assignment in items if assignment.name in system.parameter_names},
+        items,
+        complaints,
+    )
     if complaints.errors:
         return None
     named = {scaled.new for scaled in (*variables, *([time] if time else []))}
@@ -111,17 +115,19 @@ def read_scaling(text: str, system: System, complaints: Complaints) -> Scaling |
 def _items(text: str, system: System, complaints: Complaints) -> Iterator[Item]:
     """The assignments, their names looked up and each given once."""
     done: set[str] = set()
-    for one in assignments(text, complaints):
-        if one.bare:
-            message = Message("[[text]] says of no name what it is", text=ascii_safe(one.name) or "nothing")
+    for assignment in assignments(text, complaints):
+        if assignment.bare:
+            message = Message("[[text]] says of no name what it is", text=ascii_safe(assignment.name) or "nothing")
             complaints.error(
-                "bad-assignment", message, one.span, "write name=expression, for example x=L*x1,t=tau/omega0"
+                "bad-assignment", message, assignment.span, "write name=expression, for example x=L*x1,t=tau/omega0"
             )
-        elif one.name in done:
-            complaints.error("repeated-name", Message("'[[name]]' is given twice", name=one.name), one.span)
-        elif _known(one.name, one.span, system, complaints):
-            done.add(one.name)
-            yield one
+        elif assignment.name in done:
+            complaints.error(
+                "repeated-name", Message("'[[name]]' is given twice", name=assignment.name), assignment.span
+            )
+        elif _known(assignment.name, assignment.span, system, complaints):
+            done.add(assignment.name)
+            yield assignment
 
 
 def assignments(text: str, complaints: Complaints, start: int = 0) -> Iterator[Item]:
@@ -163,7 +169,7 @@ def _taken(system: System) -> set[str]:
     """Names that no new one may be."""
     moving = (*system.coordinates, *system.variables)
     own = {name + end for name in moving for end in ("", *ENDINGS.values())}
-    own |= {one.name for part in (system.prescribed, system.notation, system.inputs, system.tables) for one in part}
+    own |= {named.name for part in (system.prescribed, system.notation, system.inputs, system.tables) for named in part}
     return own
 
 
@@ -171,27 +177,31 @@ def _resolved(images: dict[str, Expression], items: list[Item], complaints: Comp
     """What is put in, without names for which something is put in."""
     for _ in images:
         images = {name: substitute(value, images) for name, value in images.items()}
-    for one in items:
-        if one.name in images and names(images[one.name]) & images.keys():
-            message = Message("'[[name]]' is made of itself", name=one.name)
-            complaints.error("circular", message, one.span, "one of these names is to be left, or a new one to come in")
+    for assignment in items:
+        if assignment.name in images and names(images[assignment.name]) & images.keys():
+            message = Message("'[[name]]' is made of itself", name=assignment.name)
+            complaints.error(
+                "circular", message, assignment.span, "one of these names is to be left, or a new one to come in"
+            )
     return images
 
 
 def _dimensions(
-    system: System, items: list[Item], found: Scaling, named: set[str], complaints: Complaints
+    system: System, items: list[Item], scaling: Scaling, named: set[str], complaints: Complaints
 ) -> Dimensions:
     """The dimensions of all names; complains where an expression has another one than what it is put in for."""
     hint = "new variables are pure numbers, and so are new parameters that stand in one place only, at a parameter"
-    factors = {name for one in items if one.name not in found.images for name in names(one.value)}
-    often = {name for name in found.new if sum(name in names(one.value) for one in items) > 1}
-    numbers = {*named, *(name for name in found.new if name not in factors | often)}
+    factors = {
+        name for assignment in items if assignment.name not in scaling.images for name in names(assignment.value)
+    }
+    often = {name for name in scaling.new if sum(name in names(assignment.value) for assignment in items) > 1}
+    numbers = {*named, *(name for name in scaling.new if name not in factors | often)}
 
     def complain(message: str, span: Span | None, own: str | None) -> None:
         complaints.error("dimension", message, span, own or hint)
 
     dimensions = dimensions_of(system, complain, {name: Form() for name in numbers})
-    for item in sorted(items, key=lambda one: one.name in found.images):
+    for item in sorted(items, key=lambda assignment: assignment.name in scaling.images):
         form = dimensions.name_form(item.name)
         dimensions.expect(item.value, form, f"'{item.name}'")
     return dimensions
@@ -225,11 +235,13 @@ def read_reduction(text: str, complaints: Complaints) -> Reducing | None:
         elif piece.strip():
             items = list(assignments(left, complaints, start))
             of = list(assignments(right, complaints, start + len(left) + len(by)))
-            for one in [x for x in items if x.bare and not by] + [x for x in of if not x.bare]:
-                message = Message("[[text]] is no step of a reduction", text=ascii_safe(one.name) or "nothing")
+            for misplaced in [x for x in items if x.bare and not by] + [x for x in of if not x.bare]:
+                message = Message("[[text]] is no step of a reduction", text=ascii_safe(misplaced.name) or "nothing")
                 hint = "for example 'r=1 by integrals', 'q by p', 'p=p1+eps*a', and 'O(eps**3)' as the last one"
-                complaints.error("bad-step", message, one.span, hint)
+                complaints.error("bad-step", message, misplaced.span, hint)
             expressions = {item.name: item.value for item in items if not item.bare}
-            steps.append(Asked(tuple(item.name for item in items), expressions, tuple(one.name for one in of)))
+            steps.append(
+                Asked(tuple(item.name for item in items), expressions, tuple(assignment.name for assignment in of))
+            )
         start += len(piece) + 1
     return None if complaints.errors else Reducing(tuple(steps), small, known)

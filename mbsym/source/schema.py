@@ -71,7 +71,7 @@ def _schema(value: grammar.Type, definitions: Schema) -> Schema:
             names = {"type": "object", "patternProperties": {_NAME: _schema(item, definitions)}}
             return {**names, "additionalProperties": False, **(_ONE if one else {})}
         case grammar.Either(types, called):
-            schema: Schema = {"anyOf": [_schema(one, definitions) for one in types]}
+            schema: Schema = {"anyOf": [_schema(alternative, definitions) for alternative in types]}
             return _defined(called, lambda: schema, definitions) if called else schema
         case grammar.Ends(record):
             return _list(_schema(record, definitions), 2, 2)
@@ -106,8 +106,8 @@ def _list(item: Schema, least: int, most: int | None) -> Schema:
 
 def _choices(choices: tuple[str | int, ...]) -> list[str | int]:
     """Words in all their spellings; numbers may be quoted."""
-    found = [other for choice in choices for other in (choice, *spellings(str(choice)))]
-    return [*found, *(str(choice) for choice in choices if isinstance(choice, int))]
+    words = [other for choice in choices for other in (choice, *spellings(str(choice)))]
+    return [*words, *(str(choice) for choice in choices if isinstance(choice, int))]
 
 
 def _spellings(keys: Mapping[str, Schema]) -> Schema:
@@ -124,7 +124,7 @@ def _record(record: grammar.Record, definitions: Schema) -> Schema:
     properties = {name: _key(key, definitions) for name, key in record.keys.items()}
     schema: Schema = {"type": "object", "properties": _spellings(properties), "additionalProperties": False}
     schema |= _required([name for name, key in record.keys.items() if key.required])
-    return schema | ({"oneOf": [{"required": [one]} for one in record.one_of]} if record.one_of else {})
+    return schema | ({"oneOf": [{"required": [name]} for name in record.one_of]} if record.one_of else {})
 
 
 def _required(names: list[str], any_of: tuple[str, ...] = ()) -> Schema:

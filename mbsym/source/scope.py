@@ -246,8 +246,12 @@ class Scope:
             message = Message("unknown name [[name]]", name=ascii_safe(name))
             self.complaints.error("unknown-name", message, span, self._unknown_hint(name, allowed))
         elif kind not in allowed.kinds:
-            told = [one for one in allowed.kinds if one not in _RARE or self.of_kind(one)]
-            held = _enumerated([_PLURALS[one] for one in told]) or "numbers"
+            kinds = [
+                allowed_kind
+                for allowed_kind in allowed.kinds
+                if allowed_kind not in _RARE or self.of_kind(allowed_kind)
+            ]
+            held = _enumerated([_PLURALS[allowed_kind] for allowed_kind in kinds]) or "numbers"
             message = Message(
                 "'[[name]]' is [[kinds]], and [[what]] holds only [[held]]",
                 name=name,
@@ -278,9 +282,9 @@ class Scope:
             return Message("accelerations are what the equations are solved for; [[why]]", why=none)
         known = [kind for kind in self.kinds if self.kinds[kind] in allowed.kinds and kind not in self.beside]
         if "velocity" in allowed.kinds:
-            known += [velocity_name(one) for one in self.of_kind("coordinate")]
+            known += [velocity_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if "acceleration" in allowed.kinds:
-            known += [acceleration_name(one) for one in self.of_kind("coordinate")]
+            known += [acceleration_name(coordinate) for coordinate in self.of_kind("coordinate")]
         if self.kinds.get(without_velocity(name)) == "input":
             return "an input is any function of time: what depends on its rate is no load of this system"
         close = did_you_mean(name, known)
@@ -364,18 +368,18 @@ def slip_of(name: str, known: Iterable[str]) -> str | None:
     from difflib import SequenceMatcher
 
     best: tuple[float, str] | None = None
-    for one in list(known)[:100]:
-        short, long = sorted((name, one), key=len)
+    for candidate in list(known)[:100]:
+        short, long = sorted((name, candidate), key=len)
         if not short:
             continue
         if short.rstrip("0123456789") == long.rstrip("0123456789") or short[:-1] == long[:-1]:
             continue
         if long.startswith(short) and set(long[len(short) :]) != {short[-1]}:
             continue
-        matcher = SequenceMatcher(None, name, one)
+        matcher = SequenceMatcher(None, name, candidate)
         bar = best[0] if best is not None else _SLIP
         if matcher.real_quick_ratio() >= bar and matcher.quick_ratio() >= bar and matcher.ratio() >= bar:
-            best = matcher.ratio(), one
+            best = matcher.ratio(), candidate
     return best and best[1]
 
 

@@ -184,7 +184,7 @@ def read_initial(node: Node | None, reading: Reading) -> tuple[tuple[InitialValu
                 entry.value, Message("the initial value of [[what]]", what=ascii_safe(entry.key.text)), INITIAL
             )
             position, velocity = fields.expression("position", allowed), fields.expression("velocity", allowed)
-            if not fields.found:
+            if not fields.entries:
                 reading.error(
                     "missing-key", "[[what]] has neither 'position' nor 'velocity'", span, what=worded(fields.what)
                 )
@@ -250,9 +250,9 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
     fields = reading.fields(
         entry.value, Message("the small parameter [[name]]", name=ascii_safe(name)), SMALL_PARAMETER, HINT
     )
-    given = fields.get("powers")
-    powers = () if given is None else tuple(_powers(given, name, reading, used))
-    if given is None:
+    powers_node = fields.get("powers")
+    powers = () if powers_node is None else tuple(_powers(powers_node, name, reading, used))
+    if powers_node is None:
         reading.scope.check_name(name, entry.key.span, _PARAMETER)
         if reading.errors == errors:
             _check_used(name, entry.key, reading, used)
@@ -265,7 +265,7 @@ def read_small(node: Node | None, reading: Reading, used: frozenset[str]) -> Sma
             )
             reading.error("misplaced-name", message, entry.key.span, "choose another name, or leave 'powers' out")
         elif not powers and reading.errors == errors:
-            reading.shape_error(given, "'powers'", "a parameter with a power of the small one", HINT)
+            reading.shape_error(powers_node, "'powers'", "a parameter with a power of the small one", HINT)
     fast = tuple(_variables(fields.get("fast"), "fast", reading))
     slow = tuple(_variables(fields.get("slow"), "slow", reading))
     for other in slow:

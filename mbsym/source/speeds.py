@@ -183,7 +183,7 @@ def check_speeds(system: System, drafts: Sequence[Draft], reading: Reading) -> N
             continue
         rows.append(row)
         if reading.errors == errors and len(independent(rows)) < len(rows):
-            others = ", ".join(one.name for one in system.speeds[: len(rows) - 1])
+            others = ", ".join(earlier.name for earlier in system.speeds[: len(rows) - 1])
             reading.error(
                 "dependent-speeds",
                 "'[[name]]' follows from [[others]]: the generalised velocities cannot be found from them",
@@ -346,14 +346,14 @@ def _uses(system: System, body: Body) -> list[tuple[str, str]]:
 
 def _held(load: object) -> set[str]:
     """The coordinates in a load, by name or in an expression, velocities among them."""
-    found: set[str] = set()
+    held: set[str] = set()
     pending: list[object] = [load]
     while pending:
         part = pending.pop()
         if isinstance(part, str):
-            found.add(without_velocity(part))
+            held.add(without_velocity(part))
         elif isinstance(part, tuple):
             pending.extend(part)
         elif is_dataclass(part):
             pending.extend(getattr(part, field.name) for field in fields(part) if field.name != "span")
-    return found
+    return held

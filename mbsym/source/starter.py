@@ -71,7 +71,10 @@ def starter(title: str, bodies: Sequence[NewBody], gravity: bool = True) -> str:
             "",
             "# Constants.  A sign lets more be decided: positive, nonnegative, negative, nonpositive, nonzero, real.",
             "parameters:",
-            *(f"  {name}: {{sign: positive, meaning: {quoted(one.meaning)}}}" for name, one in parameters.items()),
+            *(
+                f"  {name}: {{sign: positive, meaning: {quoted(parameter.meaning)}}}"
+                for name, parameter in parameters.items()
+            ),
             "",
             "# Bodies in a tree, each attached to an earlier one (0: the inertial frame).  Vectors are written in axes",
             "# 1, 2, 3: a connection point in those of the carrier, a mass centre in those of the body.",
@@ -137,11 +140,11 @@ def parameters_of(number: int, body: NewBody, turns: bool = True) -> dict[str, N
 
 def _turning(bodies: Sequence[NewBody]) -> set[str]:
     """The bodies that turn, by themselves or with their carriers."""
-    found: set[str] = set()
+    turning: set[str] = set()
     for body in bodies:
-        if body.axes or body.carrier in found:
-            found.add(body.name)
-    return found
+        if body.axes or body.carrier in turning:
+            turning.add(body.name)
+    return turning
 
 
 def coordinates_of(number: int, body: NewBody) -> list[str]:
@@ -158,17 +161,17 @@ def on_its_joint(number: int, body: NewBody, below: str = "0", turns: bool = Tru
     angles, point = _rotations(number, body), ["0", f"-{below}" if below != "0" else "0", "0"]
     for axis, name in zip(body.slides, _translations(number, body), strict=True):
         point[axis - 1] = name if point[axis - 1] == "0" else f"{name} - {below}"
-    found: dict[str, Any] = {}
+    keys: dict[str, Any] = {}
     if angles:
-        found["rotation"] = {"axes": list(map(str, body.axes)), "angles": angles}
+        keys["rotation"] = {"axes": list(map(str, body.axes)), "angles": angles}
     if point != ["0", "0", "0"]:
-        found["connection point"] = point
-    found["mass"] = f"m{number}"
+        keys["connection point"] = point
+    keys["mass"] = f"m{number}"
     if turns:
         beside = body.axes == (2,)
-        found["mass centre"] = [f"l{number}", "0", "0"] if beside else ["0", f"-l{number}", "0"]
-        found["inertia about"], found["inertia"] = "mass centre", [f"J{number}{axis}" for axis in _AXES]
-    return {**found, "coordinates": coordinates_of(number, body)}
+        keys["mass centre"] = [f"l{number}", "0", "0"] if beside else ["0", f"-l{number}", "0"]
+        keys["inertia about"], keys["inertia"] = "mass centre", [f"J{number}{axis}" for axis in _AXES]
+    return {**keys, "coordinates": coordinates_of(number, body)}
 
 
 def _rotations(number: int, body: NewBody) -> list[str]:
@@ -188,14 +191,16 @@ _COMMENTS = {"inertia about": "or: joint", "inertia": "or three rows of a symmet
 
 
 def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
-    told = f"{body.joint}: {JOINTS[body.joint][2]}"
+    comment = f"{body.joint}: {JOINTS[body.joint][2]}"
     lines = [f"  - name: {quoted(body.name)}", f"    attached to: {quoted(body.carrier) if body.carrier else 0}"]
     turning = _turning(bodies)
-    carrier = next((k for k, one in enumerate(bodies, 1) if one.name == body.carrier and one.name in turning), None)
+    carrier = next(
+        (k for k, other in enumerate(bodies, 1) if other.name == body.carrier and other.name in turning), None
+    )
     data = on_its_joint(number, body, "0" if carrier is None else f"d{carrier}", body.name in turning)
-    comments = {**_COMMENTS, "rotation": told}
+    comments = {**_COMMENTS, "rotation": comment}
     if "rotation" not in data:
-        lines[0] += f" # {told}"
+        lines[0] += f" # {comment}"
     for key, value in data.items():
         lines.append(f"    {key}: {_flow(value)}" + (f" # {comments[key]}" if key in comments else ""))
     return [*lines, ""]
@@ -203,7 +208,7 @@ def _body(number: int, body: NewBody, bodies: Sequence[NewBody]) -> list[str]:
 
 def _flow(value: Any) -> str:
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{key}: {_flow(one)}' for key, one in value.items())}}}"
+        return f"{{{', '.join(f'{key}: {_flow(entry)}' for key, entry in value.items())}}}"
     return f"[{', '.join(value)}]" if isinstance(value, list) else value
 
 
@@ -216,10 +221,10 @@ def _gravity() -> list[str]:
 
 
 def _initial(bodies: Sequence[NewBody]) -> dict[str, str]:
-    found: dict[str, str] = {}
+    initial: dict[str, str] = {}
     for number, body in enumerate(bodies, 1):
-        found |= initial_of(number, body)
-    return found
+        initial |= initial_of(number, body)
+    return initial
 
 
 def initial_of(number: int, body: NewBody) -> dict[str, str]:

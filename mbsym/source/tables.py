@@ -69,8 +69,8 @@ def _from_file(fields: Fields, reading: Reading) -> tuple[Points, Source | None]
     rows = read_points(reading.folder, scalar.text.strip(), columns)
     for message, hint in rows.complaints:
         reading.error("table-file", message, scalar.span, hint)
-    wanted = fields.get("sha256")
-    stated = None if wanted is None else reading.scalar(wanted, "'sha256'")
+    digest_node = fields.get("sha256")
+    stated = None if digest_node is None else reading.scalar(digest_node, "'sha256'")
     if stated is not None and rows.digest and stated.text.strip().lower() != rows.digest:
         message = Message(
             "[[file]] is not the file that is meant: its SHA-256 is [[digest]]",
@@ -103,12 +103,12 @@ def _points(node: Node, what: str, reading: Reading) -> tuple[Place, ...]:
             most=MAX_POINTS,
             items=len(items),
         )
-    found = [(point, item.span) for item in items if (point := _point(item, what, reading)) is not None]
-    for (one, _), (later, span) in pairwise(found):
-        if later[0] <= one[0]:
-            _disordered(one, later, span, reading)
-    increasing = len(found) == len(items) and all(one[0][0] < later[0][0] for one, later in pairwise(found))
-    return tuple(point for point, _ in found) if increasing else ()
+    points = [(point, item.span) for item in items if (point := _point(item, what, reading)) is not None]
+    for (earlier, _), (later, span) in pairwise(points):
+        if later[0] <= earlier[0]:
+            _disordered(earlier, later, span, reading)
+    increasing = len(points) == len(items) and all(earlier[0][0] < later[0][0] for earlier, later in pairwise(points))
+    return tuple(point for point, _ in points) if increasing else ()
 
 
 def _disordered(place: Place, later: Place, span: Span, reading: Reading) -> None:
@@ -163,11 +163,11 @@ def read_points(folder: Path | None, file: str, columns: tuple[str, str]) -> Row
     if folder is None:
         hint = "give mbsym this description as a file of its own, or write the points into it"
         return _refused("files beside a description are read with it only: not in a batch, nor beside a text", hint)
-    wanted = PurePosixPath(file)
-    if wanted.is_absolute() or ".." in wanted.parts or "\\" in file or ":" in file:
+    relative = PurePosixPath(file)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in file or ":" in file:
         return _refused("a file of points stands beside the description, or in a folder below", "as in data/wind.csv")
     try:
-        path = (folder / wanted).resolve()
+        path = (folder / relative).resolve()
         if not path.is_relative_to(folder.resolve()):
             return _refused("a file of points stands beside the description, or in a folder below", None)
         if not path.is_file():
@@ -247,7 +247,7 @@ def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
             ),
             None,
         )
-    found, wrong = [], []
+    points, wrong = [], []
     width = len(rows[0][1])
     for number, cells in body:
         if len(cells) != width:
@@ -275,20 +275,20 @@ def _read(text: str, file: str, columns: tuple[str, str], digest: str) -> Rows:
                 (Message("[[file]]:[[number]]: [[shown]] is no number", file=file, number=number, shown=shown), hint)
             )
         else:
-            found.append((number, (first, second)))
-    for (_, one), (number, later) in pairwise(found):
-        if later[0] <= one[0]:
+            points.append((number, (first, second)))
+    for (_, earlier), (number, later) in pairwise(points):
+        if later[0] <= earlier[0]:
             message = Message(
                 "[[file]]:[[number]]: the arguments of a table increase from row to row", file=file, number=number
             )
             wrong.append(
-                (message, "take the mean of rows with one argument" if later[0] == one[0] else "sort the rows")
+                (message, "take the mean of rows with one argument" if later[0] == earlier[0] else "sort the rows")
             )
     if len(wrong) > MOST_COMPLAINTS:
         wrong[MOST_COMPLAINTS:] = [
             (Message("[[file]]: and [[more]] more rows like these", file=file, more=len(wrong) - MOST_COMPLAINTS), None)
         ]
-    return Rows(() if wrong else tuple(point for _, point in found), tuple(wrong), digest)
+    return Rows(() if wrong else tuple(point for _, point in points), tuple(wrong), digest)
 
 
 def _place(column: str, head: list[str], width: int) -> int | None:

@@ -30,15 +30,15 @@ def of_kind(
     ``what`` is load or constraint.
     """
     title = f"type of {what}"
-    found = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
-    named = [value for label, value in found if word_of(label.text) == title]
+    labelled = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
+    named = [value for label, value in labelled if word_of(label.text) == title]
     if len(named) != 1:
         place = heading.span if not named else named[1].span
         text = "this [[what]] has a second '[[title]]'" if named else "this [[what]] has no '[[title]]'"
         message = Message(text, what=what, title=title.capitalize())
         reader.error("repeated-key" if named else "missing-key", message, place)
         return None
-    data = [(label, value) for label, value in found if word_of(label.text) != title]
+    data = [(label, value) for label, value in labelled if word_of(label.text) != title]
     kind = kinds.get(ALIASES.get(named[0].text, named[0].text))
     if kind is not None and isinstance(kind.type, Named):
         value: Node = Mapping(tuple(Entry(label, value) for label, value in data), named[0].span)
@@ -75,10 +75,10 @@ def _value(reader: TextReader, word: str, value: Scalar) -> Node:
 def claim(reader: TextReader, heading: Scalar, lines: Items[Scalar]) -> Mapping:
     """The keys of a claim, one a line; of a body the number, a state as ``theta = 0.1; theta_dot = 2``."""
     entries = []
-    found = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
-    kinds = [word_of(value.text) for label, value in found if word_of(label.text) == "claim"]
+    labelled = [(label, value) for label, value in map(reader.load_line, lines) if label is not None]
+    kinds = [word_of(value.text) for label, value in labelled if word_of(label.text) == "claim"]
     about_body = any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds)
-    for label, value in found:
+    for label, value in labelled:
         word = word_of(label.text)
         node: Node = value
         if word == "of" and about_body:

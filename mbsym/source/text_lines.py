@@ -134,8 +134,8 @@ def is_description(path: Path) -> bool:
 
 def language_of(text: str) -> str:
     """What a description, sound or not, says of the language of its reports; "" where it says nothing that is one."""
-    found = _LANGUAGE.search(normalised(text))
-    return found[1] if found and found[1] in LANGUAGES else ""
+    match = _LANGUAGE.search(normalised(text))
+    return match[1] if match and match[1] in LANGUAGES else ""
 
 
 def says_so(text: str) -> bool:

@@ -62,14 +62,17 @@ class TextReader:
         entries += [self.section(block) for block in blocks if self.kind(block) == "section"]
         readers: dict[str, tuple[str, Callable[[_Block], Mapping | None]]] = {
             "body": ("bodies", self.body_form),
-            "load": ("loads", lambda one: of_kind(self, "load", LOADS, one.heading, one.lines)),
-            "claim": ("claims", lambda one: claim(self, one.heading, one.lines)),
-            "constraint": ("constraints", lambda one: of_kind(self, "constraint", CONSTRAINTS, one.heading, one.lines)),
+            "load": ("loads", lambda block: of_kind(self, "load", LOADS, block.heading, block.lines)),
+            "claim": ("claims", lambda block: claim(self, block.heading, block.lines)),
+            "constraint": (
+                "constraints",
+                lambda block: of_kind(self, "constraint", CONSTRAINTS, block.heading, block.lines),
+            ),
         }
         for kind, (key, read) in readers.items():
-            found = [block for block in blocks if self.kind(block) == kind]
-            self.check_numbers(found)
-            entries += _list_entry(key, found, read)
+            matching = [block for block in blocks if self.kind(block) == kind]
+            self.check_numbers(matching)
+            entries += _list_entry(key, matching, read)
         return Mapping(tuple(entries), start)
 
     def blocks(self, lines: list[Scalar]) -> tuple[list[Scalar], list[_Block]]:
@@ -116,8 +119,8 @@ class TextReader:
         word = word_of(label.text if label is not None else line.text)
         if label is not None and word in known:
             return label, word, value
-        if (found := spoken(line, known)) is not None:
-            return found
+        if (parts := spoken(line, known)) is not None:
+            return parts
         if label is None:
             label, value = _leading_words(line, known)
         span = line.span if label is None else label.span
@@ -136,10 +139,10 @@ class TextReader:
     def header(self, lines: list[Scalar]) -> list[Entry]:
         entries = []
         for line in lines:
-            found = self.labelled(line, HEADER, "the header")
-            if found is None or found[1] == "number of bodies":
+            parts = self.labelled(line, HEADER, "the header")
+            if parts is None or parts[1] == "number of bodies":
                 continue
-            label, word, value = found
+            label, word, value = parts
             free = word in FREE
             read = (
                 items(value) if word in ("order", "dependent", "reactions") else self.unquoted(value) if free else value
@@ -213,7 +216,7 @@ class TextReader:
         read = self.record(value, "name")
         if not isinstance(read, Mapping):
             return read
-        name = next((one.value for one in read.entries if one.key.text == "name"), value)
+        name = next((entry.value for entry in read.entries if entry.key.text == "name"), value)
         entries = []
         for entry in read.entries:
             if entry.key.text == "name" or not isinstance(entry.value, Scalar):
@@ -277,11 +280,11 @@ class TextReader:
         lines = block.lines
         position = 0
         while position < len(lines):
-            found = self.labelled(lines[position], BODY, block.heading.text)
+            parts = self.labelled(lines[position], BODY, block.heading.text)
             position += 1
-            if found is None:
+            if parts is None:
                 continue
-            label, word, value = found
+            label, word, value = parts
             if not value.text and word != "tensor of inertia":
                 if _goes_on(lines, position):
                     value = lines[position]
@@ -376,7 +379,7 @@ def _leading_words(line: Scalar, known: Iterable[str]) -> tuple[Scalar | None, S
     best, cut = 0.85, 0
     for match in list(re.finditer(r"\S+", line.text))[:MOST_WORDS]:
         words = word_of(line.text[: match.end()])
-        alike = max(SequenceMatcher(None, words, one).ratio() for one in known)
+        alike = max(SequenceMatcher(None, words, label).ratio() for label in known)
         if alike > best:
             best, cut = alike, match.end()
     return (line.part(0, cut), line.part(cut, len(line.text))) if cut else (None, line)

@@ -96,12 +96,12 @@ def lines_of_data(data: dict[str, Data]) -> Lines:
     for key, value in data.items():
         plain = ALIASES.get(key, key)
         if plain in BLOCKS and isinstance(value, list):
-            lines.blocks[plain] = [block(plain, one, numbers) for one in value]
+            lines.blocks[plain] = [block(plain, inner, numbers) for inner in value]
         elif plain == "assumptions" and isinstance(value, list):
-            lines.sections["assumptions"] = [(_flat(one), "") for one in value]
+            lines.sections["assumptions"] = [(_flat(inner), "") for inner in value]
         elif plain in _TITLES and isinstance(value, dict):
             first = _FIRST[plain]
-            lines.sections[_TITLES[plain]] = [(name, entry(plain, one, first)) for name, one in value.items()]
+            lines.sections[_TITLES[plain]] = [(name, entry(plain, inner, first)) for name, inner in value.items()]
         elif plain != "mbsym":
             lines.header += _header(plain, value, numbers)
     count = len(lines.blocks.get("bodies", ()))
@@ -120,9 +120,9 @@ def _numbers(data: dict[str, Data]) -> dict[str, str]:
 
 
 def _header(key: str, value: Data, numbers: dict[str, str]) -> list[Line]:
-    label = next((label for label, one in HEADER.items() if one == key), key)
+    label = next((label for label, header_key in HEADER.items() if header_key == key), key)
     if key == "reactions" and isinstance(value, list):
-        value = [numbers.get(_flat(one), _flat(one)) for one in value]
+        value = [numbers.get(_flat(body), _flat(body)) for body in value]
     if key == "small parameter":
         return [(label, small(value))]
     free_text = isinstance(value, str) and key in ("name", "description", "source", "label")
@@ -134,9 +134,9 @@ def small(value: Data) -> str:
     parts = []
     for name, rest in value.items() if isinstance(value, dict) else ((text_of(value), ""),):
         parts.append(name)
-        for key, one in rest.items() if isinstance(rest, dict) else ():
-            pairs: list[Data] = [x for pair in one.items() for x in pair] if isinstance(one, dict) else []
-            parts.append(f"{key} = {text_of(pairs or one)}")
+        for key, inner in rest.items() if isinstance(rest, dict) else ():
+            pairs: list[Data] = [x for pair in inner.items() for x in pair] if isinstance(inner, dict) else []
+            parts.append(f"{key} = {text_of(pairs or inner)}")
     return "; ".join(parts)
 
 
@@ -152,8 +152,8 @@ def entry(section: str, value: Data, first: str | None) -> str:
 def record(value: dict[str, Data], first: str | None = None) -> str:
     """``positive; value = 2; meaning = length``: the first value without its key where that goes without saying."""
     parts = []
-    for index, (key, one) in enumerate(value.items()):
-        written = free(one) if key == "meaning" and isinstance(one, str) else text_of(one)
+    for index, (key, inner) in enumerate(value.items()):
+        written = free(inner) if key == "meaning" and isinstance(inner, str) else text_of(inner)
         parts.append(written if index == 0 and key == first and len(value) > 1 else f"{key} = {written}")
     return "; ".join(parts)
 
@@ -200,14 +200,14 @@ def _body(data: dict[str, Data], numbers: dict[str, str]) -> list[Line]:
         if plain == "attached to":
             lines.append((_LABELS[plain], numbers.get(_flat(value), _flat(value))))
         elif plain == "rotation" and isinstance(value, dict):
-            lines += [(_LABELS[one], _braces(inner)) for one, inner in value.items() if one in _LABELS]
+            lines += [(_LABELS[part], _braces(inner)) for part, inner in value.items() if part in _LABELS]
         elif plain == "inertia" and isinstance(value, dict):
             lines.append((_LABELS["inertia"], _tensor(value.get("tensor", []))))
             lines += [(_LABELS["accept"], text_of(value["accept"]))] if "accept" in value else []
         elif plain == "inertia":
             lines.append((_LABELS["inertia"], _tensor(value)))
         elif plain == "shapes" and isinstance(value, list):
-            lines += [(_LABELS["shapes"], _shape(one)) for one in value]
+            lines += [(_LABELS["shapes"], _shape(part)) for part in value]
         elif plain in ("coordinates",):
             lines.append((_LABELS[plain], _braces(value)))
         else:
@@ -249,13 +249,13 @@ def _tie(kind: str, value: Data, numbers: dict[str, str]) -> list[Line]:
         return [("Expression", text_of(value))]
     lines: list[Line] = []
     names = names_keys(kind)
-    for key, one in value.items():
-        if key == "between" and isinstance(one, list):
-            lines += _ends(one, numbers)
+    for key, inner in value.items():
+        if key == "between" and isinstance(inner, list):
+            lines += _ends(inner, numbers)
         elif ALIASES.get(key, key) in NUMBERED and not names:
-            lines.append((key.capitalize(), numbers.get(_flat(one), _flat(one))))
+            lines.append((key.capitalize(), numbers.get(_flat(inner), _flat(inner))))
         else:
-            lines.append((key if names else key.capitalize(), text_of(one)))
+            lines.append((key if names else key.capitalize(), text_of(inner)))
     return lines
 
 

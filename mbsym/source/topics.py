@@ -44,21 +44,23 @@ def _kinds(what: str, kinds: Mapping[str, Kind]) -> str:
 _BARE = {"load": "expression", "constraint": "equation, or two ends"}
 
 
-def records(one: Type) -> list[Record]:
+def records(value_type: Type) -> list[Record]:
     """The records of a description with their keys, from the whole inwards, each once; those of kinds are apart."""
-    found: list[Record] = []
-    for inner in plain(one):
+    nested: list[Record] = []
+    for inner in plain(value_type):
         if isinstance(inner, Record) and inner.title:
-            found += [inner, *(x for key in inner.keys.values() for x in records(key.type))]
+            nested += [inner, *(x for key in inner.keys.values() for x in records(key.type))]
         elif isinstance(inner, Named):
-            found += records(inner.value)
-    return list(dict.fromkeys(found))
+            nested += records(inner.value)
+    return list(dict.fromkeys(nested))
 
 
 def ends(kinds: Mapping[str, Kind]) -> list[Record]:
     """What the ends of these kinds are given by."""
-    types = (one for kind in kinds.values() for one in (kind.type, *(key.type for key in kind.keys.values())))
-    return list(dict.fromkeys(one.record for one in types if isinstance(one, Ends)))
+    types = (
+        value_type for kind in kinds.values() for value_type in (kind.type, *(key.type for key in kind.keys.values()))
+    )
+    return list(dict.fromkeys(value_type.record for value_type in types if isinstance(value_type, Ends)))
 
 
 def keys_of(record: Record) -> dict[str, Key]:
@@ -101,8 +103,8 @@ def _keys(entry: ClaimKind) -> str:
 def _listed(table: Mapping[str, Key]) -> str:
     width = max(map(len, table))
     lines = []
-    for key, one in table.items():
-        first, *others = wrap(one.meaning, WIDTH - width - 6)
+    for key, entry in table.items():
+        first, *others = wrap(entry.meaning, WIDTH - width - 6)
         lines.append(f"    {key:<{width}}  {first}")
         lines += [" " * (width + 6) + other for other in others]
     return "\n".join(lines)
@@ -112,26 +114,26 @@ def meanings(word: str) -> list[str]:
     """What a word means as a key of a description, or a kind of load, constraint or claim; none for other words."""
     named = [(record.title, record.keys) for record in records(DESCRIPTION)]
     named += [("A claim", CLAIM)]
-    found = [f"{title}\n\n{_listed({word: keys[word]})}" for title, keys in named if word in keys]
+    paragraphs = [f"{title}\n\n{_listed({word: keys[word]})}" for title, keys in named if word in keys]
     for what, kinds in (("load", LOADS), ("constraint", CONSTRAINTS)):
         if word in kinds:
             kind = kinds[word]
             keys = f"\n\n{_listed(kind.keys)}" if kind.keys else ""
-            found.append(f"A kind of {what}: {kind.meaning}{keys}{_shipped(what, word)}")
+            paragraphs.append(f"A kind of {what}: {kind.meaning}{keys}{_shipped(what, word)}")
         for name, kind in kinds.items():
-            found += [f"A {what}, {name}\n\n{_listed({word: kind.keys[word]})}"] if word in kind.keys else []
+            paragraphs += [f"A {what}, {name}\n\n{_listed({word: kind.keys[word]})}"] if word in kind.keys else []
     if word in CLAIMS:
-        found.append(f"A kind of claim: {CLAIMS[word].meaning}{_keys(CLAIMS[word])}")
-    return found
+        paragraphs.append(f"A kind of claim: {CLAIMS[word].meaning}{_keys(CLAIMS[word])}")
+    return paragraphs
 
 
 def _shipped(what: str, kind: str) -> str:
     """One of this kind as it stands in a shipped system, the shortest that stands in one line; "" where none does."""
     item = re.compile(rf"^ *- ({re.escape(kind)}: .*[^\s:>|-])$", re.MULTILINE)
-    found = [(len(line), line, name) for name in example_names() for line in item.findall(example_text(name))]
-    if not found:
+    examples = [(len(line), line, name) for name in example_names() for line in item.findall(example_text(name))]
+    if not examples:
         return ""
-    _, line, name = min(found)
+    _, line, name = min(examples)
     return f"\n\nAs in {name}.yaml (mbsym examples {name}):\n\n    {what}s:\n      - {line}"
 
 

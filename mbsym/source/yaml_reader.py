@@ -115,7 +115,7 @@ def _hint(error: yaml.MarkedYAMLError, key: Scalar | None) -> str | None:
     problem = error.problem or ""
     if key is not None:
         first = key.text.partition(" ")[0]
-        name = max((one for one in _KNOWN if key.text.startswith(f"{one} ")), key=len, default=first)
+        name = max((known_key for known_key in _KNOWN if key.text.startswith(f"{known_key} ")), key=len, default=first)
         value = key.text[len(name) :].strip()
         text = "a key ends with a colon and a blank: write [[name]]: [[value]]"
         return Message(text, name=name, value=value) if value else Message("a key ends with a colon and a blank")

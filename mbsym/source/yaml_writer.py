@@ -102,14 +102,16 @@ def prescribed_shape(prescribed: Prescribed) -> dict[str, Shape]:
     return shape
 
 
-def input_shape(one: Input) -> dict[str, Shape]:
-    return {"meaning": one.meaning} if one.meaning else {}
+def input_shape(system_input: Input) -> dict[str, Shape]:
+    return {"meaning": system_input.meaning} if system_input.meaning else {}
 
 
 def motion_shapes(system: System) -> dict[str, Shape]:
     """The unperturbed motion of coordinates, and the values at which inputs are held there."""
     shapes = {entry.coordinate: motion_shape(entry) for entry in system.motion}
-    return shapes | {one.name: text(one.held) for one in system.inputs if one.held != ZERO}
+    return shapes | {
+        system_input.name: text(system_input.held) for system_input in system.inputs if system_input.held != ZERO
+    }
 
 
 def small_shape(small: SmallParameter) -> Shape:
@@ -177,9 +179,9 @@ def body_shape(body: Body, inferred: tuple[str, ...]) -> dict[str, Shape]:
     if body.speeds:
         shape["speeds"] = {speed.name: speed_text(speed) for speed in body.speeds}
     if body.orientation:
-        shape["orientation"] = {one.name: one.word for one in body.orientation}
+        shape["orientation"] = {part.name: part.word for part in body.orientation}
     if body.shapes:
-        shape["shapes"] = [look_shape(one) for one in body.shapes]
+        shape["shapes"] = [look_shape(look) for look in body.shapes]
     return shape
 
 
@@ -278,11 +280,11 @@ def _of_type(of: Type, value: Any) -> Shape:
         case VectorType():
             return vector_shape(value)
         case Ends(record):
-            return [_end(record, one) for one in value]
+            return [_end(record, end) for end in value]
         case Equation():
             return f"{text(value[0])} = {text(value[1])}"
         case Named(inner):
-            return {name: _of_type(inner, one) for name, one in value}
+            return {name: _of_type(inner, named_value) for name, named_value in value}
     return str(value)
 
 

@@ -72,10 +72,10 @@ class Request:
         return dict.fromkeys(self.small, 1) | dict(self.order)
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.analysis.averaged import fast_phases
 
-    system = asked.system
+    system = context.system
     known, phases = fast_phases(system), request.phase
     listed = Message("prescribed quantities whose rate is a parameter: [[names]]", names=", ".join(known))
     if not known:
@@ -110,26 +110,26 @@ class Unsound(Exception):
     """What averaging stands on does not hold."""
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
     from mbsym.analysis.averaged import averaged_system, averaging_of, fast_phases
     from mbsym.report.words.expansion_measured import average_or_why, contradicts
 
     watch("deriving")
-    analysis = Analysis(asked.system)
-    found = averaging_of(analysis, request.phase or fast_phases(asked.system), request.powers)
+    analysis = Analysis(context.system)
+    average = averaging_of(analysis, request.phase or fast_phases(context.system), request.powers)
     broken = analysis.broken(("energy",))
     if broken is not None:
         raise Unsound(broken.reason)
-    averaged = averaged_system(asked.system, found)
+    averaged = averaged_system(context.system, average)
     watch("measuring")
-    measured = average_or_why(asked.system, averaged, found, request.time)
+    measured = average_or_why(context.system, averaged, average, request.time)
     if contradicts(measured):
-        raise Withdrawn(_withdrawn(asked.system, found, measured))
-    return Found(found, averaged, measured)
+        raise Withdrawn(_withdrawn(context.system, average, measured))
+    return Found(average, averaged, measured)
 
 
-def _withdrawn(system: System, found: Averaged, measured: Measured | str) -> str:
+def _withdrawn(system: System, average: Averaged, measured: Measured | str) -> str:
     from mbsym.analysis.small import Averaging
     from mbsym.report.content import Phrase, joined
     from mbsym.report.language import Language
@@ -137,29 +137,29 @@ def _withdrawn(system: System, found: Averaged, measured: Measured | str) -> str
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    said = of_averaging(JudgedAverage(Averaging(found.phases, found), measured, True))
+    said = of_averaging(JudgedAverage(Averaging(average.phases, average), measured, True))
     return Writer(Language(system.language)).inline(Phrase((joined(said, " "),)))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
     from mbsym.analysis import Analysis
     from mbsym.analysis.small import Averaging
     from mbsym.report.content import ragged
     from mbsym.report.words.expansion_measured import JudgedAverage
     from mbsym.report.words.expansion_words import of_averaging
 
-    averaging = Averaging(found.averaged.phases, found.averaged, Analysis(found.system, (6,)))
-    return Answer(map(ragged, of_averaging(JudgedAverage(averaging, found.measured, False))))
+    averaging = Averaging(derived.averaged.phases, derived.averaged, Analysis(derived.system, (6,)))
+    return Answer(map(ragged, of_averaging(JudgedAverage(averaging, derived.measured, False))))
 
 
-def document(asked: Asked, request: Request, found: Found) -> Document:
+def document(context: Asked, request: Request, derived: Found) -> Document:
     """The averaged system."""
     from mbsym.source import to_yaml
 
-    return Document(to_yaml(found.system))
+    return Document(to_yaml(derived.system))
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     if isinstance(error, Withdrawn):
         return Refusal(str(error))
     if isinstance(error, Unsound):
@@ -167,13 +167,13 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
     return failed(error, "it cannot be averaged", True)
 
 
-def as_json(asked: Asked, request: Request, found: Found) -> str:
+def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.documents.base import written
     from mbsym.report.documents.expansion import Average
     from mbsym.report.expansion_json import measured_data
 
-    measurement = measured_data(found.measured)
-    return written(Average.from_result(found.averaged, system=asked.system.name, measured=measurement))
+    measurement = measured_data(derived.measured)
+    return written(Average.from_result(derived.averaged, system=context.system.name, measured=measurement))
 
 
 STUDY = Study(

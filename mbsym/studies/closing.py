@@ -24,10 +24,10 @@ def closed_motion(scenario: Scenario, declared: bool = False) -> tuple[Scenario,
     from mbsym.numerics.closing import begun, closed
     from mbsym.report.runs.constrained_run_words import start_lines
 
-    found = begun(scenario) if declared else closed(scenario)
+    closure = begun(scenario) if declared else closed(scenario)
     say = Language(scenario.system.language).say
-    notes = (Message("note: [[text]]", text=text) for text in start_lines(found, scenario.system))
-    return found.scenario, tuple(map(say, notes)) if found.moves else ()
+    notes = (Message("note: [[text]]", text=text) for text in start_lines(closure, scenario.system))
+    return closure.scenario, tuple(map(say, notes)) if closure.moves else ()
 
 
 def not_closed(error: Exception, system: System) -> Refusal | None:
@@ -45,7 +45,7 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
         for name, value in zip(shown, error.state.tolist(), strict=False)
     )
     lines = [Message("closest found: [[state]]", state=state)]
-    for gap in sorted(error.gaps, key=lambda one: -one.size)[:MOST_GAPS]:
+    for gap in sorted(error.gaps, key=lambda gap: -gap.size)[:MOST_GAPS]:
         row: str = gap.row.label
         if gap.row.span is not None:
             row = Message("[[row]] (line [[line]])", row=row, line=gap.row.span.line)
@@ -59,5 +59,5 @@ def not_closed(error: Exception, system: System) -> Refusal | None:
         hint = Message("check lengths and the initial position; a start nearer to a closed one may succeed")
     lines.append(Message("hint: [[hint]]", hint=hint))
     code, say = Exit.BAD_INPUT if error.fixed else Exit.BROKEN_DOWN, Language(system.language).say
-    told = [f"  {say(line)}" for line in lines]
-    return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*told, say(Message("nothing was written."))))
+    printed = [f"  {say(line)}" for line in lines]
+    return Refusal(f"error[{error.code}]: {say(error.reason)}", code, (*printed, say(Message("nothing was written."))))

@@ -105,7 +105,7 @@ class Public(Protocol, Generic[P, R, T]):
 
 
 def public(
-    request: Callable[P, R], asked: Callable[[Any, Any], Asked] | None = None
+    request: Callable[P, R], context_of: Callable[[Any, Any], Asked] | None = None
 ) -> Callable[[Callable[[Asked, R, Watch], T]], Public[P, R, T]]:
     """A decorator: what derives becomes a function of a source and a request, or its fields.
 
@@ -117,11 +117,11 @@ def public(
         @wraps(derive)
         def called(source: Any, *arguments: Any, **named: Any) -> T:
             ready = len(arguments) == 1 and not named and isinstance(arguments[0], request)  # type: ignore[arg-type]
-            wanted: Any = arguments[0] if ready else request(*arguments, **named)
-            said = list(wrong(wanted))
+            instance: Any = arguments[0] if ready else request(*arguments, **named)
+            said = list(wrong(instance))
             if said:
                 raise ValueError("; ".join(said))
-            return derive((asked or asked_of)(source, wanted), wanted, unwatched)
+            return derive((context_of or asked_of)(source, instance), instance, unwatched)
 
         taken = (
             parameter.replace(annotation=_plain(str(parameter.annotation)), default=_shown(parameter.default))

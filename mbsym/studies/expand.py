@@ -54,8 +54,8 @@ class Request:
     ] = None
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    system = asked.system
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    system = context.system
     small = system.small
     if small is None:
         hint = "add 'small parameter: eps'"
@@ -78,31 +78,31 @@ class Found:
     measured: Measured | str
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
     from mbsym.analysis.expanding import expansion
     from mbsym.report.words.expansion_measured import measured_or_why
 
     watch("slow manifold")
-    analysis = Analysis(asked.system).in_free_coordinates
-    found = expansion(analysis, request.order, request.values)
+    analysis = Analysis(context.system).in_free_coordinates
+    expanded = expansion(analysis, request.order, request.values)
     watch("measuring")
-    return Found(found, measured_or_why(analysis.system, found, request.time, request.values))
+    return Found(expanded, measured_or_why(analysis.system, expanded, request.time, request.values))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
     from mbsym.report.sections.small_parameters import of_slow
 
-    return Answer(of_slow(found.expansion, found.measured))
+    return Answer(of_slow(derived.expansion, derived.measured))
 
 
-def as_json(asked: Asked, request: Request, found: Found) -> str:
+def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.expansion_json import expansion_json
 
-    return expansion_json(asked.system, request.values, found.expansion, found.measured)
+    return expansion_json(context.system, request.values, derived.expansion, derived.measured)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return refused("no expansion", error, Exit.BAD_INPUT)
     return failed(error, "no expansion", True)

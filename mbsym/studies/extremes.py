@@ -47,9 +47,9 @@ class Request:
     budget: Annotated[float, Number("S", "Counted work, worth some S seconds.")] = 60.0
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    system = asked.system
-    if request.sequences and "as_json" in asked.typed:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    system = context.system
+    if request.sequences and "as_json" in context.typed:
         yield Unfit("--json", "conflicting-options", "there is no JSON of a ranking", "leave --sequences out")
     if request.sequences and system.constraints:
         message = Message(
@@ -73,16 +73,16 @@ class Ranked:
     rankings: tuple[Ranking, ...]
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Measured | Ranked:
+def derive(context: Asked, request: Request, watch: Watch) -> Measured | Ranked:
     """Raises NotClosed, Failure where the equations have no program."""
     if request.sequences:
-        return _ranked(asked.motion, watch)
+        return _ranked(context.motion, watch)
     from mbsym.mechanics.variables import ring_of
     from mbsym.numerics.extremes.extremes import extremes
     from mbsym.simulation.request import read_values
 
-    scenario, notes = closed_motion(asked.motion)
-    values = read_values(asked.system, request.values)
+    scenario, notes = closed_motion(context.motion)
+    values = read_values(context.system, request.values)
     return Measured(extremes(scenario, ring_of(scenario.system), values, request.budget, watch), notes)
 
 
@@ -97,33 +97,33 @@ def _ranked(scenario: Scenario, watch: Watch) -> Ranked:
     return Ranked(tuple(rankings(scenario, states, watch)))
 
 
-def answer(asked: Asked, request: Request, found: Measured | Ranked) -> Answer:
+def answer(context: Asked, request: Request, derived: Measured | Ranked) -> Answer:
     from mbsym.report.content import Graded, paragraph
 
-    if isinstance(found, Ranked):
-        said = [ranking.sentence for ranking in found.rankings] or [Message("no body is oriented by three turns.")]
+    if isinstance(derived, Ranked):
+        said = [ranking.sentence for ranking in derived.rankings] or [Message("no body is oriented by three turns.")]
         brief = [paragraph(text) for text in said]
-        return Answer((*brief, *_sequences(found.rankings)), brief=brief)
+        return Answer((*brief, *_sequences(derived.rankings)), brief=brief)
     from mbsym.numerics.extremes.extremes_told import sentences
     from mbsym.report.figures.extremes_figure import extremes_figure
     from mbsym.report.runs.extremes_tables import extremes_csv, extremes_json
 
-    measured = found.extremes
+    measured = derived.extremes
     files: dict[str, str | bytes] = {"extremes.csv": extremes_csv(measured), "extremes.json": extremes_json(measured)}
     files |= extremes_figure(measured, ("svg", "png"))
-    brief = [paragraph("- ", text) for text in sentences(measured, asked.file)]
+    brief = [paragraph("- ", text) for text in sentences(measured, context.file)]
     left = (Message("left out: [[what]]", what=text) for text in measured.left_out)
     brief += [paragraph("- ", Graded(text, "open")) for text in left]
-    return Answer((*brief, *_tables(measured)), files, found.notes, brief=brief)
+    return Answer((*brief, *_tables(measured)), files, derived.notes, brief=brief)
 
 
-def _tables(found: Extremes) -> Iterator[Block]:
+def _tables(measured: Extremes) -> Iterator[Block]:
     from mbsym.report.content import paragraph
     from mbsym.report.runs.extremes_tables import tables
 
     text = "fewest digits kept along each ladder, float64 / float32; * lost by the formula, not by the question"
     yield paragraph(Message(text))
-    for columns, rows in tables(found):
+    for columns, rows in tables(measured):
         yield digits(columns, rows)
 
 
@@ -154,8 +154,8 @@ def _sequences(rankings: Sequence[Ranking]) -> Iterator[Block]:
             yield aligned((column(name, right=bool(name)) for name in heads), rows)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
-    return not_closed(error, asked.system) or failed(error, "the equations have no program")
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
+    return not_closed(error, context.system) or failed(error, "the equations have no program")
 
 
 STUDY = Study(

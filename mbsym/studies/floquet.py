@@ -36,7 +36,7 @@ class Request:
 
 
 @public(Request)
-def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
+def floquet(context: Asked, request: Request, watch: Watch) -> Judged:
     """What the multipliers of a time-periodic first approximation prove: ``mbsym floquet``.
 
         >>> import mbsym
@@ -49,22 +49,22 @@ def floquet(asked: Asked, request: Request, watch: Watch) -> Judged:
     from mbsym.numerics.orbits.floquet import judged
 
     watch("enclosing the monodromy matrix")
-    return judged(Dynamics(asked.motion))
+    return judged(Dynamics(context.motion))
 
 
-def answer(asked: Asked, request: Request, found: Judged) -> Answer:
+def answer(context: Asked, request: Request, judged: Judged) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.runs.floquet_files import floquet_json, sentences
 
-    return Answer([facts(sentences(found))], {"floquet.json": floquet_json(asked.system, found)})
+    return Answer([facts(sentences(judged))], {"floquet.json": floquet_json(context.system, judged)})
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.analysis.approximation import judgeable_with_zeros
     from mbsym.numerics.orbits.floquet import ConstantCoefficients, NotPeriodic
 
-    vanishing = [name for name, value in asked.motion.parameters.items() if value == 0]
-    if isinstance(error, ConstantCoefficients) and (zeros := judgeable_with_zeros(asked.system, vanishing)):
+    vanishing = [name for name, value in context.motion.parameters.items() if value == 0]
+    if isinstance(error, ConstantCoefficients) and (zeros := judgeable_with_zeros(context.system, vanishing)):
         text = (
             "its coefficients are constant at these values: with 'relations: {[[zeros]]}' in place of these values "
             "problem 6 judges it (mbsym run)"
@@ -72,7 +72,7 @@ def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
         error = NotPeriodic(Message(text, zeros=", ".join(f"{name}: 0" for name in zeros)))
     if isinstance(error, NotPeriodic):
         return refused("there is no periodic first approximation to judge", error)
-    return no_program(error, asked, request)
+    return no_program(error, context, request)
 
 
 STUDY = Study("floquet", Request, floquet.derive, answer, refusal, constraints=True, out=Folder(json=True))

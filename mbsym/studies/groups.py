@@ -46,73 +46,73 @@ class Found:
     groups: Groups
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
     from mbsym.problems.scaling import groups
 
     watch("deriving")
-    analysis = Analysis(asked.system)
-    if asked.system.linear is not None:
+    analysis = Analysis(context.system)
+    if context.system.linear is not None:
         return Found(analysis, _of_linear(analysis))
     return Found(analysis, groups(analysis.scene, analysis.equations))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found))
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
+    return Answer(_lines(derived))
 
 
-def _lines(found: Found) -> Iterator[Block]:
-    sections = [(Message("first approximation"), _linear(found.analysis))]
-    if found.analysis.system.linear is None:
-        sections.insert(0, (Message("equations of motion"), _motion(found)))
+def _lines(derived: Found) -> Iterator[Block]:
+    sections = [(Message("first approximation"), _linear(derived.analysis))]
+    if derived.analysis.system.linear is None:
+        sections.insert(0, (Message("equations of motion"), _motion(derived)))
     for title, lines in sections:
         yield Subheading((title,))
         for text in lines:
             yield paragraph("  ", text)
 
 
-def _motion(found: Found) -> Iterator[str]:
+def _motion(derived: Found) -> Iterator[str]:
     from mbsym.analysis.scaled import proposed
     from mbsym.expressions.place import Complaints
     from mbsym.source.scaling import read_scaling
 
-    yield from _said(found.groups)
-    system = found.analysis.system
+    yield from _said(derived.groups)
+    system = derived.analysis.system
     dimensions = read_scaling("", system, Complaints())
-    scale = "" if dimensions is None else proposed(system, dimensions, found.groups.units)
+    scale = "" if dimensions is None else proposed(system, dimensions, derived.groups.units)
     if scale:
         option = f'--scale{UNBROKEN}"{scale}"'  # in one line, so that it can be pasted
         yield Message("in dimensionless variables (mbsym run, show, convert): [[option]]", option=option)
 
 
-def _said(found: Groups, effects: bool = True) -> Iterator[str]:
+def _said(grouping: Groups, effects: bool = True) -> Iterator[str]:
     """``effects``: those of parameters on the motion are all known, so that what has none is told."""
     from mbsym.analysis.in_groups import group_of, product
     from mbsym.expressions.tree import text
 
-    told = "[[parameters]], [[units]] of them set to 1: [[groups]]"
-    if found.unused:
-        told = "[[parameters]], [[units]] of them set to 1: at most [[groups]]"
-    parameters, groups = Counted(len(found.free), "parameter"), Counted(len(found.groups), "group")
-    yield Message(told, parameters=parameters, units=len(found.units), groups=groups)
-    if found.unused:
-        told = (
+    sentence = "[[parameters]], [[units]] of them set to 1: [[groups]]"
+    if grouping.unused:
+        sentence = "[[parameters]], [[units]] of them set to 1: at most [[groups]]"
+    parameters, groups = Counted(len(grouping.free), "parameter"), Counted(len(grouping.groups), "group")
+    yield Message(sentence, parameters=parameters, units=len(grouping.units), groups=groups)
+    if grouping.unused:
+        sentence = (
             "[[scalings]] not used: no other parameter is declared positive, and one that may vanish cannot be set to 1"
         )
-        yield Message(told, scalings=Counted(found.unused, "scaling more is", "scalings more are"))
-    if found.units:
-        yield ", ".join(f"{name} = 1" for name in found.units)
-    for group in found.groups:
+        yield Message(sentence, scalings=Counted(grouping.unused, "scaling more is", "scalings more are"))
+    if grouping.units:
+        yield ", ".join(f"{name} = 1" for name in grouping.units)
+    for group in grouping.groups:
         stands = text(group_of(group.parameter, group.powers))
-        told = Message("[[name]] stands for [[group]]", name=group.parameter, group=stands)
-        yield group.parameter if stands == group.parameter else told
-    if found.rate:
-        unit = text(product((name, -power) for name, power in found.rate))
+        sentence = Message("[[name]] stands for [[group]]", name=group.parameter, group=stands)
+        yield group.parameter if stands == group.parameter else sentence
+    if grouping.rate:
+        unit = text(product((name, -power) for name, power in grouping.rate))
         yield Message("time in units of [[unit]]", unit=unit)
-    for length in found.lengths:
+    for length in grouping.lengths:
         yield Message("[[name]] in units of [[unit]]", name=length.parameter, unit=text(product(length.powers)))
-    if found.idle and effects:
-        yield Message("without effect on the motion: [[names]]", names=", ".join(found.idle))
+    if grouping.idle and effects:
+        yield Message("without effect on the motion: [[names]]", names=", ".join(grouping.idle))
 
 
 def _of_linear(analysis: Analysis) -> Groups:
@@ -144,40 +144,40 @@ def in_scale(system: System, scaling: Scaling) -> System:
     from mbsym.analysis.scaled import NoDescription, in_variables
     from mbsym.source import read, to_yaml
 
-    found, complaints = read(to_yaml(in_variables(system, scaling)))
-    if found is None:
+    scaled, complaints = read(to_yaml(in_variables(system, scaling)))
+    if scaled is None:
         raise NoDescription(complaints.sorted()[0].message)
-    return found
+    return scaled
 
 
-def document(asked: Asked, request: Request, found: Found) -> Document:
+def document(context: Asked, request: Request, derived: Found) -> Document:
     """The description in its groups."""
     from mbsym.analysis.in_groups import in_groups
     from mbsym.source import read, to_yaml
 
-    text = to_yaml(in_groups(asked.system, found.groups))
+    text = to_yaml(in_groups(context.system, derived.groups))
     system, complaints = read(text)
     if system is not None:
         return Document(text)
     # What the equations do not ask of a body may be asked of its numbers.
     why = complaints.sorted()[0].message
-    text = to_yaml(in_groups(asked.system, found.groups, values=False))
+    text = to_yaml(in_groups(context.system, derived.groups, values=False))
     system, complaints = read(text)
     if system is None:
         return Document(None, (Message("it cannot be written in groups: [[why]]", why=complaints.sorted()[0].message),))
-    told = "values are left out of what is written, where they belong to no bodies: [[why]]"
-    return Document(text, (Message(told, why=why),))
+    note = "values are left out of what is written, where they belong to no bodies: [[why]]"
+    return Document(text, (Message(note, why=why),))
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     return failed(error, "the groups cannot be found")
 
 
-def as_json(asked: Asked, request: Request, found: Found) -> str:
+def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.documents.base import written
     from mbsym.report.documents.groups import Groups as Document
 
-    return written(Document.from_result(found.groups, system=asked.system.name))
+    return written(Document.from_result(derived.groups, system=context.system.name))
 
 
 STUDY = Study(

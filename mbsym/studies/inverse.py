@@ -46,49 +46,49 @@ class Request:
     values: Stateless = field(default_factory=dict)
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     """Coordinates without a motion; with constraints some may follow from the others, which is seen at every time."""
-    system = asked.system
+    system = context.system
     for name in system.coordinates if not (system.constraints and request.motion) else ():
         if name not in request.motion:
             hint = Message("for example [[example]]", example=f'--motion "{name}=0"')
             yield Unfit("--motion", "missing-option", Message("no motion is given for [[name]]", name=name), hint)
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> InverseDynamics:
+def derive(context: Asked, request: Request, watch: Watch) -> InverseDynamics:
     import numpy as np
 
     from mbsym.numerics.inverse import inverse_dynamics as found_for
     from mbsym.simulation import read_values
 
     watch("solving for the inputs")
-    values, times = read_values(asked.system, request.values), np.linspace(0.0, request.time, request.samples)
-    return found_for(asked.system, request.motion, values, times)
+    values, times = read_values(context.system, request.values), np.linspace(0.0, request.time, request.samples)
+    return found_for(context.system, request.motion, values, times)
 
 
-def answer(asked: Asked, request: Request, found: InverseDynamics) -> Answer:
+def answer(context: Asked, request: Request, dynamics: InverseDynamics) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.runs.inverse_files import inputs_csv, inputs_figure, sentences
 
-    files: dict[str, str | bytes] = {"inputs.csv": inputs_csv(found)}
-    files |= inputs_figure(found, ("svg", "png"))
-    return Answer([facts(sentences(found))], files, code=Exit.OK if found.exact else Exit.BROKEN_DOWN)
+    files: dict[str, str | bytes] = {"inputs.csv": inputs_csv(dynamics)}
+    files |= inputs_figure(dynamics, ("svg", "png"))
+    return Answer([facts(sentences(dynamics))], files, code=Exit.OK if dynamics.exact else Exit.BROKEN_DOWN)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.inverse import NotLinear
 
     if isinstance(error, (NotLinear, ValueError)):
         return refused("there are no inputs to be found", error)
-    return no_program(error, asked, request)
+    return no_program(error, context, request)
 
 
-def as_json(asked: Asked, request: Request, found: InverseDynamics) -> str:
+def as_json(context: Asked, request: Request, dynamics: InverseDynamics) -> str:
     from mbsym.report.documents.base import written
     from mbsym.report.documents.trim import Inverse
 
-    inputs = zip(found.names, found.inputs, strict=True)
-    return written(Inverse.from_result(found, system=asked.system.name, inputs=inputs))
+    inputs = zip(dynamics.names, dynamics.inputs, strict=True)
+    return written(Inverse.from_result(dynamics, system=context.system.name, inputs=inputs))
 
 
 STUDY = Study("inverse", Request, derive, answer, refusal, unfit, as_json, constraints=True, held=False)

@@ -43,11 +43,11 @@ class Request:
     tolerance: Annotated[float, Number("X", "Error of one step.", least=1e-14, most=1e-2)] = 1e-10
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     """More exponents than there are; too many intervals, and too few for the statistics of means."""
     from mbsym.numerics.orbits.lyapunov import LEAST_INTERVALS
 
-    system = asked.system
+    system = context.system
     count, every, time = request.count, request.every, request.time
     there = 2 * len(system.coordinates)
     if count is not None and count > there:
@@ -76,7 +76,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
 
 
 @public(Request)
-def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
+def lyapunov(context: Asked, request: Request, watch: Watch) -> Exponents:
     """Lyapunov exponents over ``time``, the largest first, with their uncertainty: ``mbsym lyapunov``.
 
     Raises DescriptionError, ValueError, ``mbsym.numerics.scenario.Incomplete``.
@@ -86,26 +86,26 @@ def lyapunov(asked: Asked, request: Request, watch: Watch) -> Exponents:
     def at(t: float) -> None:
         watch("", t, request.time)
 
-    scenario, _ = closed_motion(asked.motion)
+    scenario, _ = closed_motion(context.motion)
     return lyapunov_exponents(scenario, request.time, request.every, request.count, request.tolerance, at)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
-    return not_closed(error, asked.system) or no_program(error, asked, request)
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
+    return not_closed(error, context.system) or no_program(error, context, request)
 
 
-def answer(asked: Asked, request: Request, found: Exponents) -> Answer:
+def answer(context: Asked, request: Request, exponents: Exponents) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.runs.lyapunov_files import lyapunov_csv, lyapunov_figure, lyapunov_json, sentences
 
-    files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(found)}
-    files |= lyapunov_figure(asked.system, found, ("svg", "png")) if len(found.times) > 1 else {}
-    files["lyapunov.json"] = lyapunov_json(asked.system, found)
-    lines, notes = [facts(sentences(found))], closed_motion(asked.motion)[1]
-    if found.ended is None:
+    files: dict[str, str | bytes] = {"lyapunov.csv": lyapunov_csv(exponents)}
+    files |= lyapunov_figure(context.system, exponents, ("svg", "png")) if len(exponents.times) > 1 else {}
+    files["lyapunov.json"] = lyapunov_json(context.system, exponents)
+    lines, notes = [facts(sentences(exponents))], closed_motion(context.motion)[1]
+    if exponents.ended is None:
         return Answer(lines, files, notes)
-    code = Exit.INTERRUPTED if found.ended.kind == "interrupted" else Exit.BROKEN_DOWN
-    return Answer(lines, files, (*notes, f"ended early: {found.ended}"), code)
+    code = Exit.INTERRUPTED if exponents.ended.kind == "interrupted" else Exit.BROKEN_DOWN
+    return Answer(lines, files, (*notes, f"ended early: {exponents.ended}"), code)
 
 
 STUDY = Study("lyapunov", Request, lyapunov.derive, answer, refusal, unfit, constraints=True, out=Folder(json=True))

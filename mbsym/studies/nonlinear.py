@@ -62,12 +62,12 @@ class Request:
     vary: Annotated[Axis | None, Range("NAME=LOW:HIGH", "The parameter, and its open interval.")] = None
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     """Numbers are of parameters that follow from nothing else, and have their declared signs; along a parameter all
     others have one."""
     from mbsym.model.assumptions import has_sign
 
-    system = asked.system
+    system = context.system
     signs = {parameter.name: parameter.sign for parameter in system.parameters}
     related = {relation.name for relation in system.relations}
     for name, value in request.values.items():
@@ -112,17 +112,17 @@ class AtValues:
     lacking: tuple[str, ...]
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> AtValues | Along:
+def derive(context: Asked, request: Request, watch: Watch) -> AtValues | Along:
     if request.vary is None:
         watch("normal forms")
-        return _at_values(asked.system, request.values)
+        return _at_values(context.system, request.values)
     from mbsym.analysis import Analysis
     from mbsym.analysis.judge import exceptional
 
     axis = request.vary
     watch(f"normal forms along {axis.name}")
-    numbers = {name: x for name, x in _known(asked.system, request.values).items() if name != axis.name}
-    return exceptional(Analysis(asked.system), axis.name, (axis.low, axis.high), numbers)
+    numbers = {name: x for name, x in _known(context.system, request.values).items() if name != axis.name}
+    return exceptional(Analysis(context.system), axis.name, (axis.low, axis.high), numbers)
 
 
 def _at_values(system: System, numbers: Mapping[str, Fraction]) -> AtValues:
@@ -131,7 +131,8 @@ def _at_values(system: System, numbers: Mapping[str, Fraction]) -> AtValues:
     from mbsym.expressions.tree import number
 
     parameters = (
-        replace(one, value=number(numbers[one.name])) if one.name in numbers else one for one in system.parameters
+        replace(parameter, value=number(numbers[parameter.name])) if parameter.name in numbers else parameter
+        for parameter in system.parameters
     )
     analysis = Analysis(replace(system, parameters=tuple(parameters)))
     with analysis.strictly():
@@ -143,41 +144,41 @@ def _at_values(system: System, numbers: Mapping[str, Fraction]) -> AtValues:
     return AtValues(analysis, forms, lacking if forms.at_values is None else ())
 
 
-def answer(asked: Asked, request: Request, found: AtValues | Along) -> Answer:
-    return Answer(_of_values(asked, found) if isinstance(found, AtValues) else _along(found))
+def answer(context: Asked, request: Request, derived: AtValues | Along) -> Answer:
+    return Answer(_of_values(context, derived) if isinstance(derived, AtValues) else _along(derived))
 
 
-def _of_values(asked: Asked, found: AtValues) -> Iterator[Line | Block]:
+def _of_values(context: Asked, at_values: AtValues) -> Iterator[Line | Block]:
     from mbsym.report.content import ragged
     from mbsym.report.words.normal_form_words import sentences
 
-    yield from map(ragged, sentences(found.forms))
-    if found.lacking:
-        words = " ".join(f"--set {name}=NUMBER" for name in found.lacking)
+    yield from map(ragged, sentences(at_values.forms))
+    if at_values.lacking:
+        words = " ".join(f"--set {name}=NUMBER" for name in at_values.lacking)
         text = "At numbers nothing is said: there are none for [[names]].  Give them:"
-        yield line("  ", Message(text, names=", ".join(found.lacking)))
-        yield line(f"    mbsym nonlinear {asked.file} {words}", whole=True)
+        yield line("  ", Message(text, names=", ".join(at_values.lacking)))
+        yield line(f"    mbsym nonlinear {context.file} {words}", whole=True)
 
 
-def _along(found: Along) -> Iterator[Line]:
+def _along(along: Along) -> Iterator[Line]:
     from mbsym.report.words.exceptional_values import lines
 
-    for text in lines(found):
+    for text in lines(along):
         yield line("  ", text)
 
 
-def as_json(asked: Asked, request: Request, found: AtValues | Along) -> str:
+def as_json(context: Asked, request: Request, derived: AtValues | Along) -> str:
     """Along a parameter a document of its own, at values that of problem 11 in results.json."""
-    if isinstance(found, AtValues):
+    if isinstance(derived, AtValues):
         from mbsym.report.results_json import render
 
-        return render(found.analysis, (11,))
+        return render(derived.analysis, (11,))
     from mbsym.report.words.exceptional_values import as_text
 
-    return as_text(asked.system, found)
+    return as_text(context.system, derived)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.analysis.stages import Unavailable
 
     if isinstance(error, Unavailable) and request.vary is None:

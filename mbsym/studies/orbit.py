@@ -58,8 +58,8 @@ class Request:
     ] = ()
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    system = asked.system
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    system = context.system
     for option, names in (("--turns", request.turns), ("--shifted", request.shifted)):
         for name in names:
             if name not in system.coordinates:
@@ -70,7 +70,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
 
 
 @public(Request)
-def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
+def orbit(context: Asked, request: Request, watch: Watch) -> PeriodicMotion:
     """A periodic motion near the initial state and near ``period``: ``mbsym orbit``.
 
         >>> import mbsym
@@ -86,26 +86,28 @@ def orbit(asked: Asked, request: Request, watch: Watch) -> PeriodicMotion:
         watch(f"step {step}, {size:.1e} left over")
 
     watch("compiling")
-    return find_orbit(closed_motion(asked.motion)[0], request.period, request.keep, request.turns, at, request.shifted)
+    return find_orbit(
+        closed_motion(context.motion)[0], request.period, request.keep, request.turns, at, request.shifted
+    )
 
 
-def answer(asked: Asked, request: Request, found: PeriodicMotion) -> Answer:
+def answer(context: Asked, request: Request, motion: PeriodicMotion) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.runs.orbit_files import orbit_csv, orbit_json, sentences
 
     return Answer(
-        [facts(sentences(found))],
-        {"orbit.csv": orbit_csv(found), "orbit.json": orbit_json(found)},
-        closed_motion(asked.motion)[1],
+        [facts(sentences(motion))],
+        {"orbit.csv": orbit_csv(motion), "orbit.json": orbit_json(motion)},
+        closed_motion(context.motion)[1],
     )
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.orbits.periodic import NotFound
 
     if isinstance(error, NotFound):
         return refused("no periodic motion was found", error)
-    return not_closed(error, asked.system) or no_program(error, asked, request)
+    return not_closed(error, context.system) or no_program(error, context, request)
 
 
 STUDY = Study("orbit", Request, orbit.derive, answer, refusal, unfit, constraints=True, out=Folder(json=True))

@@ -100,8 +100,8 @@ class Request:
     language: Annotated[str | None, language("Of figures: en, ru, es.")] = None
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    system = asked.system
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    system = context.system
     small, leading = system.small, request.of
     if small is None and (not system.motion or system.speeds):
         hint = "add 'small parameter: eps'"
@@ -121,7 +121,7 @@ def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
         yield from _unscaled(request.scale, system)
     if request.integral is not None:
         yield from _no_rates(request.integral, system)
-    if "language" in asked.typed and "format" not in asked.typed:
+    if "language" in context.typed and "format" not in context.typed:
         yield Unfit("--language", *UNWRITTEN)
 
 
@@ -183,15 +183,15 @@ def _no_rates(text: str, system: System) -> Iterator[Unfit]:
 class Found:
     """The solution, and the order of its error; why that was not measured where it was not.
 
-    ``told``: the solution in variables that were asked for, if any were.
+    ``oscillating``: the solution in variables that were asked for, if any were.
     """
 
     solution: Oscillating
     measured: MeasuredOrders | str
-    told: Oscillating
+    oscillating: Oscillating
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.analysis import Analysis
     from mbsym.analysis.oscillating import in_variables, oscillating, with_integrals
     from mbsym.expressions.place import Complaints
@@ -199,26 +199,26 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Found:
     from mbsym.source.scaling import read_scaling
 
     watch("oscillations")
-    analysis = Analysis(asked.system).in_free_coordinates
-    found = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
+    analysis = Analysis(context.system).in_free_coordinates
+    solution = oscillating(analysis, request.order, request.values, request.of or "", request.frequency)
     watch("measuring")
-    measured = orders_or_why(analysis.system, found, request.values)
+    measured = orders_or_why(analysis.system, solution, request.values)
     if request.integral is not None:
         rates = {name: item.value for name, item in _rates(request.integral, Complaints()).items()}
-        found = with_integrals(found, analysis, rates)
+        solution = with_integrals(solution, analysis, rates)
     if request.scale is None:
-        return Found(found, measured, found)
-    scaling = read_scaling(request.scale, asked.system, Complaints())
+        return Found(solution, measured, solution)
+    scaling = read_scaling(request.scale, context.system, Complaints())
     assert scaling is not None  # ``unfit`` has seen it
-    return Found(found, measured, in_variables(found, asked.system, scaling))
+    return Found(solution, measured, in_variables(solution, context.system, scaling))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
     from mbsym.report.sections.small_parameters import of_wave
 
-    files, reason = _figures(asked.system, request, found.solution) if request.format else ({}, "")
+    files, reason = _figures(context.system, request, derived.solution) if request.format else ({}, "")
     complaints = (f"no figures: {reason}",) if reason else ()
-    lines = [*of_wave(found.told, found.measured), *_checked(asked.system, request)]
+    lines = [*of_wave(derived.oscillating, derived.measured), *_checked(context.system, request)]
     return Answer(lines, files, complaints, Exit.FAILED if reason else Exit.OK)
 
 
@@ -242,7 +242,7 @@ def _checked(system: System, request: Request) -> Iterator[Paragraph]:
         yield ragged(say(_ROOTED, names=named(rooted)))
 
 
-def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict[str, str | bytes], str]:
+def _figures(system: System, request: Request, solution: Oscillating) -> tuple[dict[str, str | bytes], str]:
     """Files by their names, or why there are none."""
     from mbsym.algebra.failures import Failure
     from mbsym.numerics.scenario import Incomplete
@@ -252,9 +252,9 @@ def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict
     from mbsym.simulation.oscillation_paths import oscillation_paths
 
     try:
-        paths = oscillation_paths(system, found, request.values)
+        paths = oscillation_paths(system, solution, request.values)
         drawn = oscillation_figures(
-            system, paths, found.found, request.format, Language(request.language or system.language)
+            system, paths, solution.oscillation, request.format, Language(request.language or system.language)
         )
     except Incomplete:
         return {}, NO_NUMBERS
@@ -265,13 +265,13 @@ def _figures(system: System, request: Request, found: Oscillating) -> tuple[dict
     return dict(sorted(drawn.items())), ""
 
 
-def as_json(asked: Asked, request: Request, found: Found) -> str:
+def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.oscillation_json import oscillations_json
 
-    return oscillations_json(asked.system, request.values, found.told, found.measured)
+    return oscillations_json(context.system, request.values, derived.oscillating, derived.measured)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     if isinstance(error, ZeroDivisionError):
         return refused("no periodic solution", error, Exit.BAD_INPUT)
     return failed(error, "no expansion", True)

@@ -30,7 +30,7 @@ class Request:
 
 
 @public(Request)
-def regressor(asked: Asked, request: Request, watch: Watch) -> Regressor:
+def regressor(context: Asked, request: Request, watch: Watch) -> Regressor:
     """Base parameters of an open tree under uniform gravity, and their regressor: ``mbsym regressor``.
 
         >>> import mbsym
@@ -44,22 +44,22 @@ def regressor(asked: Asked, request: Request, watch: Watch) -> Regressor:
     from mbsym.problems.regressor import regressor as found_of
 
     watch("base parameters")
-    return found_of(Analysis(asked.system.without_speeds).scene)
+    return found_of(Analysis(context.system.without_speeds).scene)
 
 
-def answer(asked: Asked, request: Request, found: Regressor) -> Answer:
+def answer(context: Asked, request: Request, derived: Regressor) -> Answer:
     from mbsym.report.content import facts
     from mbsym.report.regressor_files import regressor_json, regressor_latex, regressor_module, sentences
 
     files: dict[str, str | bytes] = {
-        "regressor.py": regressor_module(found),
-        "regressor.tex": regressor_latex(found),
-        "regressor.json": regressor_json(found),
+        "regressor.py": regressor_module(derived),
+        "regressor.tex": regressor_latex(derived),
+        "regressor.json": regressor_json(derived),
     }
-    return Answer([facts(sentences(found))], files)
+    return Answer([facts(sentences(derived))], files)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     return failed(error, "no base parameters")
 
 

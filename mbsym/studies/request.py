@@ -148,7 +148,7 @@ class Named(Kind):
     example: str = ""
 
     def wrong(self, name: str, value: Mapping[str, int]) -> str:
-        outside = ", ".join(key for key, one in value.items() if not self.least <= one <= self.most)
+        outside = ", ".join(key for key, number in value.items() if not self.least <= number <= self.most)
         return f"{name} must be from {self.least} to {self.most} for {outside}" if outside else ""
 
 
@@ -305,14 +305,14 @@ class Field:
 def fields_of(request: type) -> tuple[Field, ...]:
     """The fields that have a kind, in their order."""
     hints = get_type_hints(request, include_extras=True)
-    found = []
+    request_fields = []
     for field in fields(request):
         kind = next((item for item in get_args(hints[field.name]) if isinstance(item, Kind)), None)
         if kind is not None:
             made = field.default_factory() if field.default_factory is not MISSING else field.default
             required = made is MISSING
-            found.append(Field(field.name, kind, None if required else made, required))
-    return tuple(found)
+            request_fields.append(Field(field.name, kind, None if required else made, required))
+    return tuple(request_fields)
 
 
 def options_typed(request: type, typed: Mapping[str, Any]) -> frozenset[str]:
@@ -335,7 +335,7 @@ def words_typed(request: type, typed: Mapping[str, Any]) -> tuple[str, ...]:
         if isinstance(text, bool):
             words.append(option if text else f"--no-{option.removeprefix('--')}")
         else:
-            words += [word for one in (text if isinstance(text, tuple) else (text,)) for word in (option, str(one))]
+            words += [word for value in (text if isinstance(text, tuple) else (text,)) for word in (option, str(value))]
     return tuple(words)
 
 

@@ -137,26 +137,26 @@ class _Source:
         return list(lines(self.analysis, name) if self.formulas is None else carried_lines(self.formulas, name))
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    if "reduce" in asked.typed and request.names:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    if "reduce" in context.typed and request.names:
         yield Unfit("--reduce", "not-both", "the reduction prints what it finds, and no NAMEs", "leave them out")
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
+def derive(context: Asked, request: Request, watch: Watch) -> Shown:
     """Raises Underived, NotFit for names that there are not."""
     from mbsym.algebra.failures import Failure
     from mbsym.report.formulas_by_name import known_names, remarked, written
     from mbsym.report.letters import in_letters, letters_of
     from mbsym.report.plain_writer import Writer
 
-    source, language, say = _source(asked, request, watch), request.language, Language(asked.system.language).say
+    source, language, say = _source(context, request, watch), request.language, Language(context.system.language).say
     known = known_names(source.analysis)
     usual = ("equations",) if source.system.linear is None else ("M0", "D", "G", "K", "N")
     unknown = [name for name in request.names if name not in known]
     if unknown:
         raise NotFit([_unknown(name, known) for name in unknown])
     # Other programs know no letters, unless somebody asks for them.
-    letters = () if asked.letters is None and language in ("python", "wolfram") else asked.letters
+    letters = () if context.letters is None and language in ("python", "wolfram") else context.letters
     texts: list[str] = []
     failures: list[tuple[str, Failure]] = []
     with in_letters(source.system, letters) as used:
@@ -172,7 +172,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
             unasked = not request.names and source.reduction is None and language == "text" and name == "equations"
             if unasked and length > MOST_UNASKED:
                 many = "equations: [[count]], of [[length]] characters together; one of them, or all:"
-                command = f"  mbsym show {asked.file}"
+                command = f"  mbsym show {context.file}"
                 texts = [say(Message(many, count=len(lines), length=length)), f"{command} {known[-1]}"]
                 return Shown(_joined([*texts, f"{command} {name}"]))
             for line, formula in zip(lines, formulas, strict=True):
@@ -183,7 +183,7 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Shown:
         definitions = letters_of(source.system).definitions(used)
         writer = Writer(readable=language == "text")
         inline = (f"{name} = {writer.inline(value)}".replace(UNBROKEN, " ") for name, value in definitions)
-        texts += [remarked(one, language) for one in inline]
+        texts += [remarked(definition, language) for definition in inline]
     return Shown(_joined(texts), tuple(failures))
 
 
@@ -191,14 +191,14 @@ def _joined(lines: Sequence[str]) -> str:
     return "".join(f"{line}\n" for line in lines)
 
 
-def _source(asked: Asked, request: Request, watch: Watch) -> _Source:
+def _source(context: Asked, request: Request, watch: Watch) -> _Source:
     """The system as it is, in other variables, or reduced."""
     from mbsym.algebra.failures import Failure
     from mbsym.analysis import Analysis
     from mbsym.analysis.scaled import Formulas, NoDescription
     from mbsym.studies.groups import in_scale
 
-    system, formulas = asked.system, None
+    system, formulas = context.system, None
     if request.scale is not None:
         watch("scaling")
         try:
@@ -229,7 +229,7 @@ def _unknown(name: str, known: Sequence[str]) -> Unfit:
     return Unfit("NAME", "unknown-name", Message("nothing is called '[[name]]' here", name=name), hint)
 
 
-def answer(asked: Asked, request: Request, shown: Shown) -> Answer:
+def answer(context: Asked, request: Request, shown: Shown) -> Answer:
     from mbsym.algebra.failures import message_of
 
     complaints = [joined((name, message_of(error)), ": ") for name, error in shown.failures]
@@ -237,7 +237,7 @@ def answer(asked: Asked, request: Request, shown: Shown) -> Answer:
     return Answer(text=shown.text, breaks=request.language == "text", complaints=complaints, code=code)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import message_of
 
     if isinstance(error, Underived):

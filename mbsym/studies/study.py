@@ -291,7 +291,7 @@ def failed(error: Exception, before: str, remedied: bool = False) -> Refusal | N
     return refused(before, error, remedied=remedied) if isinstance(error, Failure) else None
 
 
-def no_program(error: Exception, asked: Asked, request: object) -> Refusal | None:
+def no_program(error: Exception, context: Asked, request: object) -> Refusal | None:
     """Of studies that compile equations: where these have no program."""
     return failed(error, "error[no-program]: there is no program for these equations")
 
@@ -306,7 +306,7 @@ _LACKING = {
 def missing(shown: Sequence[str], what: str = "value") -> Unfit:
     """One complaint about all names without a value; a coordinate is shown as ``x (its initial position)``."""
     names = [name.split(" ")[0] for name in shown]
-    positions = [name for name, one in zip(names, shown, strict=True) if " " in one]
+    positions = [name for name, shown_name in zip(names, shown, strict=True) if " " in shown_name]
     example = " ".join(f"--set {name}=1" for name in names[:3]) + (" ..." if len(names) > 3 else "")
     places = []
     if len(positions) < len(names):

@@ -119,26 +119,26 @@ class Request:
         return Asked(points, ends, self.values, measure, self.measure.formula, self.time)
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.numerics.ensembles.variation import complaints
     from mbsym.sweeps.points import MOST_POINTS
 
-    system = asked.system
+    system = context.system
     moving = request.measure.text.startswith(MOTION)
-    if moving and "time" not in asked.typed:
+    if moving and "time" not in context.typed:
         yield Unfit(
             "--time",
             "missing-option",
             "how long to simulate is not said",
             Message("for example [[example]]", example="--time 60"),
         )
-    if not moving and "time" in asked.typed:
+    if not moving and "time" in context.typed:
         message = Message("--time goes with --measure [[motion]]FORMULA only", motion=MOTION)
         yield Unfit("--time", "conflicting-options", message, "leave it out")
     if "parquet" in request.format and not _arrow():
         yield Unfit("--format", "missing-package", "parquet needs PyArrow", "pip install 'mbsym[parquet]'")
     variations = [varied.variation for varied in request.vary or ()]
-    if request.points is not None or "points" not in asked.typed:
+    if request.points is not None or "points" not in context.typed:
         known = _names(system, request.measure.text)
         wrong = complaints(variations, request.points, known, (), "points", MOST_POINTS, 100_000)
         for name, text, hint in wrong:
@@ -158,26 +158,26 @@ def _arrow() -> bool:
 
 @dataclass(frozen=True)
 class Swept:
-    """The chunks of ``measure`` that are there, ``done`` of those ``asked`` for; ``cut``: by Ctrl-C."""
+    """The chunks of ``measure`` that are there, ``done`` of those ``requested`` for; ``cut``: by Ctrl-C."""
 
     measure: Measure
     points: Points
     store: Store
     every: tuple[Chunk, ...]
-    asked: int
+    requested: int
     done: int
     cut: bool
 
     def parts(self) -> Iterator[tuple[Any, Mapping[str, Any]]]:
         """(points, columns) of one chunk after the other."""
         for chunk in self.every:
-            found = self.store.load(chunk)
-            if found is None:
+            columns = self.store.load(chunk)
+            if columns is None:
                 raise OSError(f"{self.store.path(chunk)} is not there any more")
-            yield self.points.part(chunk.start, chunk.stop), found
+            yield self.points.part(chunk.start, chunk.stop), columns
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
+def derive(context: Asked, request: Request, watch: Watch) -> Swept:
     """Raises NotFit where there is no section or a number is missing, Failure where nothing can be derived."""
     from mbsym.batch.digests import derivation
     from mbsym.maps.section import Unfit as Wrong
@@ -188,22 +188,22 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     from mbsym.sweeps.sweep import measure_of
 
     watch("deriving")
-    wanted, system = request.wanted, asked.system
+    sweep_request, system = request.wanted, context.system
     try:
-        measure = measure_of(system, wanted)
+        measure = measure_of(system, sweep_request)
     except Incomplete as error:
         raise NotFit([missing(error.lack.names)]) from error
     except Wrong as error:
         raise NotFit(tuple(unfit_section(error.complaints, "--vary"))) from error
-    most = getattr(measure, "most", wanted.points.count)
-    if wanted.points.count > most:
+    most = getattr(measure, "most", sweep_request.points.count)
+    if sweep_request.points.count > most:
         message = Message("points are judged one by one here, at most [[most]]", most=most)
         raise NotFit([Unfit("--points", "too-many", message, "take fewer")])
-    every = sweep.chunks(wanted.points.count)
-    digest = wanted.digest(meaning(system), derivation())
-    folder = sweep.Folder(asked.folder, digest, tuple(column.name for column in measure.columns), asked.write)
+    every = sweep.chunks(sweep_request.points.count)
+    digest = sweep_request.digest(meaning(system), derivation())
+    folder = sweep.Folder(context.folder, digest, tuple(column.name for column in measure.columns), context.write)
     mine = every if request.shard is None else sweep.shard(every, *request.shard)
-    executor, done, cut = _executor(system, request, wanted, measure), 0, False
+    executor, done, cut = _executor(system, request, sweep_request, measure), 0, False
     try:
         for _ in sweep.measured(mine, executor, folder):
             done += 1
@@ -211,10 +211,10 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Swept:
     except KeyboardInterrupt:
         cut = True
     executor.close()
-    return Swept(measure, wanted.points, folder, every, len(mine), done, cut)
+    return Swept(measure, sweep_request.points, folder, every, len(mine), done, cut)
 
 
-def _executor(system: System, request: Request, wanted: Wanted, measure: Measure) -> Executor:
+def _executor(system: System, request: Request, sweep_request: Wanted, measure: Measure) -> Executor:
     """Raises NoCluster."""
     import os
 
@@ -222,10 +222,10 @@ def _executor(system: System, request: Request, wanted: Wanted, measure: Measure
 
     jobs = request.jobs or os.cpu_count() or 1
     if request.cluster is None:
-        return Threads(lambda: measure, wanted.points, jobs)
+        return Threads(lambda: measure, sweep_request.points, jobs)
     from mbsym.batch.swept import Workers
 
-    return Workers(request.cluster, jobs, system, wanted)
+    return Workers(request.cluster, jobs, system, sweep_request)
 
 
 def _fixed(system: System, points: Points, request: Request) -> dict[str, Any]:
@@ -240,54 +240,56 @@ def _fixed(system: System, points: Points, request: Request) -> dict[str, Any]:
     return {name: value for name, value in {**described, **request.values}.items() if name not in varied}
 
 
-def answer(asked: Asked, request: Request, found: Swept) -> Answer:
-    if found.cut:
+def answer(context: Asked, request: Request, swept: Swept) -> Answer:
+    if swept.cut:
         words = "interrupted; [[done]] of [[all]] chunks are kept: the same command goes on from there"
-        message = Message(words, done=found.done, all=found.asked)
+        message = Message(words, done=swept.done, all=swept.requested)
         return Answer(complaints=(message,), code=Exit.INTERRUPTED)
     if request.shard is not None:
         from mbsym.report.language import Language
 
         number, of = request.shard
         words = "shard [[number]] of [[all]]: [[count]] chunks are done; without --shard all are put together"
-        message = Message(words, number=number, all=of, count=found.asked)
-        return Answer((line(f"  {Language(asked.system.language).say(message)}"),))
+        message = Message(words, number=number, all=of, count=swept.requested)
+        return Answer((line(f"  {Language(context.system.language).say(message)}"),))
     from mbsym.report.content import facts
     from mbsym.report.runs.sweep_files import sentences, sweep_csv, sweep_json, sweep_parquet
     from mbsym.sweeps.statistics import total
 
-    points, columns = found.points, found.measure.columns
-    admissibility = getattr(found.measure, "admissibility", None)  # what could not be looked at, of a section
+    points, columns = swept.points, swept.measure.columns
+    admissibility = getattr(swept.measure, "admissibility", None)  # what could not be looked at, of a section
     left_out = () if admissibility is None else tuple(admissibility.left_out)
-    totals = total(columns, points.names, found.parts())
+    totals = total(columns, points.names, swept.parts())
     files: dict[str, Any] = {}
     if "csv" in request.format:
-        files["sweep.csv"] = sweep_csv(points.names, columns, found.parts())
+        files["sweep.csv"] = sweep_csv(points.names, columns, swept.parts())
     if "parquet" in request.format:
-        files["sweep.parquet"] = sweep_parquet(points.names, columns, found.parts())
+        files["sweep.parquet"] = sweep_parquet(points.names, columns, swept.parts())
     kinds = [kind for kind in request.format if kind in ("svg", "png", "pdf")]
     if kinds and points.count <= MOST_DRAWN:
         import numpy as np
 
         from mbsym.report.figures.sweep_figure import sweep_figure
 
-        values = np.concatenate([part[columns[0].name] for _, part in found.parts()])
-        files |= sweep_figure(asked.system, points, columns[0], values, kinds, _fixed(asked.system, points, request))
+        values = np.concatenate([part[columns[0].name] for _, part in swept.parts()])
+        files |= sweep_figure(
+            context.system, points, columns[0], values, kinds, _fixed(context.system, points, request)
+        )
     table = next((name for name in files if name.startswith("sweep.")), "")
     settings = {name: str(value) for name, value in request.values.items()}
     files["sweep.json"] = sweep_json(
-        asked.system, points, settings, request.wanted.name, columns, totals, table, left_out
+        context.system, points, settings, request.wanted.name, columns, totals, table, left_out
     )
     return Answer([facts(sentences(points, columns, totals, left_out))], files)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     if request.cluster is not None:
         from mbsym.batch.cluster import NoCluster
 
         if isinstance(error, NoCluster):
             return Refusal(joined(("--cluster", error.reason), ": "), Exit.BAD_INPUT)
-    return no_program(error, asked, request)
+    return no_program(error, context, request)
 
 
 STUDY = Study(

@@ -37,28 +37,28 @@ class Request:
     values: Numbers = field(default_factory=dict)
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Symmetries:
+def derive(context: Asked, request: Request, watch: Watch) -> Symmetries:
     from mbsym.analysis import Analysis
     from mbsym.analysis.symmetric import symmetries_of
 
     watch("symmetries")
-    return symmetries_of(Analysis(asked.system), request.values)
+    return symmetries_of(Analysis(context.system), request.values)
 
 
-def answer(asked: Asked, request: Request, found: Symmetries) -> Answer:
+def answer(context: Asked, request: Request, symmetries: Symmetries) -> Answer:
     from mbsym.report.sections.polynomial_integrals import of_symmetries
 
-    return Answer(of_symmetries(found), code=Exit.OK if found.complete else Exit.FAILED)
+    return Answer(of_symmetries(symmetries), code=Exit.OK if symmetries.complete else Exit.FAILED)
 
 
-def as_json(asked: Asked, request: Request, found: Symmetries) -> str:
+def as_json(context: Asked, request: Request, symmetries: Symmetries) -> str:
     from mbsym.report.documents.base import written
     from mbsym.report.documents.symmetries import Symmetries as Document
 
-    return written(Document.from_result(found, system=asked.system.name, values=request.values))
+    return written(Document.from_result(symmetries, system=context.system.name, values=request.values))
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import SingularPoint
 
     if isinstance(error, SingularPoint):

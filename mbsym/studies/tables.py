@@ -39,8 +39,8 @@ class Table:
     @classmethod
     def of(cls, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Table:
         listed = [tuple(row) for row in rows]
-        found = zip(*listed, strict=True) if listed else ((),) * len(columns)
-        return cls(tuple(columns), tuple(map(_array, found)))
+        transposed = zip(*listed, strict=True) if listed else ((),) * len(columns)
+        return cls(tuple(columns), tuple(map(_array, transposed)))
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         """A column.  Raises KeyError for a name that is none, with a guess."""
@@ -120,8 +120,8 @@ class ExtremesStudy:
         return f"ExtremesStudy({len(self.digits)} measurements, {len(self.verdicts)} verdicts)"
 
     def _repr_html_(self) -> str:
-        told = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.sentences)
-        return f"<ul>{told}</ul>{self.digits._repr_html_()}"
+        bullets = "".join(f"<li>{escape(sentence)}</li>" for sentence in self.sentences)
+        return f"<ul>{bullets}</ul>{self.digits._repr_html_()}"
 
 
 @dataclass(frozen=True, repr=False)
@@ -162,9 +162,9 @@ def _tradeoff(
     for name in names:
         if name not in METHODS:
             raise ValueError(f"there is no method '{name}'{guess(name, METHODS)}")
-    given = scenario(system, read_values(system, values), declared=True)
-    study = studied(given, [METHODS[name] for name in names], time, budget, models)
-    strayed = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
+    motion = scenario(system, read_values(system, values), declared=True)
+    study = studied(motion, [METHODS[name] for name in names], time, budget, models)
+    drift_columns = ("constraint_drift", "constraint_velocity_drift") if system.constraints else ()
     runs = Table.of(
         (
             "method",
@@ -173,7 +173,7 @@ def _tradeoff(
             "step",
             "error",
             "drift",
-            *strayed,
+            *drift_columns,
             "evaluations",
             "steps",
             "seconds",
@@ -187,7 +187,7 @@ def _tradeoff(
                 _or_nan(row.setting.step),
                 row.error,
                 row.drift,
-                *((row.strayed or (inf, inf)) if strayed else ()),
+                *((row.strayed or (inf, inf)) if drift_columns else ()),
                 row.work.evaluations,
                 row.work.steps,
                 row.seconds,
@@ -213,7 +213,7 @@ def _extremes(system: System, values: Mapping[str, Fraction | float | str], budg
     from mbsym.simulation import read_values
 
     read: dict[str, Expression] = read_values(system, values)
-    found = measured(scenario(system, read), ring_of(system), read, budget)
+    extreme_cases = measured(scenario(system, read), ring_of(system), read, budget)
     digits = Table.of(
         ("kind", "subject", "size", "quantity", "digits_float64", "digits_float32", "condition", "loses"),
         (
@@ -222,37 +222,46 @@ def _extremes(system: System, values: Mapping[str, Fraction | float | str], budg
                 row.subject,
                 row.size,
                 row.quantity,
-                row.found.digits[FLOAT64],
-                row.found.digits[FLOAT32],
-                row.found.condition,
-                row.found.verdict,
+                row.digits.digits[FLOAT64],
+                row.digits.digits[FLOAT32],
+                row.digits.condition,
+                row.digits.verdict,
             )
-            for row in found.rows
+            for row in extreme_cases.rows
         ),
     )
     verdicts = Table.of(
         ("kind", "subject", "size", "verdict", "theorem", "float64_wrong"),
         (
             (x.kind, x.subject, x.size, x.judged.exact.word.value, x.judged.exact.theorem, x.judged.wrong(FLOAT64))
-            for x in found.verdicts
+            for x in extreme_cases.verdicts
         ),
     )
-    where = found.singularities
+    where = extreme_cases.singularities
     singular = Table.of(
         ("where", "fails", "joint", "proved"),
         (
-            (" and ".join(f"{name} = {_label(one, number, name)}" for name in place), one.kind, one.joint, one.proved)
-            for one in (where.sets if where is not None else ())
-            for number, place in enumerate(one.places)
+            (
+                " and ".join(f"{name} = {_label(singular_set, number, name)}" for name in place),
+                singular_set.kind,
+                singular_set.joint,
+                singular_set.proved,
+            )
+            for singular_set in (where.sets if where is not None else ())
+            for number, place in enumerate(singular_set.places)
         ),
     )
     complete = where is not None and where.complete
-    return ExtremesStudy(digits, verdicts, singular, complete, tuple(sentences(found)), found.left_out, found)
+    return ExtremesStudy(
+        digits, verdicts, singular, complete, tuple(sentences(extreme_cases)), extreme_cases.left_out, extreme_cases
+    )
 
 
-def _label(one: SingularSet, number: int, name: str) -> str:
+def _label(singular_set: SingularSet, number: int, name: str) -> str:
     """A value of a set's coordinate, exact where it is known."""
-    return one.values[number].label if one.values else f"{float(one.places[number][name]):.12g}"
+    return (
+        singular_set.values[number].label if singular_set.values else f"{float(singular_set.places[number][name]):.12g}"
+    )
 
 
 def _equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
@@ -270,16 +279,22 @@ def _equilibria(system: System, values: Mapping[str, Fraction | int | str], with
     missing = missing_values(system, numbers)
     if missing:
         raise ValueError(f"no number for {', '.join(missing)}")
-    found = relative_equilibria(system, numbers, within)
+    equilibrium_set = relative_equilibria(system, numbers, within)
     names = system.coordinates
 
-    def row(one: Any) -> tuple[object, ...]:
-        known = {item.name: item.value for item in one.values}
+    def row(equilibrium: Any) -> tuple[object, ...]:
+        known = {item.name: item.value for item in equilibrium.values}
         coordinates = (float(known.get(name, np.nan)) for name in names)
-        return (*coordinates, one.verdict.word.value, one.verdict.theorem, one.proof, one.coordinates_of)
+        return (
+            *coordinates,
+            equilibrium.verdict.word.value,
+            equilibrium.verdict.theorem,
+            equilibrium.proof,
+            equilibrium.coordinates_of,
+        )
 
-    table = Table.of((*names, "verdict", "theorem", "proof", "angles_of"), map(row, found.equilibria))
-    return EquilibriaStudy(table, found.complete, found.remarks, found)
+    table = Table.of((*names, "verdict", "theorem", "proof", "angles_of"), map(row, equilibrium_set.equilibria))
+    return EquilibriaStudy(table, equilibrium_set.complete, equilibrium_set.remarks, equilibrium_set)
 
 
 def _or_nan(value: float | None) -> float:

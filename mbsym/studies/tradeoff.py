@@ -88,20 +88,20 @@ class Found:
     before: bool = False
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotClosed, Breakdown where there is no reference solution, Failure where the equations have no program."""
     from mbsym.numerics.methods import table
     from mbsym.numerics.trade.tradeoff import studied
 
-    scenario, notes = closed_motion(asked.motion, declared=True)
+    scenario, notes = closed_motion(context.motion, declared=True)
     methods = [table.METHODS[name] for name in request.methods]
 
     def measure() -> trade_study.Study:
         return studied(scenario, methods, request.time, request.budget, request.fidelity, watch)
 
     how = repr((request.methods, request.time, request.budget, request.fidelity))
-    measured, before = asked.remember(
-        ("tradeoff", identity(scenario), how), measure, lambda found: not found.trade.interrupted, request.anew
+    measured, before = context.remember(
+        ("tradeoff", identity(scenario), how), measure, lambda study: not study.trade.interrupted, request.anew
     )
     return Found(measured, notes, before)
 
@@ -114,34 +114,34 @@ def identity(scenario: Scenario) -> str:
     return repr((meaning(scenario.system), numbers))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    trade, say = found.measured.trade, Language(asked.system.language).say
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
+    trade, say = derived.measured.trade, Language(context.system.language).say
     stopped = trade.interrupted
     if not trade.rows:
         return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, found, say), _files(asked, request, found.measured)
+    lines, files = _lines(request, derived, say), _files(context, request, derived.measured)
     after = f", t = 0 .. {request.time:g}"
     if stopped:
-        complaints = (*found.notes, say(Message("interrupted; what was measured is kept")))
+        complaints = (*derived.notes, say(Message("interrupted; what was measured is kept")))
         return Answer(lines, files, complaints, Exit.INTERRUPTED, after)
-    return Answer(lines, files, found.notes, after=after)
+    return Answer(lines, files, derived.notes, after=after)
 
 
-def _files(asked: Asked, request: Request, found: trade_study.Study) -> dict[str, str | bytes]:
+def _files(context: Asked, request: Request, study: trade_study.Study) -> dict[str, str | bytes]:
     from mbsym.model.quantities import time_unit
     from mbsym.report.figures.tradeoff_figure import work_precision
     from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv, tradeoff_json
 
-    trade, models, unit = found.trade, found.models, time_unit(asked.system)
+    trade, models, unit = study.trade, study.models, time_unit(context.system)
     mark = "-partial" if trade.interrupted else ""
     files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
     if models:
         files["fidelity.csv"] = fidelity_csv(models)
-    sentence = str(_advised(request, found))  # programs read English
+    sentence = str(_advised(request, study))  # programs read English
     files[f"tradeoff{mark}.json"] = tradeoff_json(
-        asked.system, found, sentence, request.time, request.target, request.budget
+        context.system, study, sentence, request.time, request.target, request.budget
     )
-    pictures = work_precision(asked.system, request.time, trade, request.target, models, ("svg", "png"))
+    pictures = work_precision(context.system, request.time, trade, request.target, models, ("svg", "png"))
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}
 
 
@@ -181,39 +181,39 @@ def _advised(request: Request, found: trade_study.Study) -> Message:
     return joined(filter(None, said))
 
 
-def _runs(request: Request, found: trade_study.Study) -> Block:
+def _runs(request: Request, study: trade_study.Study) -> Block:
     """Runs on the front and near the target, or every one."""
     from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import constrained, shown
 
-    near = [row for row in found.trade.rows if row.front or _near(row, request.target)]
-    rows = found.trade.rows if request.all_rows else near
-    strayed = ("constraints",) if constrained(rows) else ()
-    names = ("method", "setting", "error", "drift", *strayed, "evaluations", "steps", "time", "cost", "front")
+    near = [row for row in study.trade.rows if row.front or _near(row, request.target)]
+    rows = study.trade.rows if request.all_rows else near
+    drift_columns = ("constraints",) if constrained(rows) else ()
+    names = ("method", "setting", "error", "drift", *drift_columns, "evaluations", "steps", "time", "cost", "front")
     columns = [column(Message(name), right=name not in ("method", "setting", "front")) for name in names]
-    return aligned(columns, shown(rows, found.trade.smallest_judged))
+    return aligned(columns, shown(rows, study.trade.smallest_judged))
 
 
 def _near(row: Measured, target: float) -> bool:
     return target / 10 < row.error < target * 10
 
 
-def _models(found: trade_study.Study) -> Block:
+def _models(study: trade_study.Study) -> Block:
     from mbsym.report.content import aligned, column
     from mbsym.report.runs.tradeoff_table import models_shown
 
     names = ("model", "what it neglects", "error", "operations", "time")
     columns = [column(Message(name), right=place > 1, fold=place < 2) for place, name in enumerate(names)]
-    return aligned(columns, models_shown(found.models))
+    return aligned(columns, models_shown(study.models))
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.methods.interface import Breakdown
 
     if isinstance(error, Breakdown):
-        return Refusal(Language(asked.system.language).say(_without_reference(error, request)), Exit.BROKEN_DOWN)
-    told = failed(error, "the equations have no program")
-    return not_closed(error, asked.system) or (told and Refusal(told.text, Exit.BROKEN_DOWN))
+        return Refusal(Language(context.system.language).say(_without_reference(error, request)), Exit.BROKEN_DOWN)
+    failure = failed(error, "the equations have no program")
+    return not_closed(error, context.system) or (failure and Refusal(failure.text, Exit.BROKEN_DOWN))
 
 
 def _without_reference(error: Breakdown, request: Request) -> Message:
@@ -237,19 +237,19 @@ def _without_reference(error: Breakdown, request: Request) -> Message:
     return Message("no reference solution up to t = [[time]] was found: [[why]]", time=time, why=why)
 
 
-def together(found: Sequence[tuple[Asked, Request, Found]]) -> Iterator[Block]:
+def together(runs: Sequence[tuple[Asked, Request, Found]]) -> Iterator[Block]:
     """What the target costs, scene by scene: the setting of least time, or the most accurate one where none does."""
     from mbsym.report.content import aligned, column, paragraph
     from mbsym.report.runs.tradeoff_table import compared
 
     names = ("scene", "method", "setting", "error", "evaluations", "steps", "time", "cost", "reached")
     columns = [column(Message(name), right=name not in ("scene", "method", "setting", "reached")) for name in names]
-    rows = [(asked.system.name, one.measured.trade, request.target) for asked, request, one in found]
+    rows = [(context.system.name, derived.measured.trade, request.target) for context, request, derived in runs]
     yield aligned(columns, compared(rows))
-    before = [asked.system.name for asked, _, one in found if one.before]
+    before = [context.system.name for context, _, derived in runs if derived.before]
     if before:
         message = Message(BEFORE)
-        yield paragraph(message if len(before) == len(found) else joined([", ".join(before), message], ": "))
+        yield paragraph(message if len(before) == len(runs) else joined([", ".join(before), message], ": "))
 
 
 STUDY = Study(

@@ -39,8 +39,8 @@ class Request:
     solve: Annotated[tuple[str, ...], Names("NAME", "An input or parameter; repeatable.  [default: all inputs]")] = ()
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    system = asked.system
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    system = context.system
     names = (*system.input_names, *system.parameter_names)
     for name in request.solve or ():
         if name not in names:
@@ -61,13 +61,13 @@ def _asked(source: Source, request: Request) -> Asked:
 
     system = analysis_of(source).system
     refuse_matrices(system, "no posture is held")
-    for one in unfit(Asked(system), request):
-        raise ValueError(one.message)
+    for reason in unfit(Asked(system), request):
+        raise ValueError(reason.message)
     return Asked(system)
 
 
 @public(Request, _asked)
-def trim(asked: Asked, request: Request, watch: Watch) -> Trim:
+def trim(context: Asked, request: Request, watch: Watch) -> Trim:
     """Inputs or parameters with which the described motion satisfies the equations: ``mbsym trim``.
 
     Raises DescriptionError, ``mbsym.algebra.failures.Failure``.
@@ -75,8 +75,8 @@ def trim(asked: Asked, request: Request, watch: Watch) -> Trim:
     from mbsym.problems.trim import trim as found_of
 
     watch("deriving")
-    analysis = _with_letters(asked.system, request.solve)
-    unknowns = request.solve or asked.system.input_names
+    analysis = _with_letters(context.system, request.solve)
+    unknowns = request.solve or context.system.input_names
     equilibrium = analysis.equilibrium
     if equilibrium.unsteady:
         from mbsym.algebra.failures import NoClosedForm
@@ -95,31 +95,38 @@ def _with_letters(system: System, solve: Collection[str]) -> Analysis:
     from mbsym.model.substitution import driven
     from mbsym.model.system import Parameter
 
-    inputs = [one for one in system.inputs if not solve or one.name in solve]
-    laws = {one.name: Name(one.name) for one in inputs}
-    letters = tuple(Parameter(one.name, meaning=one.meaning) for one in inputs)
+    inputs = [system_input for system_input in system.inputs if not solve or system_input.name in solve]
+    laws = {system_input.name: Name(system_input.name) for system_input in inputs}
+    letters = tuple(Parameter(system_input.name, meaning=system_input.meaning) for system_input in inputs)
     return Analysis(replace(driven(system, laws), parameters=(*system.parameters, *letters)), ())
 
 
-def answer(asked: Asked, request: Request, found: Trim) -> Answer:
-    held = [one for one in asked.system.inputs if request.solve and one.name not in request.solve]
-    return Answer(_lines(found, held), code=Exit.FAILED if found.impossible else Exit.OK)
+def answer(context: Asked, request: Request, trimmed: Trim) -> Answer:
+    held = [
+        system_input
+        for system_input in context.system.inputs
+        if request.solve and system_input.name not in request.solve
+    ]
+    return Answer(_lines(trimmed, held), code=Exit.FAILED if trimmed.impossible else Exit.OK)
 
 
-def _lines(found: Trim, held: Sequence[Input]) -> Iterator[Block]:
-    if found.impossible and found.assumed:
+def _lines(trimmed: Trim, held: Sequence[Input]) -> Iterator[Block]:
+    if trimmed.impossible and trimmed.assumed:
         yield paragraph(Strong(Message("no values make this motion one of the system, where no divisor is 0")))
-    elif found.impossible:
+    elif trimmed.impossible:
         yield paragraph(Strong(Message("no values make this motion one of the system")))
-    for name, value in found.solved if not found.impossible else ():
+    for name, value in trimmed.solved if not trimmed.impossible else ():
         yield paragraph(Message("[[name]] = [[value]]", name=name, value=value))
-    for name in found.free if not found.impossible else ():
+    for name in trimmed.free if not trimmed.impossible else ():
         yield paragraph(Message("[[name]]: any value", name=name))
     for title, several in (
-        (Message("divided by, not to be 0"), [f"{x} != 0" for x in found.assumed]),
-        (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in found.signed]),
-        (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in found.conditions]),
-        (Message("held at their values on the motion"), [f"{one.name} = {text(one.held)}" for one in held]),
+        (Message("divided by, not to be 0"), [f"{x} != 0" for x in trimmed.assumed]),
+        (Message("demanded by the declared signs"), [f"{name} = {x} {sign} 0" for name, x, sign in trimmed.signed]),
+        (Message("the motion itself has to satisfy"), [f"{x} = 0" for x in trimmed.conditions]),
+        (
+            Message("held at their values on the motion"),
+            [f"{system_input.name} = {text(system_input.held)}" for system_input in held],
+        ),
     ):
         if several:
             yield Subheading((title,))
@@ -127,15 +134,15 @@ def _lines(found: Trim, held: Sequence[Input]) -> Iterator[Block]:
             yield paragraph("  ", line)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     return failed(error, "no values found")
 
 
-def as_json(asked: Asked, request: Request, found: Trim) -> str:
+def as_json(context: Asked, request: Request, trimmed: Trim) -> str:
     from mbsym.report.documents.base import written
     from mbsym.report.documents.trim import Trim as Document
 
-    return written(Document.from_result(found, system=asked.system.name))
+    return written(Document.from_result(trimmed, system=context.system.name))
 
 
 STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None)

@@ -43,33 +43,33 @@ class Request:
     values: Annotated[Mapping[str, Value], SETTINGS] = field(default_factory=dict)
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Page:
+def derive(context: Asked, request: Request, watch: Watch) -> Page:
     from mbsym.report.viewer.page import viewed
     from mbsym.simulation.request import read_values
 
     def at(t: float) -> None:
         watch("", t, request.time or 1.0)
 
-    values = read_values(asked.system, request.values)
-    return viewed(asked.system, values, request.time, request.modes, request.equilibria, at)
+    values = read_values(context.system, request.values)
+    return viewed(context.system, values, request.time, request.modes, request.equilibria, at)
 
 
-def answer(asked: Asked, request: Request, found: Page) -> Answer:
+def answer(context: Asked, request: Request, page: Page) -> Answer:
     from mbsym.report.language import Language
 
-    say = Language(asked.system.language).say
-    return Answer(line(f"  {say(text)}") for text in found.said)
+    say = Language(context.system.language).say
+    return Answer(line(f"  {say(text)}") for text in page.said)
 
 
-def document(asked: Asked, request: Request, found: Page) -> Document:
-    size = f"{len(found.text) / 1e6:.1f}"
-    return Document(found.text, told=Message("[[size]] MB, opens in a browser without network", size=size))
+def document(context: Asked, request: Request, page: Page) -> Document:
+    size = f"{len(page.text) / 1e6:.1f}"
+    return Document(page.text, told=Message("[[size]] MB, opens in a browser without network", size=size))
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.numerics.scenario import Incomplete
 
-    return refused("cannot be drawn", error) if isinstance(error, Incomplete) else no_program(error, asked, request)
+    return refused("cannot be drawn", error) if isinstance(error, Incomplete) else no_program(error, context, request)
 
 
 STUDY = Study(

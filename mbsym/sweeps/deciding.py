@@ -186,13 +186,13 @@ class _Made:
 
     def _inertia(self, matrix: Matrix) -> None:
         whole = tuple(x if self.constant is None else self.constant.reduced(x) for x in _of_matrix(matrix))
-        found = [x for x in whole if not x.is_zero()]
-        if not all(x.is_constant() for x in found):
+        nonzero = [x for x in whole if not x.is_zero()]
+        if not all(x.is_constant() for x in nonzero):
             lowest = next(k for k, x in enumerate(whole) if not x.is_zero())
             if all(not x.is_zero() for x in whole[lowest:]):
                 self._count("inertia", [self.value(x) for x in whole[lowest:]])
             else:
-                for x in found:
+                for x in nonzero:
                     self.sign(x)
 
     def _roots(self, system: LinearSystem) -> None:
@@ -250,11 +250,11 @@ def split(polynomial: Coefficients) -> tuple[Coefficients, Coefficients]:
     E is free of squares.  A pair of factors F(lambda), F(-lambda) is one even factor.
     """
     start = next(k for k, x in enumerate(polynomial) if not x.is_zero())
-    kept = polynomial[start:]
-    one = kept[0] * 0 + 1
-    if all(x.is_zero() for x in kept[1::2]):
-        return _product([factor for factor, _ in factor_in_lambda(kept[::2])[1]], one), (one,)
-    factors = [factor for factor, _ in factor_in_lambda(kept)[1]]
+    reduced = polynomial[start:]
+    one = reduced[0] * 0 + 1
+    if all(x.is_zero() for x in reduced[1::2]):
+        return _product([factor for factor, _ in factor_in_lambda(reduced[::2])[1]], one), (one,)
+    factors = [factor for factor, _ in factor_in_lambda(reduced)[1]]
     even = [factor[::2] for factor in factors if _is_even(factor)]
     plain = [factor for factor in factors if not _is_even(factor)]
     for factor in list(plain):
@@ -293,11 +293,11 @@ def classes(keys: Any, certain: Any) -> Iterator[tuple[tuple[int, ...], Any]]:
     if not len(at):
         return
     if keys.shape[0] == 1:
-        found, inverse = np.unique(keys[0, at], return_inverse=True)
-        found = found[np.newaxis]
+        distinct, inverse = np.unique(keys[0, at], return_inverse=True)
+        distinct = distinct[np.newaxis]
     else:
-        found, inverse = np.unique(keys[:, at], axis=1, return_inverse=True)
+        distinct, inverse = np.unique(keys[:, at], axis=1, return_inverse=True)
     order = np.argsort(inverse.reshape(-1), kind="stable")
-    ends = np.cumsum(np.bincount(inverse.reshape(-1), minlength=found.shape[1]))
+    ends = np.cumsum(np.bincount(inverse.reshape(-1), minlength=distinct.shape[1]))
     for number, members in enumerate(np.split(at[order], ends[:-1])):
-        yield tuple(map(int, found[:, number])), members
+        yield tuple(map(int, distinct[:, number])), members

@@ -44,10 +44,10 @@ class Horner:
         if x.is_constant():
             return self._expanded(x)
         unit, factors = x.factor()
-        found = algebra.number(Fraction(int(unit.p), int(unit.q)))
+        product = algebra.number(Fraction(int(unit.p), int(unit.q)))
         for factor, exponent in factors:
-            found = algebra.times(found, algebra.power(self._expanded(factor), int(exponent)))
-        return found
+            product = algebra.times(product, algebra.power(self._expanded(factor), int(exponent)))
+        return product
 
     def _expanded(self, x: Polynomial) -> Any:
         return self._horner({tuple(map(int, exponents)): number for exponents, number in x.terms()}, 0)
@@ -63,12 +63,12 @@ class Horner:
         by_power: dict[int, dict[tuple[int, ...], Any]] = {}
         for exponents, number in terms.items():
             by_power.setdefault(exponents[at], {})[exponents] = number
-        found, above = algebra.zero, 0
+        value, above = algebra.zero, 0
         for exponent in sorted(by_power, reverse=True):
             if above:
-                found = algebra.times(found, self._power(at, above - exponent))
-            found, above = found + self._horner(by_power[exponent], at + 1), exponent
-        return algebra.times(found, self._power(at, above)) if above else found
+                value = algebra.times(value, self._power(at, above - exponent))
+            value, above = value + self._horner(by_power[exponent], at + 1), exponent
+        return algebra.times(value, self._power(at, above)) if above else value
 
     def _power(self, at: int, exponent: int) -> Any:
         if (at, exponent) not in self._powers:

@@ -97,12 +97,12 @@ class StabilityMeasure:
         keys, certain = self._deciding.keys(self._kernel(np.ascontiguousarray(points)))
         for key, members in classes(keys, certain):
             with self._lock:
-                found = self._known.get(key)
-            if found is None:
-                found = self.judged(points[:, members[0]])
+                verdict = self._known.get(key)
+            if verdict is None:
+                verdict = self.judged(points[:, members[0]])
                 with self._lock:
-                    self._known[key] = found
-            words[members], right[members] = found
+                    self._known[key] = verdict
+            words[members], right[members] = verdict
         for place in np.flatnonzero(~certain):
             words[place], right[place] = self.judged(points[:, place])
         return {VERDICT.name: words, RIGHT.name: right, EXACT.name: (~certain).astype(np.int8)}

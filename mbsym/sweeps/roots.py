@@ -51,22 +51,26 @@ class RootsMeasure:
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        found = []
+        eigenvalue_columns = []
         for number in range(1, self.count + 1):
             title = Message("real part of eigenvalue [[number]]", number=number)
-            found.append(Column(f"real{number}", f"real part of eigenvalue {number}, in {self.unit}", title=title))
-            found.append(Column(f"imaginary{number}", f"imaginary part of eigenvalue {number}, in {self.unit}"))
-        return tuple(found)
+            eigenvalue_columns.append(
+                Column(f"real{number}", f"real part of eigenvalue {number}, in {self.unit}", title=title)
+            )
+            eigenvalue_columns.append(
+                Column(f"imaginary{number}", f"imaginary part of eigenvalue {number}, in {self.unit}")
+            )
+        return tuple(eigenvalue_columns)
 
     def roots(self, points: Any) -> Any:
         """Shape (m, roots), sorted."""
         known = np.repeat(self._known, points.shape[1], axis=1)
-        rows, start, found = self._kernel(np.concatenate([points, known])), 0, []
+        rows, start, spectra = self._kernel(np.concatenate([points, known])), 0, []
         for n, following in self._parts:
             m, c, k = (rows[start + i * n * n : start + (i + 1) * n * n].T.reshape(-1, n, n) for i in range(3))
             start += 3 * n * n
-            found.append(_eigenvalues(m, c, k, following))
-        every = np.concatenate(found, axis=1)
+            spectra.append(_eigenvalues(m, c, k, following))
+        every = np.concatenate(spectra, axis=1)
         every[np.isnan(every).any(axis=1)] = NONE  # the roots of some parts alone would be taken for all
         order = np.lexsort((-every.imag, -every.real), axis=1)
         return np.take_along_axis(every, order, axis=1)

@@ -65,16 +65,16 @@ class SimulatedMeasure:
         )
 
     def at(self, points: Any) -> Mapping[str, Any]:
-        found = members(self._dynamics, self.names, points)
+        ensemble = members(self._dynamics, self.names, points)
         setting = Setting(TOLERANCE, None, MOST_STEPS, None)
-        run = beginning(found, METHOD, 1)(setting, slice(None))
-        final = self._value(0.0, found.starts, found.parameters)
+        run = beginning(ensemble, METHOD, 1)(setting, slice(None))
+        final = self._value(0.0, ensemble.starts, ensemble.parameters)
         least, greatest = final.copy(), final.copy()
-        rows = max(1, BLOCK // max(1, found.starts.size))
+        rows = max(1, BLOCK // max(1, ensemble.starts.size))
         for first in range(1, ROWS, rows):
             times = self._times[first : first + rows]
             for t, states in zip(times, run.block(times), strict=True):
-                final = self._value(float(t), states, found.parameters)
+                final = self._value(float(t), states, ensemble.parameters)
                 least, greatest = np.minimum(least, final), np.maximum(greatest, final)  # nan stays
         return {"final": final, "least": least, "greatest": greatest}
 

@@ -59,7 +59,7 @@ class Totals:
     points: int = 0
     words: Any = field(default_factory=lambda: np.zeros(len(WORDS), dtype=np.int64))
     sums: dict[str, list[float]] = field(default_factory=dict)
-    kept: list[tuple[Any, Any]] = field(default_factory=list)
+    chunks: list[tuple[Any, Any]] = field(default_factory=list)
     singly: int = 0
 
     def add(self, points: Any, columns: Mapping[str, Any]) -> None:
@@ -73,23 +73,26 @@ class Totals:
                 self.singly += int(np.sum(values))
             elif not column.whole:
                 sound = values[np.isfinite(values)]
-                one = self.sums.setdefault(column.name, [np.inf, 0.0, -np.inf, 0, 0])
-                one[3] += len(sound)
-                one[4] += len(values) - len(sound)
+                accumulator = self.sums.setdefault(column.name, [np.inf, 0.0, -np.inf, 0, 0])
+                accumulator[3] += len(sound)
+                accumulator[4] += len(values) - len(sound)
                 if len(sound):
-                    one[0], one[2] = min(one[0], float(sound.min())), max(one[2], float(sound.max()))
-                    one[1] += float(sound.sum())
-        if sum(part[0].shape[1] for part in self.kept) < MOST_COMPARED:
-            self.kept.append((points, columns[self.columns[0].name]))
+                    accumulator[0], accumulator[2] = (
+                        min(accumulator[0], float(sound.min())),
+                        max(accumulator[2], float(sound.max())),
+                    )
+                    accumulator[1] += float(sound.sum())
+        if sum(part[0].shape[1] for part in self.chunks) < MOST_COMPARED:
+            self.chunks.append((points, columns[self.columns[0].name]))
 
     def shares(self, random: bool) -> tuple[Share, ...]:
         """Of every word that occurs, most frequent first."""
-        found = [
+        word_shares = [
             Share(word, int(count), self.points, interval(int(count), self.points) if random else None)
             for word, count in zip(WORDS, self.words, strict=True)
             if count
         ]
-        return tuple(sorted(found, key=lambda one: -one.count))
+        return tuple(sorted(word_shares, key=lambda share: -share.count))
 
     def stable(self, random: bool) -> Share:
         """The points whose motion is proved to be stable."""
@@ -104,18 +107,18 @@ class Totals:
 
     def dependence(self) -> tuple[tuple[str, float], ...]:
         """(parameter, how much the first column depends on it), as the module's head says; strongest first."""
-        if not self.kept or not self.columns:
+        if not self.chunks or not self.columns:
             return ()
-        points = np.concatenate([part for part, _ in self.kept], axis=1)
-        values = np.concatenate([part for _, part in self.kept])
+        points = np.concatenate([part for part, _ in self.chunks], axis=1)
+        values = np.concatenate([part for _, part in self.chunks])
         if self.columns[0].words:
             there = np.isin(values, [WORDS.index(word) for word in _STABLE])
             judged = values >= len(NO_VERDICT)
-            found = [_smirnov(row[judged & there], row[judged & ~there]) for row in points]
+            strengths = [_smirnov(row[judged & there], row[judged & ~there]) for row in points]
         else:
             sound = np.isfinite(values)
-            found = [_spearman(row[sound], values[sound]) for row in points]
-        pairs = [(name, value) for name, value in zip(self.names, found, strict=True) if np.isfinite(value)]
+            strengths = [_spearman(row[sound], values[sound]) for row in points]
+        pairs = [(name, value) for name, value in zip(self.names, strengths, strict=True) if np.isfinite(value)]
         return tuple(sorted(pairs, key=lambda pair: -abs(pair[1])))
 
 

@@ -57,39 +57,41 @@ class Asked:
 
     def digest(self, described: str, version: str) -> str:
         """SHA-256 of everything that the numbers follow from: description (its digest), version, request."""
-        told = repr((described, version, self.points, sorted(self.ends.items()), sorted(self.settings.items())))
-        return hashlib.sha256((told + self.name + repr(self.time)).encode()).hexdigest()
+        contents = repr((described, version, self.points, sorted(self.ends.items()), sorted(self.settings.items())))
+        return hashlib.sha256((contents + self.name + repr(self.time)).encode()).hexdigest()
 
 
-def measure_of(system: System, asked: Asked) -> Measure:
+def measure_of(system: System, sweep_request: Asked) -> Measure:
     """The measure, derived and compiled.
 
     Raises Unfit (with all complaints) where the parameters fit no section, Failure where it cannot be derived.
     """
-    if asked.time is not None and asked.formula is not None:
+    if sweep_request.time is not None and sweep_request.formula is not None:
         from mbsym.sweeps.simulated import SimulatedMeasure
 
-        overrides = {name: number(value) for name, value in asked.settings.items()}
-        given, said = scenario(system, overrides, assumed=False), text(asked.formula)
-        return SimulatedMeasure(given, overrides, asked.points.names, asked.formula, said, asked.time)
+        overrides = {name: number(value) for name, value in sweep_request.settings.items()}
+        motion, said = scenario(system, overrides, assumed=False), text(sweep_request.formula)
+        return SimulatedMeasure(
+            motion, overrides, sweep_request.points.names, sweep_request.formula, said, sweep_request.time
+        )
     analysis = Analysis(system)
-    axes = [Axis(name, *asked.ends[name]) for name in asked.points.names]
+    axes = [Axis(name, *sweep_request.ends[name]) for name in sweep_request.points.names]
     try:
-        found = section(analysis, axes, asked.settings)
+        map_section = section(analysis, axes, sweep_request.settings)
     except Unfit as unfit:
-        if asked.measure != STABILITY or not unfit.irrational:
+        if sweep_request.measure != STABILITY or not unfit.irrational:
             raise
         from mbsym.sweeps.judged import SingleVerdicts
 
-        return SingleVerdicts(analysis, axes, asked.settings, unfit)
-    if asked.formula is not None:
+        return SingleVerdicts(analysis, axes, sweep_request.settings, unfit)
+    if sweep_request.formula is not None:
         from mbsym.sweeps.formula import FormulaMeasure
 
-        return FormulaMeasure(found, asked.formula, text(asked.formula))
-    if asked.measure == STABILITY:
+        return FormulaMeasure(map_section, sweep_request.formula, text(sweep_request.formula))
+    if sweep_request.measure == STABILITY:
         from mbsym.sweeps.judged import StabilityMeasure
 
-        return StabilityMeasure(analysis, found)
+        return StabilityMeasure(analysis, map_section)
     from mbsym.sweeps import roots
 
     kinds: dict[str, Callable[[Section, str], Measure]] = {
@@ -98,7 +100,9 @@ def measure_of(system: System, asked: Asked) -> Measure:
         FREQUENCY: roots.FrequencyMeasure,
     }
     scale = analysis.system.time_scale
-    return kinds[asked.measure](found, "the description's unit of 1/time" if scale is None else text(scale))
+    return kinds[sweep_request.measure](
+        map_section, "the description's unit of 1/time" if scale is None else text(scale)
+    )
 
 
 #: Points that are measured at once: enough that compiled code dominates, few enough for the caches and for Ctrl-C.
@@ -206,12 +210,12 @@ class Folder:
         """The columns; None where they are not there, or are not what they should be."""
         try:
             with np.load(self.path(chunk), allow_pickle=False) as stored:
-                found = {name: stored[name] for name in self.columns}
+                columns = {name: stored[name] for name in self.columns}
         except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
             return None
-        if any(values.shape != (chunk.stop - chunk.start,) for values in found.values()):
+        if any(values.shape != (chunk.stop - chunk.start,) for values in columns.values()):
             return None
-        return found
+        return columns
 
     def save(self, chunk: Chunk, columns: Mapping[str, Any]) -> None:
         stream = BytesIO()

@@ -329,6 +329,33 @@ def test_a_cart_with_a_pole_by_keys_alone(show: Show) -> None:
     page.get_by_text("No coordinate changes in this motion.").wait_for()
 
 
+def test_a_four_bar_by_keys_alone_moves(show: Show) -> None:
+    """Three links on hinges, the last one led to a point beside the first: closed where they hang, and it swings."""
+    window = show("")
+    page = window.page
+    window.press("Tab", "Enter")  # to the structure
+    for name in ("crank", "coupler", "rocker"):
+        window.press("a")
+        window.in_dialog(name)
+    window.press("c")
+    page.locator("dialog[open]").wait_for()
+    for first, typed in (("coincide, first: point, 1", "a"), ("coincide, second: point, 2", "-d4")):
+        while page.evaluate("document.activeElement.ariaLabel") != first:
+            window.press("Tab")
+        window.typed(typed)
+    window.press("Enter")
+    window.told("a, d4 are parameters now")
+    assert window.complaints == []
+    assert yaml_of(window.text)["constraints"] == [
+        {"coincide": [{"body": 0, "point": ["a", 0, 0]}, {"body": "rocker", "point": [0, "-d4", 0]}]}
+    ]
+    window.press("Alt+Shift+Digit4", "Tab", "Tab", "Enter")
+    page.get_by_text("drift of the energy").wait_for()
+    angles = page.locator("#picture .viewer-slider output").all_text_contents()
+    assert len(angles) == 3
+    assert all(abs(float(angle)) < 3 for angle in angles)
+
+
 def test_a_coordinate_that_is_not_there_becomes_no_parameter(show: Show) -> None:
     """Of a spring on 'zz' the stiffness is declared; that there is no such coordinate stays a mistake."""
     window = show(

@@ -129,7 +129,7 @@ FIGURES = ("histories", "phase-planes", "drift", "motion", "mass-centres")
 
 
 def test_help_names_every_method() -> None:
-    text = " ".join(CliRunner().invoke(main, ["simulate", "--help"]).output.split()).partition("Options:")[0]
+    text = " ".join(CliRunner().invoke(main, ["explain", "simulate"]).output.split()).partition("Options:")[0]
     assert not [name for name in METHODS if not any(f" {name}{sign}" in text for sign in " ,;")]
 
 

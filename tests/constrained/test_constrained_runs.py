@@ -232,6 +232,25 @@ def test_the_closest_start_is_found() -> None:
     assert abs(x * x + y * y - 1) < Fraction(1, 2**200)
 
 
+def test_a_chain_that_hangs_is_closed_near_where_it_hangs() -> None:
+    """Three equal links, nearly in one line, whose end belongs beside the first joint: long steps folded them there.
+
+    A crank turned by q1 leaves a parallelogram, q2 = pi/2 - q1, q3 = pi/2 + q1, of which the middle one in q1 - 0.2,
+    pi/2 - q1 - 0.2, pi/2 + q1 - 0.2 has 3 q1 = 0.2 where masses do not weigh.
+    """
+    link = "mass: 1, mass centre: [0, -1/2, 0], inertia about: mass centre, inertia: [0.08, 0.01, 0.08]"
+    text = "mbsym: 1\nname: four-bar\nbodies:\n"
+    for k, (on, y) in enumerate(((0, 0), (1, -1), (2, -1)), start=1):
+        place = f"connection point: [0, {y}, 0], rotation: {{axes: [3], angles: [q{k}]}}"
+        text += f"  - {{name: b{k}, attached to: {on and f'b{on}'}, {place}, {link}}}\n"
+    text += "constraints: [{coincide: [{body: 0, point: [1, 0, 0]}, {body: b3, point: [0, -1, 0]}]}]\n"
+    found = closed(scenario(described(text + "initial: {q1: 0.2, q2: 0.2, q3: 0.2}\n")))
+    q1, q2, q3 = map(float, found.scenario.positions)
+    assert found.closest
+    assert (q2, q3) == pytest.approx((pi / 2 - q1, pi / 2 + q1))
+    assert abs(q1) < 0.5
+
+
 def test_a_start_on_the_constraints_is_left_as_it_is() -> None:
     given = scenario(described(PENDULUM))
     assert closed(given).scenario == given

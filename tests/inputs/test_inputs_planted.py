@@ -35,8 +35,8 @@ MISTAKES = [
     Mistake(
         "the values of inputs in one route",
         "mechanics.motion:unperturbed",
-        "one.name, one.held)",
-        "one.name, ZERO)",
+        "system_input.name, system_input.held)",
+        "system_input.name, ZERO)",
         "driven",
         (LINEARISATION,),
     ),

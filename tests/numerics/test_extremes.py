@@ -298,10 +298,10 @@ def test_every_row_is_known_and_bounded(whole: Any) -> None:
         "mass matrix", "forcing", "accelerations", "pivots", "energy", "Jacobian", "M", "G", "K", "eigenvalues",
     }  # fmt: skip
     for row in whole.rows:
-        assert row.found.bits, (row.subject, row.quantity)
+        assert row.digits.bits, (row.subject, row.quantity)
         for scalar, full in FULL.items():
-            assert 0 <= row.found.digits[scalar] <= full
-        assert isfinite(row.found.norm)
+            assert 0 <= row.digits.digits[scalar] <= full
+        assert isfinite(row.digits.norm)
 
 
 def test_near_the_singular_angle_only_the_question_costs_digits(whole: Any) -> None:
@@ -309,11 +309,11 @@ def test_near_the_singular_angle_only_the_question_costs_digits(whole: Any) -> N
     rows = whole.of(SINGULAR, "theta -> pi/2", "accelerations")
     assert len(rows) == 13
     for row in rows:
-        assert 0.1 / row.size < row.found.condition < 100 / row.size
-        assert row.found.formula > 14
-        assert row.found.digits[FLOAT64] > FULL[FLOAT64] - log10(row.found.condition) - 1
-    assert rows[-1].found.digits[FLOAT64] < 4
-    assert rows[-1].found.digits[FLOAT32] == 0
+        assert 0.1 / row.size < row.digits.condition < 100 / row.size
+        assert row.digits.formula > 14
+        assert row.digits.digits[FLOAT64] > FULL[FLOAT64] - log10(row.digits.condition) - 1
+    assert rows[-1].digits.digits[FLOAT64] < 4
+    assert rows[-1].digits.digits[FLOAT32] == 0
 
 
 def test_borders_of_the_rigid_satellite(whole: Any) -> None:

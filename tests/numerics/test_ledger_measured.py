@@ -147,7 +147,7 @@ def test_a_light_rod_is_left_out_by_the_plan_and_told_by_the_ledger() -> None:
     assert set(plan.model.without) == {"m1", "J1"}
     (item,) = (item for item in plan.items if item.kind == Kind.MASSES)
     assert item.what == ("rod",)
-    (found,) = table.simpler_model(Work(analysis, wanted=AccuracyGoal(1e-5, 2.0)))
+    (found,) = table.simpler_model(Work(analysis, goal=AccuracyGoal(1e-5, 2.0)))
     assert (found.kind, found.what, found.standing) == (Kind.MASSES, ("rod",), NOT_NEEDED)
     assert found.measures[0].saved > 0
 

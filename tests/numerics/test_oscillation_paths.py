@@ -62,9 +62,9 @@ def test_rates_are_slopes_and_both_curves_are_near(gyrostat):
 def test_a_planted_error_parts_the_curves(gyrostat):
     """gamma3 without its first order, about which it swings."""
     system, told, right = gyrostat
-    place, series = told.found.names.index("gamma3"), list(told.found.series)
-    series[place] = (series[place][0], series[place][1].scaled(told.found.tower.zero), series[place][2])
-    wrong = replace(told, found=replace(told.found, series=tuple(series)))
+    place, series = told.oscillation.names.index("gamma3"), list(told.oscillation.series)
+    series[place] = (series[place][0], series[place][1].scaled(told.oscillation.tower.zero), series[place][2])
+    wrong = replace(told, oscillation=replace(told.oscillation, series=tuple(series)))
     found = oscillation_paths(system, wrong, periods=0.5)
     away = [np.abs(x.series["gamma3"][0] - x.motion["gamma3"][0]).max() for x in (right, found)]
     assert away[1] > 100 * away[0]
@@ -90,7 +90,9 @@ def test_titles_and_legends_follow_the_language():
     system = mbsym.loads(DUFFING + NUMBERS).system
     told = oscillating(Analysis(system, (12,)), 1)
     paths = oscillation_paths(system, told, periods=0.5)
-    drawn = oscillation_figures(system, paths, told.found, ["svg"], Language("es"))["oscillation-planes.svg"].decode()
+    drawn = oscillation_figures(system, paths, told.oscillation, ["svg"], Language("es"))[
+        "oscillation-planes.svg"
+    ].decode()
     assert "movimiento (simulaci" in drawn
     assert "motion" not in drawn
 

@@ -343,9 +343,9 @@ def test_what_a_plan_says_of_its_setting_is_what_the_trials_say(
     (method,) = (item for item in plan.items if item.kind == "method")
     assert plan.reached
     assert "none tried" not in method.why
-    assert settled.found.cost <= 1.1 * min(good)
+    assert settled.trial.cost <= 1.1 * min(good)
     assert (
-        "the cheapest tried here" not in method.why or "within a tenth" in method.why or settled.found.cost == min(good)
+        "the cheapest tried here" not in method.why or "within a tenth" in method.why or settled.trial.cost == min(good)
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from mbsym.numerics.trade import reference_search
 from mbsym.numerics.trade.comparison import compared
 from mbsym.numerics.trade.reference_search import BROKEN, whole_reference
 from mbsym.numerics.trade.tradeoff import FIRST, tradeoff
+from mbsym.numerics.trade.trial import trial_of
 from mbsym_cli.main import main
 
 OSCILLATOR = """
@@ -71,6 +73,19 @@ def test_the_method_that_a_run_takes_climbs_first_and_every_row_says_what_it_cos
     assert sum(row.cost for row in found.rows) == pytest.approx(found.spent)
     first = sum(row.cost for row in found.rows if row.label.startswith("dop853") and "," not in row.label)
     assert first <= FIRST * 4.0 + 1.0
+
+
+def test_a_trial_that_ended_early_is_remembered_as_it_was() -> None:
+    """x'' = 2 x^3 from x = x' = 1 is 1/(1 - t)."""
+    text = OSCILLATOR.replace("initial: {x: 1}", "initial: {x: {position: 1, velocity: 1}}")
+    text = text.replace("spring: {coordinate: x, stiffness: k}", "generalized force: {x: 2*m*x**3 + 0*k}")
+    text = text.replace("c: 1/2", "c: 0").replace("c: positive", "c: nonnegative")
+    trial = trial_of(METHODS["dop853"], dynamics_of(text), Setting(1e-9), [0.0, 2.0])
+    again = pickle.loads(pickle.dumps(trial))
+    assert trial.ended is not None
+    assert again.trouble == trial.trouble == str(again.ended)
+    with pytest.raises(Breakdown, match="blow-up"):
+        again.whole()
 
 
 def test_a_way_to_a_reference_that_fails_as_nobody_foresaw_is_no_end_of_the_study(

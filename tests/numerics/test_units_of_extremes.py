@@ -77,10 +77,10 @@ def test_grams_and_millimetres_and_hours(usual: Extremes, units: tuple[F, F, F])
     assert len(rows) > 200
     for one, two in zip(rows, (row for row in other.rows if row.kind != BORDER), strict=True):
         assert (one.subject, one.size, one.quantity) == (two.subject, two.size, two.quantity)
-        assert two.found.condition == pytest.approx(one.found.condition, rel=1e-6)
-        if one.found.condition < 1e3:  # else it is chance whether the constants' rounding shows
-            assert abs(one.found.formula - two.found.formula) < 1.3, one
-        assert (one.found.verdict == "formula") == (two.found.verdict == "formula")
+        assert two.digits.condition == pytest.approx(one.digits.condition, rel=1e-6)
+        if one.digits.condition < 1e3:  # else it is chance whether the constants' rounding shows
+            assert abs(one.digits.formula - two.digits.formula) < 1.3, one
+        assert (one.digits.verdict == "formula") == (two.digits.verdict == "formula")
 
 
 def test_eigenvalues_are_rates(usual: Extremes) -> None:
@@ -98,7 +98,7 @@ def test_a_norm_in_metres_and_radians_is_noticed(monkeypatch: pytest.MonkeyPatch
     )
     plain = measured("spring-pendulum", SPRING, (F(1), F(1), F(1)))
     other = measured("spring-pendulum", SPRING, (F(1), F(2**20), F(1)))
-    conditions = [[row.found.condition for row in found.rows] for found in (plain, other)]
+    conditions = [[row.digits.condition for row in found.rows] for found in (plain, other)]
     assert any(a != pytest.approx(b, rel=1e-3) for a, b in zip(*conditions, strict=True))
 
 

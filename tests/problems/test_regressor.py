@@ -138,7 +138,7 @@ def test_base_parameters_are_all_of_the_energies_identically(rows: Rows) -> None
     functions = {one: (t, u) for one, t, u in energies(analysis.scene)}
     kinetic, force = analysis.energy.kinetic_energy.polynomial, analysis.energy.force_function.polynomial
     for one in found.base:
-        t, u = functions[one.kept]
+        t, u = functions[one.parameter]
         kinetic = ring.reduce(kinetic - ring.times(one.value.polynomial, t))
         force = ring.reduce(force - ring.times(one.value.polynomial, u))
     assert kinetic == 0
@@ -153,7 +153,7 @@ def test_the_regressor_times_base_parameters_is_the_inverse_dynamics_identically
     moving = Accelerations(scene)
     left = [residuals(scene)[name] for name in analysis.system.coordinates]
     for one in found.base:
-        for i, y in enumerate(column(scene, moving, one.kept)):
+        for i, y in enumerate(column(scene, moving, one.parameter)):
             left[i] = ring.reduce(left[i] - ring.times(one.value.polynomial, ring.reduce(y)))
     assert left == [0] * len(left)
 
@@ -251,7 +251,7 @@ loads: [{uniform gravity: {vector: [0, 0, -g]}}]
 """
     for alpha, square in (("pi/4", "1/2"), ("pi/3", "3/4")):
         found = regressor(mbsym.loads(text.replace("ALPHA", alpha), problems=()).scene)
-        told = {one.kept: sum_of(one) for one in found.base}
+        told = {one.parameter: sum_of(one) for one in found.base}
         assert told[Standard("one", "Jzz")].startswith(f"Jzz(one) + {square}*Jyy(two)")
         assert told[Standard("two", "Jxx")].startswith("Jxx(two) - Jyy(two)")
     found = regressor(mbsym.loads(text.replace("ALPHA", "a"), problems=()).scene)

@@ -107,18 +107,18 @@ def test_the_solution_of_the_fast_gyrostat_in_the_papers_letters(gyrostat: tuple
     for name, text in LETTERS.items():
         known[name] = lowered(text)
     for (name, order), text in RIGHT.items():
-        series = found.found.series[found.found.names.index(name)]
+        series = found.oscillation.series[found.oscillation.names.index(name)]
         assert ring.is_zero(ring.reduce(found.wave(series[order]).polynomial - lowered(text))), (name, order)
     for order, text in FREQUENCY.items():
-        value = found.formula(found.found.corrections[order]).polynomial
+        value = found.formula(found.oscillation.corrections[order]).polynomial
         assert ring.is_zero(ring.reduce(value - lowered(text))), order
-    assert str(found.formula(found.found.frequency)) == "1"
+    assert str(found.formula(found.oscillation.frequency)) == "1"
 
 
 def test_letters_for_denominators_change_nothing(gyrostat: tuple[Oscillating, Oscillating]) -> None:
     """With D1, D2, ... put in again each coefficient is what it was; all the common ones have a letter."""
     for found in gyrostat:
-        tower, ring = found.found.tower, found.told_ring
+        tower, ring = found.oscillation.tower, found.told_ring
         assert [name for _, name in found.denominators] == ["D1", "D2", "D3", "D4", "D5"]
         environment = {
             g.name: found.ring.generator("parameter", g.name)
@@ -128,7 +128,7 @@ def test_letters_for_denominators_change_nothing(gyrostat: tuple[Oscillating, Os
         environment["phase"] = found.ring.generator("prescribed", "phase")
         one = tower.context.constant(1)
         environment |= {name: found.formula(tower.made(x, one)).polynomial for x, name in found.denominators}
-        for series in found.found.series:
+        for series in found.oscillation.series:
             for wave in series:
                 short, whole = found.shortest(wave), found.wave(wave)
                 tree = parse_expression(str(short), Complaints(), lambda start, end: Span(1, start + 1, end - start))
@@ -170,7 +170,7 @@ def root(order: int) -> list[Fraction]:
 
 
 def corrections(found: Oscillating) -> list[str]:
-    return [str(found.formula(x)) for x in found.found.corrections]
+    return [str(found.formula(x)) for x in found.oscillation.corrections]
 
 
 def test_duffings_frequency_to_the_order_six() -> None:
@@ -203,7 +203,7 @@ def test_the_pendulums_period_to_the_order_eight() -> None:
     series = corrections(found)
     assert series[0::2] == ["0"] * 4
     assert [Fraction(1), *map(value, series[1::2])] == reciprocal(period, n)
-    assert str(found.formula(found.found.frequency)) == "1"
+    assert str(found.formula(found.oscillation.frequency)) == "1"
 
 
 def test_the_command_tells_them(tmp_path: Path) -> None:

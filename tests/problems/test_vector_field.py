@@ -239,7 +239,7 @@ def test_what_is_left_is_refused_with_its_reason(potential, why):
 def test_todas_integrals():
     """Henon (1974): p1 p2 p3 - p1 e^(x2 - x3) - p2 e^(x3 - x1) - p3 e^(x1 - x2), beside momentum and energy."""
     loaded = mbsym.loads(TODA)
-    found = loaded.polynomial_integrals.found
+    found = loaded.polynomial_integrals.integrals
     assert [(one.weight, one.is_new) for one in found.generators] == [(1, False), (2, False), (3, True)]
     assert found.complete
     field = found.field
@@ -328,7 +328,7 @@ def test_a_spring_with_a_length_of_its_own_leaves_the_energy():
 def test_a_driven_oscillator_has_the_energy_of_its_difference_from_the_forced_motion():
     """X = a cos(phi)/(k - m w^2): m (x' - X')^2 + k (x - X)^2, times (k - m w^2)^2, is a polynomial in them all."""
     loaded = mbsym.loads(DRIVEN)
-    found = loaded.polynomial_integrals.found
+    found = loaded.polynomial_integrals.integrals
     (new,) = found.new
     field = found.field
     k, w, a, m, v, s, c, x = map(field.generator, ("k", "w", "a", "m", "x_dot", "sin(phi)", "cos(phi)", "x"))

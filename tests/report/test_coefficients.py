@@ -52,10 +52,10 @@ def test_only_long_conditions_are_told_so() -> None:
         found = derived(path).optional("stability")
         for part in () if found is None else found.subsystems:
             for item in statements(part.ring, part.theory.requirements, True):
-                if item.told is not None:
+                if item.in_coefficients is not None:
                     assert item.formula is not None
                     assert item.formula.terms > WRITTEN_OUT
-                    assert 2 * item.told.formula.terms < item.formula.terms
+                    assert 2 * item.in_coefficients.formula.terms < item.formula.terms
 
 
 def test_a_form_that_is_not_the_condition_is_not_shown() -> None:

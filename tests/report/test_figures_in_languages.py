@@ -91,7 +91,7 @@ def test_what_tells_curves_apart_stands_inside_of_the_picture() -> None:
     figure = Figure(figsize=(5.4, 5), layout="constrained")
     axis = figure.subplots()
     for one in drawn:
-        axis.plot([0, 1], [0, 1], label=one.told)
+        axis.plot([0, 1], [0, 1], label=one.label)
     (legend,) = _page_of(drawn, axis, figure).legends
     saved("x", figure, ["png"])
     box = legend.get_window_extent()

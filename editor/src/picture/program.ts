@@ -91,7 +91,7 @@ const STEPS = 60;
 const LONGEST = 0.5;
 
 /** The rows that are open: |f| above the tolerance, as a part of what the coordinates do to it. */
-export function openRows(poses: Poses, closure: Closure, state: State, tolerance = closure.tolerance): string[] {
+function openRows(poses: Poses, closure: Closure, state: State, tolerance = closure.tolerance): string[] {
   const values = poses.at(state);
   return closure.names.filter((_, i) => {
     let scale = 0;

@@ -23,7 +23,7 @@ export interface Coordinate {
   limited: boolean;
 }
 
-export interface Given {
+interface Given {
   name: string;
   label: string;
   value: number | null;
@@ -62,13 +62,13 @@ export interface Hinge {
 }
 
 /** A hoop: points in the axes of the parent of the body that slides along it. */
-export interface Guide {
+interface Guide {
   body: string;
   points: Triple[];
   closed: boolean;
 }
 
-export interface Arrow {
+interface Arrow {
   load: number;
   of: "gravity" | "force" | "torque";
   body: string;

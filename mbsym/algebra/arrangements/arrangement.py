@@ -247,14 +247,14 @@ class Branches:
 
     def _ordinates(self, strip: int, x: Rational) -> tuple[float, ...]:
         box, sections = self.of.box, self.of.columns[strip].sections
-        found = []
+        ordinates = []
         for k in {section.curve for section in sections if section.curve >= 0}:
             p = self.of.curves[k].over(x)
             if p.degree() == 1:
-                found.append(float(-p[0] / p[1]))
+                ordinates.append(float(-p[0] / p[1]))
             else:
-                found += [_number(root) for root in roots_between(primitive(p), box.y0, box.y1)]
-        return (float(box.y0), *sorted(found), float(box.y1))
+                ordinates += [_number(root) for root in roots_between(primitive(p), box.y0, box.y1)]
+        return (float(box.y0), *sorted(ordinates), float(box.y1))
 
     def end(self, strip: int, section: int, right: bool) -> XY:
         """The point of a fibre in which a section ends."""
@@ -290,21 +290,21 @@ def _number(root: Root) -> float:
     return float(root)
 
 
-def polyline(found: Arrangement, arc: Arc, tolerance: float = 1e-3) -> list[XY]:
+def polyline(arrangement: Arrangement, arc: Arc, tolerance: float = 1e-3) -> list[XY]:
     """Points along an arc, from its first corner to its last, that deviate from it by about ``tolerance`` at most.
 
     The tolerance is a part of the box's width and height.
     """
-    branches = Branches(found)
+    branches = Branches(arrangement)
     points: list[XY] = []
     for piece in arc.pieces:
-        run = _vertical(found, piece) if piece.vertical else _followed(branches, piece, tolerance)
+        run = _vertical(arrangement, piece) if piece.vertical else _followed(branches, piece, tolerance)
         points += run if not points else run[1:]
     return points
 
 
-def _vertical(found: Arrangement, piece: Piece) -> list[XY]:
-    fibre = found.fibres[piece.strip]
+def _vertical(arrangement: Arrangement, piece: Piece) -> list[XY]:
+    fibre = arrangement.fibres[piece.strip]
     return [Point(fibre.abscissa.x, fibre.points[piece.section + k].y).floats() for k in (0, 1)]
 
 
@@ -349,24 +349,24 @@ def _weights(n: int) -> tuple[float, ...]:
     return tuple(weights)
 
 
-def areas(found: Arrangement, accuracy: float = 1e-7) -> tuple[tuple[float, float], ...]:
+def areas(arrangement: Arrangement, accuracy: float = 1e-7) -> tuple[tuple[float, float], ...]:
     """(area, estimate of its error) of every region: sections integrated over their strips.
 
     The error is estimated by comparing two quadratures; ``accuracy`` is a part of the box's area.
     """
-    branches = Branches(found)
-    wanted = accuracy * float(found.box.area) / max(len(found.columns), 1)
-    total = [[0.0, 0.0] for _ in found.regions]
-    for strip, column in enumerate(found.columns):
-        heights, errors = _integrals(branches, strip, len(column.sections), wanted)
+    branches = Branches(arrangement)
+    tolerance = accuracy * float(arrangement.box.area) / max(len(arrangement.columns), 1)
+    total = [[0.0, 0.0] for _ in arrangement.regions]
+    for strip, column in enumerate(arrangement.columns):
+        heights, errors = _integrals(branches, strip, len(column.sections), tolerance)
         for cell in range(len(column.sections) - 1):
-            region = total[found.places.cells[strip, cell]]
+            region = total[arrangement.places.cells[strip, cell]]
             region[0] += heights[cell + 1] - heights[cell]
             region[1] += errors[cell + 1] + errors[cell]
     return tuple((area, error) for area, error in total)
 
 
-def _integrals(branches: Branches, strip: int, count: int, wanted: float) -> tuple[list[float], list[float]]:
+def _integrals(branches: Branches, strip: int, count: int, tolerance: float) -> tuple[list[float], list[float]]:
     """The integrals of all sections over a strip, and estimates of their errors."""
     a, b = branches.bounds(strip)
     half = (b - a) / 2
@@ -390,7 +390,7 @@ def _integrals(branches: Branches, strip: int, count: int, wanted: float) -> tup
         n *= 2
         fine = rule(n)
         errors = [abs(p - q) for p, q in zip(fine, coarse, strict=True)]
-        if max(errors) <= wanted or n >= MOST_NODES:
+        if max(errors) <= tolerance or n >= MOST_NODES:
             return fine, errors
         coarse = fine
 
@@ -426,22 +426,22 @@ class Breach:
     corner: int | None = None
 
 
-def breaches(found: Arrangement) -> tuple[Breach, ...]:
+def breaches(arrangement: Arrangement) -> tuple[Breach, ...]:
     """The laws that an arrangement breaks, and where: none, if it is right."""
-    broken = [] if euler(found) else [Breach(Law.EULER)]
-    odd = [_odd(found, k) for k in range(len(found.factors))]
-    for arc in found.arcs:
-        if _zeros(found, arc.point) != arc.factors:
+    broken = [] if euler(arrangement) else [Breach(Law.EULER)]
+    odd = [_odd(arrangement, k) for k in range(len(arrangement.factors))]
+    for arc in arrangement.arcs:
+        if _zeros(arrangement, arc.point) != arc.factors:
             broken.append(Breach(Law.ZEROS, arc=arc.id))
-        elif not _sides(found, arc, odd):
+        elif not _sides(arrangement, arc, odd):
             broken.append(Breach(Law.SIDES, arc=arc.id))
     ends: dict[int, int] = {}
-    for arc in found.arcs:
+    for arc in arrangement.arcs:
         for corner in arc.corners:
             if corner is not None:
                 ends[corner] = ends.get(corner, 0) + 1
-    for corner_ in found.corners:
-        if _zeros(found, corner_.point) != corner_.factors:
+    for corner_ in arrangement.corners:
+        if _zeros(arrangement, corner_.point) != corner_.factors:
             broken.append(Breach(Law.ZEROS, corner=corner_.id))
         if ends.pop(corner_.id, 0) != corner_.branches:
             broken.append(Breach(Law.ENDS, corner=corner_.id))
@@ -449,11 +449,11 @@ def breaches(found: Arrangement) -> tuple[Breach, ...]:
     return tuple(broken)
 
 
-def _zeros(found: Arrangement, point: Point) -> tuple[int, ...]:
+def _zeros(arrangement: Arrangement, point: Point) -> tuple[int, ...]:
     """The polynomials that vanish at a point, as far as balls of some 250 bits tell: no exact arithmetic takes part."""
     x, y = point.enclosures(BITS)
     with ctx.workprec(2 * BITS):
-        return tuple(k for k, p in enumerate(found.factors) if _ball(p, x, y).contains(0))
+        return tuple(k for k, p in enumerate(arrangement.factors) if _ball(p, x, y).contains(0))
 
 
 def _ball(p: Polynomial, x: Ball, y: Ball) -> Ball:
@@ -463,14 +463,14 @@ def _ball(p: Polynomial, x: Ball, y: Ball) -> Ball:
     return total
 
 
-def _odd(found: Arrangement, k: int) -> list[object]:
+def _odd(arrangement: Arrangement, k: int) -> list[object]:
     """The irreducible factors of odd exponent of a given polynomial."""
-    return [factor for factor, exponent in irreducible_factors(found.factors[k])[1] if exponent % 2]
+    return [factor for factor, exponent in irreducible_factors(arrangement.factors[k])[1] if exponent % 2]
 
 
-def _sides(found: Arrangement, arc: Arc, odd: list[list[object]]) -> bool:
+def _sides(arrangement: Arrangement, arc: Arc, odd: list[list[object]]) -> bool:
     """Whether the signs beside an arc are as they have to be; on the rim of the box there is one side only."""
-    below, above = (None if k is None else found.regions[k].signs for k in arc.regions)
+    below, above = (None if k is None else arrangement.regions[k].signs for k in arc.regions)
     if below is None or above is None:
         return True
     for k, factors in enumerate(odd):
@@ -480,9 +480,9 @@ def _sides(found: Arrangement, arc: Arc, odd: list[list[object]]) -> bool:
     return True
 
 
-def euler(found: Arrangement) -> bool:
+def euler(arrangement: Arrangement) -> bool:
     """Whether V - E + F = 1 + C."""
-    box = found.box
+    box = arrangement.box
     parent: dict[object, object] = {}
 
     def root(key: object) -> object:
@@ -490,21 +490,21 @@ def euler(found: Arrangement) -> bool:
             key = parent[key]
         return key
 
-    at_ends = [x for corner in found.corners if (x := corner.point).rational and x.x in (box.x0, box.x1)]
-    on_rim = {corner.id for corner in found.corners if is_on_rim(box, corner.point)}
+    at_ends = [x for corner in arrangement.corners if (x := corner.point).rational and x.x in (box.x0, box.x1)]
+    on_rim = {corner.id for corner in arrangement.corners if is_on_rim(box, corner.point)}
     plain_ends = 4 - sum(point.y in (box.y0, box.y1) for point in at_ends)
     for corner in on_rim:
         parent[root(corner)] = root("rim")
     closed = 0
-    for arc in found.arcs:
+    for arc in arrangement.arcs:
         if arc.corners == (None, None):
             closed += 1
         else:
             parent[root(arc.corners[0])] = root(arc.corners[1])
-    components = len({root(key) for key in ["rim", *(corner.id for corner in found.corners)]}) + closed
-    vertices = len(found.corners) + plain_ends + closed
-    edges = len(found.arcs) + len(on_rim) + plain_ends - sum(None in arc.regions for arc in found.arcs)
-    return vertices - edges + len(found.regions) + 1 == 1 + components
+    components = len({root(key) for key in ["rim", *(corner.id for corner in arrangement.corners)]}) + closed
+    vertices = len(arrangement.corners) + plain_ends + closed
+    edges = len(arrangement.arcs) + len(on_rim) + plain_ends - sum(None in arc.regions for arc in arrangement.arcs)
+    return vertices - edges + len(arrangement.regions) + 1 == 1 + components
 
 
 def is_on_rim(box: Box, point: Point) -> bool:

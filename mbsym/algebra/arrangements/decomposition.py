@@ -181,12 +181,12 @@ class _Assembly:
 
     def _branches(self, at: int, j: int) -> list[End]:
         """The ends of sections, curves only, that meet at a point."""
-        fibre, found = self.fibres[at], []
+        fibre, ends = self.fibres[at], []
         if at:
-            found += [(at - 1, k, 1) for k in range(fibre.left[j], fibre.left[j + 1])]
+            ends += [(at - 1, k, 1) for k in range(fibre.left[j], fibre.left[j + 1])]
         if at < len(self.columns):
-            found += [(at, k, 0) for k in range(fibre.right[j], fibre.right[j + 1])]
-        return [end for end in found if self._curves_of(end[0], end[1])]
+            ends += [(at, k, 0) for k in range(fibre.right[j], fibre.right[j + 1])]
+        return [end for end in ends if self._curves_of(end[0], end[1])]
 
     def _curves_of(self, strip: int, section: int) -> tuple[int, ...]:
         curve = self.columns[strip].sections[section].curve

@@ -57,11 +57,11 @@ class Graph:
     @cached_property
     def beside(self) -> tuple[tuple[int, ...], ...]:
         """The neighbours of each node."""
-        found: list[list[int]] = [[] for _ in self.labels]
+        neighbours: list[list[int]] = [[] for _ in self.labels]
         for a, b in self.edges:
-            found[a].append(b)
-            found[b].append(a)
-        return tuple(map(tuple, found))
+            neighbours[a].append(b)
+            neighbours[b].append(a)
+        return tuple(map(tuple, neighbours))
 
 
 def nothing_else(_: str, number: int) -> object:
@@ -86,17 +86,20 @@ def corresponding(first: Graph, second: Graph) -> bool:
     return _match((first, second), colours, [MOST_TRIALS])
 
 
-def graph_of(found: Arrangement, label: Labels = nothing_else) -> Graph:
+def graph_of(arrangement: Arrangement, label: Labels = nothing_else) -> Graph:
     """Regions, arcs and corners with their labels; edges go from arcs to what they adjoin."""
-    regions, arcs = len(found.regions), len(found.arcs)
-    labels: list[object] = [("region", region.signs, label("region", region.id)) for region in found.regions]
+    regions, arcs = len(arrangement.regions), len(arrangement.arcs)
+    labels: list[object] = [("region", region.signs, label("region", region.id)) for region in arrangement.regions]
     edges = []
-    for arc in found.arcs:
+    for arc in arrangement.arcs:
         missing = (sum(k is None for k in arc.regions), sum(k is None for k in arc.corners))
         labels.append(("arc", arc.factors, missing, label("arc", arc.id)))
         edges += [(regions + arc.id, k) for k in arc.regions if k is not None]
         edges += [(regions + arc.id, regions + arcs + k) for k in arc.corners if k is not None]
-    labels += [("corner", one.kind.value, one.branches, one.factors, label("corner", one.id)) for one in found.corners]
+    labels += [
+        ("corner", corner.kind.value, corner.branches, corner.factors, label("corner", corner.id))
+        for corner in arrangement.corners
+    ]
     return Graph(tuple(labels), tuple(edges))
 
 
@@ -154,14 +157,14 @@ _X, _Y, _Z = range(3)
 
 def levels_of(line: Line) -> list[tuple[Number, bool]]:
     """The zeros and samples of a line in their order, with whether each is a zero."""
-    found: list[tuple[Number, bool]] = []
+    levels: list[tuple[Number, bool]] = []
     for at, interval in enumerate(line.intervals):
         if interval.ends[0] is not None and at == 0:
-            found.append((line.zeros[interval.ends[0]].number, True))
-        found.append((interval.sample, False))
+            levels.append((line.zeros[interval.ends[0]].number, True))
+        levels.append((interval.sample, False))
         if interval.ends[1] is not None:
-            found.append((line.zeros[interval.ends[1]].number, True))
-    return found
+            levels.append((line.zeros[interval.ends[1]].number, True))
+    return levels
 
 
 def flattened(p: Polynomial, z: Any, plane: Any) -> Polynomial:
@@ -185,13 +188,13 @@ def critical_levels(
             raise ValueError("a polynomial that is identically zero bounds nothing")
     line = fmpq_mpoly_ctx.get(("z",))
     z, zero = line.gens()[0], line.constant(0)
-    wanted = [p.compose(zero, zero, z, ctx=line) for p in _shared(factors, box, budget, progress)]
-    found = decompose_line(wanted, low, high)
-    if len(found.zeros) > budget.abscissas:
+    projections = [p.compose(zero, zero, z, ctx=line) for p in _shared(factors, box, budget, progress)]
+    decomposition = decompose_line(projections, low, high)
+    if len(decomposition.zeros) > budget.abscissas:
         raise TooLargeError(
-            "[[count]] values at which the picture may change", count=len(found.zeros), limit=Limit.WORK
+            "[[count]] values at which the picture may change", count=len(decomposition.zeros), limit=Limit.WORK
         )
-    return found
+    return decomposition
 
 
 def _shared(factors: Sequence[Polynomial], box: Box, budget: Budget, progress: Progress) -> list[Polynomial]:
@@ -202,9 +205,9 @@ def _shared(factors: Sequence[Polynomial], box: Box, budget: Budget, progress: P
         turned.append(p.compose(y, x, z, ctx=p.context()))
     tables: list[dict[str, Polynomial]] = []
     refused: TooLargeError | None = None
-    for given, there in ((factors, box), (turned, Box(box.y0, box.y1, box.x0, box.x1))):
+    for polynomials, there in ((factors, box), (turned, Box(box.y0, box.y1, box.x0, box.x1))):
         try:
-            every = _irreducible(_levels(given, there, budget, progress))
+            every = _irreducible(_levels(polynomials, there, budget, progress))
         except TooLargeError as failure:
             refused = failure
             continue
@@ -224,12 +227,12 @@ def _levels(factors: Sequence[Polynomial], box: Box, budget: Budget, progress: P
 
 def _irreducible(polynomials: Iterable[Polynomial]) -> list[Polynomial]:
     """The different irreducible factors."""
-    found: dict[str, Polynomial] = {}
+    factors: dict[str, Polynomial] = {}
     for p in polynomials:
         for factor, _ in irreducible_factors(p)[1]:
             if not factor.is_constant():
-                found.setdefault(str(factor), factor)
-    return list(found.values())
+                factors.setdefault(str(factor), factor)
+    return list(factors.values())
 
 
 def _parted(polynomials: Iterable[Polynomial], generator: int) -> tuple[list[Polynomial], list[Polynomial]]:
@@ -247,18 +250,18 @@ def _projected(
 ) -> list[Polynomial]:
     """Discriminants, coefficients, resultants and values at the edges, none of them zero."""
     _affordable(polynomials, generator, budget)
-    found: list[Polynomial] = []
+    projections: list[Polynomial] = []
     pairs = list(combinations(polynomials, 2))
     for at, p in enumerate(polynomials):
         progress("projection", at, len(polynomials) + len(pairs))
-        found += _coefficients(p, generator)
+        projections += _coefficients(p, generator)
         if p.degrees()[generator] > 1:
-            found.append(p.discriminant(generator))
-        found += [x for edge in edges if (x := _at(p, generator, edge)) != 0]
+            projections.append(p.discriminant(generator))
+        projections += [x for edge in edges if (x := _at(p, generator, edge)) != 0]
     for at, (p, q) in enumerate(pairs):
         progress("projection", len(polynomials) + at, len(polynomials) + len(pairs))
-        found.append(p.resultant(q, generator))
-    return _irreducible(found)
+        projections.append(p.resultant(q, generator))
+    return _irreducible(projections)
 
 
 def _coefficients(p: Polynomial, generator: int) -> list[Polynomial]:

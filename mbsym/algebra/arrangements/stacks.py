@@ -75,14 +75,14 @@ class Fibre:
 
 def column(curves: Sequence[Curve], box: Box, x: numbers.Rational) -> Column:
     """The branches over a rational x that is not critical."""
-    found: list[tuple[numbers.Root, int]] = []
+    branches: list[tuple[numbers.Root, int]] = []
     for k, curve in enumerate(curves):
         p = curve.over(x)
         if p.degree() > 0:
-            found += [(root, k) for root in numbers.roots_between(numbers.primitive(p), box.y0, box.y1)]
+            branches += [(root, k) for root in numbers.roots_between(numbers.primitive(p), box.y0, box.y1)]
     # Different numbers: curves meet over critical abscissas only.
-    found.sort(key=lambda pair: _Ordered(pair[0]))
-    sections = [Section(BOTTOM, box.y0), *(Section(k, root) for root, k in found), Section(TOP, box.y1)]
+    branches.sort(key=lambda pair: _Ordered(pair[0]))
+    sections = [Section(BOTTOM, box.y0), *(Section(k, root) for root, k in branches), Section(TOP, box.y1)]
     return Column(x, tuple(sections))
 
 
@@ -175,11 +175,11 @@ def _roots_of(field: Extension, k: int, whole: OverField, order: int) -> list[_N
     """
     if order == 0 or (order >= LEADING and field.coprime(whole, field.derivative(whole))):
         return [_Node(root, {k: 1}) for root in field.roots(field.monic(whole))]
-    found = field.double_roots(whole) if order < LEADING else None
-    if found is None:
+    splitting = field.double_roots(whole) if order < LEADING else None
+    if splitting is None:
         pieces = _with_multiplicity(field, whole)
         return [_Node(root, {k: m}) for piece, m in pieces for root in field.roots(piece)]
-    doubles, simple, count = found
+    doubles, simple, count = splitting
     singular = False if order == count else True if count == 1 else None
     return [*(_Node(root, {k: 2}, singular) for root in doubles), *(_Node(root, {k: 1}) for root in simple)]
 
@@ -191,8 +191,8 @@ def _meet(field: Extension, at: Abscissa, wholes: Mapping[int, OverField], nodes
     a, b = wholes[first], wholes[second]
     if min(orders.values()) >= LEADING and field.coprime(a, b):
         return  # both have a root at infinity
-    found = field.common_roots(a, b) if orders[first] == 0 else None
-    common = field.roots(field.squarefree(field.gcd(a, b))) if found is None else found[0]
+    common_part = field.common_roots(a, b) if orders[first] == 0 else None
+    common = field.roots(field.squarefree(field.gcd(a, b))) if common_part is None else common_part[0]
     for root in common:
         _join(nodes, root, j, k)
 
@@ -200,7 +200,7 @@ def _meet(field: Extension, at: Abscissa, wholes: Mapping[int, OverField], nodes
 def _join(nodes: list[_Node], common: Over, j: int, k: int) -> None:
     """Makes one of the nodes of two curves at a common root."""
     for _ in range(MOST_HALVINGS):
-        hits = [[node for node in nodes if one in node.through and _touch(node.root, common)] for one in (j, k)]
+        hits = [[node for node in nodes if curve in node.through and _touch(node.root, common)] for curve in (j, k)]
         if not all(hits):
             raise Defect("curves that meet have no root in common")
         if len(hits[0]) == len(hits[1]) == 1:

@@ -205,7 +205,7 @@ class ElementPolynomial:
         """
         if self.degree() < 1:
             return self[0], []
-        found = []
+        factors = []
         f = self
         slope = f.derivative()
         common = f.gcd(slope)
@@ -219,10 +219,10 @@ class ElementPolynomial:
             d = _difference(c, b.derivative())
             factor = b.gcd(d) if d.degree() >= 0 else b
             if factor.degree() > 0:
-                found.append((factor, multiplicity))
+                factors.append((factor, multiplicity))
             b, c = b // factor, d // factor
             multiplicity += 1
-        return self.leading_coefficient(), found
+        return self.leading_coefficient(), factors
 
 
 def _difference(a: ElementPolynomial, b: ElementPolynomial) -> ElementPolynomial:
@@ -242,8 +242,8 @@ class ElementMatrix:
 
     def __init__(self, rows: int, columns: int, entries: Sequence[Any] | None = None) -> None:
         self._size = (rows, columns)
-        given = [fmpq(0)] * (rows * columns) if entries is None else list(entries)
-        self._rows = [given[i * columns : (i + 1) * columns] for i in range(rows)]
+        values = [fmpq(0)] * (rows * columns) if entries is None else list(entries)
+        self._rows = [values[i * columns : (i + 1) * columns] for i in range(rows)]
 
     def nrows(self) -> int:
         return self._size[0]
@@ -312,9 +312,9 @@ class ElementMatrix:
                 for row in a:
                     row[k] = row[k] + factor * row[r]
         # p_k = (lambda - a_kk) p_(k-1) - sum_i a_(k-i)k (product of subdiagonal elements) p_(k-i-1)
-        found: list[list[Any]] = [[fmpq(1)]]
+        polynomials: list[list[Any]] = [[fmpq(1)]]
         for k in range(n):
-            previous = found[-1]
+            previous = polynomials[-1]
             row = [fmpq(0), *previous]
             for j, c in enumerate(previous):
                 row[j] = row[j] - a[k][k] * c
@@ -322,11 +322,11 @@ class ElementMatrix:
             for i in range(1, k + 1):
                 product = product * a[k - i + 1][k - i]
                 factor = product * a[k - i][k]
-                for j, c in enumerate(found[k - i]):
+                for j, c in enumerate(polynomials[k - i]):
                     row[j] = row[j] - factor * c
-            found.append(row)
+            polynomials.append(row)
         zero = self._zero()
-        return ElementPolynomial([zero + c for c in found[-1]])
+        return ElementPolynomial([zero + c for c in polynomials[-1]])
 
     def _zero(self) -> Element:
         """Raises TypeError for a matrix of rational numbers."""
@@ -477,9 +477,9 @@ class TowerField:
         return self.reduced(product)
 
     def sign(self, a: OverField) -> int:
-        found = self.root.sign(self.reduced(a))
-        self._split(a, vanishes=found == 0)
-        return found
+        signum = self.root.sign(self.reduced(a))
+        self._split(a, vanishes=signum == 0)
+        return signum
 
     def _split(self, a: OverField, vanishes: bool) -> None:
         """Keeps the factor of B that a shows to be enough."""

@@ -54,12 +54,12 @@ def common_divisor(modulus: Element, a: Sequence[Element], b: Sequence[Element])
             break
         try:
             ring = _Ring(modulus, (1 << exponent) - 1)
-            found = ring.gcd([ring.image(x) for x in a], [ring.image(x) for x in b])
+            modular_gcd = ring.gcd([ring.image(x) for x in a], [ring.image(x) for x in b])
         except _Unlucky:
             continue
-        if len(found) == 1:
+        if len(modular_gcd) == 1:
             return [fmpq_poly([1])]
-        candidate = _reconstructed(found, ring.prime)
+        candidate = _reconstructed(modular_gcd, ring.prime)
         if candidate is not None and all(divides(modulus, candidate, p) for p in (a, b)):
             return candidate
     raise TooLargeError(
@@ -368,9 +368,9 @@ class Extension:
         while bits <= MOST_BALL_BITS:
             with ctx.workprec(bits):
                 common = self._orbit(slope, p, bits)
-                found = None if common is None else self._double_roots(p, slope, common, bits)
-            if found is not None:
-                return found
+                roots = None if common is None else self._double_roots(p, slope, common, bits)
+            if roots is not None:
+                return roots
             bits *= 2
         return None
 

@@ -84,11 +84,11 @@ def decompose_line(factors: Sequence[Polynomial], low: Rational, high: Rational)
         for factor, _ in primitive(univariate(p)).factor()[1]:
             if factor.degree() > 0:
                 through.setdefault(str(factor), (factor, []))[1].append(at)
-    found: list[tuple[Number, tuple[int, ...]]] = []
+    zeros: list[tuple[Number, tuple[int, ...]]] = []
     for factor, of in through.values():
         ends = [fmpq(x) for x in (low, high) if factor(x) == 0]
-        found += [(x, tuple(of)) for x in (*ends, *map(number, roots_between(factor, low, high)))]
-    return divided(low, high, found, factors)
+        zeros += [(x, tuple(of)) for x in (*ends, *map(number, roots_between(factor, low, high)))]
+    return divided(low, high, zeros, factors)
 
 
 def divided(

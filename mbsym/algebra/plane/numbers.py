@@ -212,13 +212,13 @@ def compare(a: Number, b: Number) -> int:
 
 def ascending(numbers: Sequence[Number]) -> list[Number]:
     """Sorted; their intervals are disjoint afterwards."""
-    found = sorted(numbers, key=cmp_to_key(compare))
-    for a, b in pairwise(found):
+    ordered = sorted(numbers, key=cmp_to_key(compare))
+    for a, b in pairwise(ordered):
         while high(a) >= low(b):
             for x in (a, b):
                 if isinstance(x, Root):
                     x.halve()
-    return found
+    return ordered
 
 
 def low(x: Any) -> Rational:

@@ -137,16 +137,16 @@ def coefficients(p: Polynomial, generator: int) -> tuple[numbers.Univariate, ...
 
 def parts(factors: Sequence[Polynomial]) -> tuple[tuple[Curve, ...], tuple[Vertical, ...]]:
     """The different irreducible factors of all polynomials.  Raises ValueError for a polynomial that is zero."""
-    found: dict[str, tuple[Polynomial, list[int]]] = {}
+    irreducible: dict[str, tuple[Polynomial, list[int]]] = {}
     for at, p in enumerate(factors):
         if p == 0:
             raise ValueError("a polynomial that is identically zero bounds nothing")
         for factor, _ in irreducible_factors(p)[1]:
             if not factor.is_constant():
-                _, of = found.setdefault(str(factor), (factor, []))
+                _, of = irreducible.setdefault(str(factor), (factor, []))
                 of.append(at)
     curves, verticals = [], []
-    for factor, of in found.values():
+    for factor, of in irreducible.values():
         if factor.degrees()[1]:
             curves.append(Curve(factor, tuple(of)))
         else:
@@ -180,10 +180,12 @@ def abscissas(
         progress("projection", len(curves) + at, whole)
         table.add(_in_x(curves[j].polynomial.resultant(curves[k].polynomial, 1)), meeting=(j, k))
     progress("projection", whole, whole)
-    found = table.abscissas()
-    if len(found) > budget.abscissas:
-        raise TooLargeError("[[count]] abscissas at which the picture may change", count=len(found), limit=Limit.WORK)
-    return found
+    critical = table.abscissas()
+    if len(critical) > budget.abscissas:
+        raise TooLargeError(
+            "[[count]] abscissas at which the picture may change", count=len(critical), limit=Limit.WORK
+        )
+    return critical
 
 
 def _affordable(curves: Sequence[Curve], budget: Budget) -> None:
@@ -236,7 +238,7 @@ class _Table:
     def abscissas(self) -> list[Abscissa]:
         """The roots in the box, and its edges."""
         box = self.box
-        found: list[tuple[numbers.Number, Abscissa]] = []
+        entries: list[tuple[numbers.Number, Abscissa]] = []
         edges = [box.x0, box.x1]
         for factor, degenerate, meeting, vertical in self.rows.values():
             about = (degenerate, meeting, tuple(sorted(vertical)))
@@ -245,11 +247,11 @@ class _Table:
                 if value in edges:
                     edges.remove(value)
                 if box.x0 <= value <= box.x1:
-                    found.append((value, Abscissa(value, *about)))
+                    entries.append((value, Abscissa(value, *about)))
                 continue
             for root in numbers.roots_between(factor, box.x0, box.x1):
                 x = numbers.number(root)
-                found.append((x, Abscissa(x, *about)))
-        found += [(x, Abscissa(x, {}, {}, ())) for x in edges]
-        by = {id(x): abscissa for x, abscissa in found}
-        return [by[id(x)] for x in numbers.ascending([x for x, _ in found])]
+                entries.append((x, Abscissa(x, *about)))
+        entries += [(x, Abscissa(x, {}, {}, ())) for x in edges]
+        by = {id(x): abscissa for x, abscissa in entries}
+        return [by[id(x)] for x in numbers.ascending([x for x, _ in entries])]

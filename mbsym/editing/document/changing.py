@@ -37,17 +37,21 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
 
     An edit that would say anything else than the operation is refused (``not-so``).
     """
-    found = written(text, name, False, folder)
+    document = written(text, name, False, folder)
     try:
         if len(operations) > MOST_OPERATIONS:
             raise Refused("too-large", f"at most {MOST_OPERATIONS} operations are done at once")
-        if not isinstance(found.tree, Mapping) or any(one.code in _NOT_CHANGED for one in found.complaints):
-            found = written(text, name, folder=folder)
-            if not any(one.severity == "error" for one in found.complaints):
+        if not isinstance(document.tree, Mapping) or any(
+            problem.code in _NOT_CHANGED for problem in document.complaints
+        ):
+            document = written(text, name, folder=folder)
+            if not any(problem.severity == "error" for problem in document.complaints):
                 raise Refused("wrong-shape", "a description is a mapping of keys to values")
-            first = [one for one in found.complaints if one.code in _NOT_CHANGED] or found.complaints.errors
-            return {"complaints": [complaint_view(found, one) for one in first]}
-        pieces = Pieces(found.text)
+            first = [
+                problem for problem in document.complaints if problem.code in _NOT_CHANGED
+            ] or document.complaints.errors
+            return {"complaints": [complaint_view(document, problem) for problem in first]}
+        pieces = Pieces(document.text)
         select: Path = ()
         taken: list[Path] = []
         left: list[Path] = []
@@ -55,17 +59,17 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
             if not isinstance(operation, Map):
                 raise Refused("bad-operation", "an operation is a mapping with the key 'op'")
             understood = operation.get("op") in _UNDERSTANDING
-            if understood and found.system is None:
-                found = written(found.text, name, folder=folder)
-            done = meant(found, operation)
-            found = _done(found, done, pieces)
+            if understood and document.system is None:
+                document = written(document.text, name, folder=folder)
+            done = meant(document, operation)
+            document = _done(document, done, pieces)
             select, taken = done.select, [*taken, *done.taken]
             left += done.left
-        if applied(normalised(text), pieces.edits()) != found.text:
+        if applied(normalised(text), pieces.edits()) != document.text:
             raise Refused("not-so", "these operations do not go together", "do them one after another")
     except Refused as refused:
         complaint = Complaint(refused.code, refused.message, Span(1, 1), refused.hint)
-        return {"complaints": [complaint_view(found, complaint) | {"from": 0, "to": 0}]}
+        return {"complaints": [complaint_view(document, complaint) | {"from": 0, "to": 0}]}
     ends = "\r\n" if "\r\n" in text else "\r" if "\r" in text and "\n" not in text else "\n"
     offsets = original_offsets(text)
     edits = [
@@ -76,8 +80,8 @@ def changes(text: str, name: str, operations: Items[Map[str, Any]], folder: Fold
         }
         for edit in pieces.edits()
     ]
-    told = {"taken": [list(path) for path in taken], "left": [list(path) for path in left]}
-    return {"edits": edits, "select": list(select), **told}
+    paths = {"taken": [list(path) for path in taken], "left": [list(path) for path in left]}
+    return {"edits": edits, "select": list(select), **paths}
 
 
 #: What a text may not hold for operations to be done: a change of one place would be one of others.
@@ -87,34 +91,34 @@ _NOT_CHANGED = ("alias", "tag", "several-documents")
 _UNDERSTANDING = ("rename", "rename body", "duplicate branch", "delete branch")
 
 
-def _done(found: Written, done: Meant, pieces: Pieces) -> Written:
+def _done(document: Written, done: Meant, pieces: Pieces) -> Written:
     """The text after one operation, checked."""
     if done.edits is not None:
-        after = data_of(found.tree) if found.tree is not None else ""
+        after = data_of(document.tree) if document.tree is not None else ""
         for primitive in done.primitives:
             after = applied_to(after, primitive)
-        return _checked(found, done.edits, after, done, pieces)
+        return _checked(document, done.edits, after, done, pieces)
     for primitive in done.primitives:
-        assert found.tree is not None
-        exact = emptied(found, primitive.path) if isinstance(primitive, Remove) else primitive
-        before = data_of(found.tree)
+        assert document.tree is not None
+        exact = emptied(document, primitive.path) if isinstance(primitive, Remove) else primitive
+        before = data_of(document.tree)
         after = applied_to(before, exact)
-        edits = text_edits(found, exact, before, after) if found.editor else yaml_edits(found, exact)
-        found = _checked(found, edits, after, done, pieces)
-    return found
+        edits = text_edits(document, exact, before, after) if document.editor else yaml_edits(document, exact)
+        document = _checked(document, edits, after, done, pieces)
+    return document
 
 
-def _checked(found: Written, edits: list[Edit], data: Data, done: Meant, pieces: Pieces) -> Written:
+def _checked(document: Written, edits: list[Edit], data: Data, done: Meant, pieces: Pieces) -> Written:
     """The text after edits.  Refused where it says anything else than what is wanted."""
-    text = applied(found.text, edits)
+    text = applied(document.text, edits)
     if len(text) > MAX_TEXT:
         raise Refused("too-large", f"a description has at most {MAX_TEXT} characters")
     renaming = done.edits is not None
-    after = written(text, found.name, renaming and found.system is not None, found.folder)
+    after = written(text, document.name, renaming and document.system is not None, document.folder)
     said = None if after.tree is None else data_of(after.tree)
-    if said is None or after.editor != found.editor or not _same(said, data, found.editor):
+    if said is None or after.editor != document.editor or not _same(said, data, document.editor):
         raise Refused("not-so", "this cannot be written here without saying something else", "change it in the text")
-    if renaming and found.system is not None and not corresponds(found.system, after.system, done):
+    if renaming and document.system is not None and not corresponds(document.system, after.system, done):
         raise Refused("not-so", "with this name the description would be another one", "take another name")
     pieces.edit(edits)
     return after
@@ -128,17 +132,17 @@ def _same(said: Data, data: Data, editor: bool) -> bool:
 def _sorted(data: Data, depth: int) -> Data:
     """Sections, and what stands in lists, in the order of the alphabet; the entries of sections as they are."""
     if not isinstance(data, dict):
-        return [_in_block(one) for one in data] if isinstance(data, list) else data
-    found = {key: _sorted(data[key], depth + 1) for key in (sorted(data) if depth == 0 else data)}
-    for body in found.get("bodies", ()) if depth == 0 else ():
+        return [_in_block(entry) for entry in data] if isinstance(data, list) else data
+    ordered = {key: _sorted(data[key], depth + 1) for key in (sorted(data) if depth == 0 else data)}
+    for body in ordered.get("bodies", ()) if depth == 0 else ():
         if isinstance(body, dict) and body.get("inertia about", "joint") == "joint":  # goes without saying
             body.pop("inertia about", None)
-    return found
+    return ordered
 
 
 def _in_block(data: Data) -> Data:
     if isinstance(data, list):
-        return [_in_block(one) for one in data]
+        return [_in_block(entry) for entry in data]
     return {key: _in_block(data[key]) for key in sorted(data)} if isinstance(data, dict) else data
 
 
@@ -153,7 +157,9 @@ def corresponds(old: Any, new: Any, done: Meant) -> bool:
     if isinstance(old, tuple | list):
         return len(old) == len(new) and all(corresponds(a, b, done) for a, b in zip(old, new, strict=True))
     if is_dataclass(old):
-        pairs = ((getattr(old, one.name), getattr(new, one.name)) for one in fields(old) if "span" not in one.name)
+        pairs = (
+            (getattr(old, field.name), getattr(new, field.name)) for field in fields(old) if "span" not in field.name
+        )
         return all(corresponds(a, b, done) for a, b in pairs)
     return bool(old == new)
 

@@ -28,7 +28,7 @@ _ACTED_ON = ("body", "reaction on", "coordinate")
 class _Copying:
     """Old names and new ones: of bodies, and of what stands in formulas; ``others`` are those of the other bodies."""
 
-    found: Written
+    written: Written
     bodies: dict[str, str] = field(default_factory=dict)
     symbols: dict[str, str] = field(default_factory=dict)
     others: set[str] = field(default_factory=set)
@@ -41,7 +41,7 @@ class _Copying:
     places: dict[Path, list[Place]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for place in places(self.found):
+        for place in places(self.written):
             self.places.setdefault(place.path[:2], []).append(place)
 
     def turned(self, place: Place) -> str:
@@ -63,10 +63,12 @@ class _Copying:
 
     def copy(self, path: Path) -> Data:
         """What stands at a path (a body, a load, an entry of a section), with the new names."""
-        node = node_at(self.found.tree, path)
+        node = node_at(self.written.tree, path)
         assert node is not None
         data: Data = [data_of(node)]
-        for place in sorted(self.places.get(path[:2], ()), key=lambda one: (one.is_key, -len(one.path))):
+        for place in sorted(
+            self.places.get(path[:2], ()), key=lambda occurrence: (occurrence.is_key, -len(occurrence.path))
+        ):
             inner = place.path[len(path) :]
             if place.path[: len(path)] != path or (place.is_key and not inner):
                 continue
@@ -78,7 +80,7 @@ class _Copying:
         return data[0]
 
 
-def duplicate(found: Written, operation: Json) -> Meant:
+def duplicate(document: Written, operation: Json) -> Meant:
     """The bodies of a branch again, behind it, under new names and with new coordinates, and what is theirs:
 
     loads on them (a spring between the branch and another body, too), constraints that tie nothing else (but the fixed
@@ -86,10 +88,10 @@ def duplicate(found: Written, operation: Json) -> Meant:
     was copied so; ``left`` what names the branch and was not copied.
     """
     name = " ".join(word_of(operation, "body").split())
-    first, tree = index_of(found, name), found.tree
-    branch = branch_of(found, name)
+    first, tree = index_of(document, name), document.tree
+    branch = branch_of(document, name)
     assert isinstance(tree, Mapping)
-    copying = _names(found, tree, branch, bodies_of(found)[first][1])
+    copying = _names(document, tree, branch, bodies_of(document)[first][1])
     copies = {index: copying.copy(("bodies", index)) for index in branch}
     for index in copying.slowed:
         copies[index] = applied_to(copies[index], Remove(("speeds",)))
@@ -113,11 +115,11 @@ def duplicate(found: Written, operation: Json) -> Meant:
 # --- names ------------------------------------------------------------------------------------------------------------
 
 
-def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Copying:
-    bodies, taken = bodies_of(found), {one for one, _ in bodies_of(found)}
-    words, copying = words_of(found), _Copying(found, parent=parent)
-    every = [(own_names(found, tree, index), vectors(found, [index])) for index in range(len(bodies))]
-    copying.lost, copying.slowed = _dependent_speeds(found, branch, [every[index][0] for index in branch])
+def _names(document: Written, tree: Mapping, branch: list[int], parent: str) -> _Copying:
+    bodies, taken = bodies_of(document), {body for body, _ in bodies_of(document)}
+    words, copying = words_of(document), _Copying(document, parent=parent)
+    every = [(own_names(document, tree, index), vectors(document, [index])) for index in range(len(bodies))]
+    copying.lost, copying.slowed = _dependent_speeds(document, branch, [every[index][0] for index in branch])
     for names, turning in every:
         words |= {*names, *(component for vector in turning for component in _components(vector))}
     for index, (name, _) in enumerate(bodies):
@@ -140,7 +142,7 @@ def _names(found: Written, tree: Mapping, branch: list[int], parent: str) -> _Co
     return copying
 
 
-def _dependent_speeds(found: Written, branch: list[int], names: list[list[str]]) -> tuple[set[str], set[int]]:
+def _dependent_speeds(document: Written, branch: list[int], names: list[list[str]]) -> tuple[set[str], set[int]]:
     """The speeds of a branch, and the bodies that have them, where there are more of them than coordinates: what the
     branch hangs on moves with them, so that those of a copy would follow from those of the first.  Else none.
 
@@ -148,7 +150,7 @@ def _dependent_speeds(found: Written, branch: list[int], names: list[list[str]])
     """
     speeds, having = set[str](), set[int]()
     for index in branch:
-        body = node_at(found.tree, ("bodies", index))
+        body = node_at(document.tree, ("bodies", index))
         if body is None or child(body, "orientation") is not None:
             return set(), set()
         node = child(body, "speeds")
@@ -169,7 +171,7 @@ def _components(vector: str) -> list[str]:
 
 def free(name: str, is_taken: Callable[[str], bool], between: str) -> str:
     stem = name.rstrip("0123456789").rstrip() or name
-    return next(one for one in (f"{stem}{between}{k}" for k in range(2, 1000)) if not is_taken(one))
+    return next(candidate for candidate in (f"{stem}{between}{k}" for k in range(2, 1000)) if not is_taken(candidate))
 
 
 # --- loads and constraints --------------------------------------------------------------------------------------------
@@ -179,7 +181,7 @@ def _with_items(
     copying: _Copying, done: Meant, section: str, way: Callable[[_Copying, Path], tuple[Data | None, bool]]
 ) -> None:
     """Copies of items behind the last one: ``way`` answers the copy, or None, and whether something is left out."""
-    nodes = node_at(copying.found.tree, (section,))
+    nodes = node_at(copying.written.tree, (section,))
     count = len(nodes.items) if isinstance(nodes, Sequence) else 0
     added = 0
     for index in range(count):
@@ -196,7 +198,7 @@ def _with_items(
 
 
 def _load(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
-    node, here = node_at(copying.found.tree, path), copying.places.get(path, [])
+    node, here = node_at(copying.written.tree, path), copying.places.get(path, [])
     entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
     kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
     if kind == "generalized force" and entry is not None:
@@ -212,12 +214,16 @@ def _load(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
 
 def _forces(copying: _Copying, path: Path, kind: str) -> tuple[Data | None, bool]:
     """Of generalised forces those on the branch."""
-    node = node_at(copying.found.tree, path)
+    node = node_at(copying.written.tree, path)
     names = [entry.key.text for entry in node.entries] if isinstance(node, Mapping) else []
     own: dict[str, Data] = {
         copying.symbols[name]: copying.copy((*path, name)) for name in names if name in copying.symbols
     }
-    rest = [one for one in copying.places.get(path[:2], ()) if not one.is_key and one.path[-1] not in copying.symbols]
+    rest = [
+        place
+        for place in copying.places.get(path[:2], ())
+        if not place.is_key and place.path[-1] not in copying.symbols
+    ]
     in_part = any(map(copying.names_own, rest))
     return ({kind: own} if own else None), in_part
 
@@ -232,7 +238,7 @@ def _constraint(copying: _Copying, path: Path) -> tuple[Data | None, bool]:
 
 
 def _with_entries(copying: _Copying, done: Meant) -> None:
-    tree = copying.found.tree
+    tree = copying.written.tree
     assert isinstance(tree, Mapping)
     tied = any(path[0] == "constraints" for path in done.taken)
     tied = tied and not any(path[0] == "constraints" for path in done.left)
@@ -240,7 +246,7 @@ def _with_entries(copying: _Copying, done: Meant) -> None:
         key, node = entry.key.text, entry.value
         section = ALIASES.get(key, key)
         if section in _BY_NAME and isinstance(node, Mapping):
-            own = [one.key.text for one in node.entries if one.key.text in copying.symbols]
+            own = [inner_entry.key.text for inner_entry in node.entries if inner_entry.key.text in copying.symbols]
             after = own[-1] if own else None
             for name in own:
                 new = copying.symbols[name]
@@ -262,7 +268,7 @@ def _listed(copying: _Copying, done: Meant, key: str, node: Sequence) -> None:
 
 def _left_over(copying: _Copying, done: Meant) -> None:
     """Claims, outputs, notation and the rest are about what was there before."""
-    told = {*done.taken, *done.left}
+    handled = {*done.taken, *done.left}
     for unit, here in copying.places.items():
-        if unit[0] != "bodies" and unit not in told and any(map(copying.names_own, here)):
+        if unit[0] != "bodies" and unit not in handled and any(map(copying.names_own, here)):
             done.left.append(unit)

@@ -36,12 +36,12 @@ class Meant:
     bodies: dict[str, str] = field(default_factory=dict)
 
 
-def path_of(found: Written, operation: Json, key: str = "path") -> Path:
-    given = operation.get(key)
-    steps = given if isinstance(given, list | tuple) else ()
+def path_of(document: Written, operation: Json, key: str = "path") -> Path:
+    value = operation.get(key)
+    steps = value if isinstance(value, list | tuple) else ()
     if not 0 < len(steps) <= _DEEPEST or not all(isinstance(step, str | int) for step in steps):
         raise Refused("bad-operation", f"'{key}' is a list of keys and numbers")
-    return spelled_path(found.tree, tuple(steps))
+    return spelled_path(document.tree, tuple(steps))
 
 
 def word_of(operation: Json, key: str) -> str:
@@ -51,19 +51,19 @@ def word_of(operation: Json, key: str) -> str:
     return value
 
 
-def setting(found: Written, path: Path, data: Data, source: str | None) -> Primitive:
+def setting(document: Written, path: Path, data: Data, source: str | None) -> Primitive:
     """The value at a path, with what is missing on the way there."""
-    node = found.tree
+    node = document.tree
     for count, step in enumerate(path):
         inner = None if node is None else child(node, step)
         if inner is not None:
             node = inner
             continue
         above, rest = path[:count], path[count:]
-        for one in reversed(rest[1:]):
-            if isinstance(one, int) and one:
-                raise Refused("bad-path", f"there is no item {one} there")
-            data, source = ({one: data} if isinstance(one, str) else [data]), None
+        for key in reversed(rest[1:]):
+            if isinstance(key, int) and key:
+                raise Refused("bad-path", f"there is no item {key} there")
+            data, source = ({key: data} if isinstance(key, str) else [data]), None
         return _missing(node, above, rest[0], data, source)
     return Replace(path, data, source)
 
@@ -106,7 +106,7 @@ def _neighbour(holder: Mapping, above: Path, step: str) -> str | None:
         return None
     before = known[: known.index(step)]
     present = [entry.key.text for entry in holder.entries]
-    earlier = [one for one in present if one in before]
+    earlier = [key for key in present if key in before]
     return max(earlier, key=before.index) if earlier else present[0]
 
 
@@ -125,7 +125,7 @@ class Edit:
 def applied(text: str, edits: Iterable[Edit]) -> str:
     """The text after edits that do not overlap."""
     parts, position = [], 0
-    for edit in sorted(edits, key=lambda one: (one.start, one.end)):
+    for edit in sorted(edits, key=lambda change: (change.start, change.end)):
         assert edit.start >= position, "edits overlap"
         parts += [text[position : edit.start], edit.insert]
         position = edit.end
@@ -167,7 +167,7 @@ class Pieces:
     def edit(self, edits: Iterable[Edit]) -> None:
         """Edits of the text as it now stands, none overlapping another."""
         # From behind; of several at one place the last first, so that they stand in their order.
-        behind = sorted(edits, key=lambda one: (one.start, one.end))
+        behind = sorted(edits, key=lambda change: (change.start, change.end))
         behind.reverse()
         for edit in behind:
             before, after, position = [], [], 0

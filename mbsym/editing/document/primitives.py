@@ -59,12 +59,12 @@ def applied_to(data: Data, primitive: Primitive) -> Data:
     """The data after a primitive; those given are left alone."""
     if not primitive.path:
         raise Refused("bad-path", "the whole description is no part of itself")
-    found = deepcopy(data)
-    holder = found
+    changed = deepcopy(data)
+    holder = changed
     for step in primitive.path[:-1]:
         holder = _step(holder, step)
     _do(holder, primitive.path[-1], primitive)
-    return found
+    return changed
 
 
 def _step(data: Data, step: str | int) -> Data:

@@ -36,38 +36,38 @@ class _There:
     lists: dict[str, list[_Block]] = field(default_factory=dict)
 
 
-def text_edits(found: Written, primitive: Primitive, before: Data, after: Data) -> list[Edit]:
+def text_edits(document: Written, primitive: Primitive, before: Data, after: Data) -> list[Edit]:
     """The edits of the text that one primitive is."""
     if not isinstance(before, dict) or not isinstance(after, dict):
         raise Refused("bad-path", "a description is a mapping")
-    direct = _value_in_place(found, primitive)
+    direct = _value_in_place(document, primitive)
     if direct is not None:
         return direct
-    there, old, new = _blocks(found.text), lines_of_data(before), lines_of_data(after)
-    edits = _patched(found, there.header, old.header, new.header)
+    there, old, new = _blocks(document.text), lines_of_data(before), lines_of_data(after)
+    edits = _patched(document, there.header, old.header, new.header)
     for title in dict.fromkeys((*old.sections, *new.sections)):
         block = there.sections.get(title)
         if block is None:
-            edits.append(_new_section(found, title, new.sections[title]))
+            edits.append(_new_section(document, title, new.sections[title]))
         elif title not in new.sections:
-            edits.append(Edit(*_region(found, block), ""))
+            edits.append(Edit(*_region(document, block), ""))
         else:
-            edits += _patched(found, block, old.sections.get(title, []), new.sections[title], title)
+            edits += _patched(document, block, old.sections.get(title, []), new.sections[title], title)
     for section in dict.fromkeys((*old.blocks, *new.blocks)):
-        edits += _listed(found, primitive, section, there, old.blocks.get(section, []), new.blocks.get(section, []))
+        edits += _listed(document, primitive, section, there, old.blocks.get(section, []), new.blocks.get(section, []))
     return edits
 
 
-def _value_in_place(found: Written, primitive: Primitive) -> list[Edit] | None:
+def _value_in_place(document: Written, primitive: Primitive) -> list[Edit] | None:
     """One value for another where it stands in the text itself."""
     if not isinstance(primitive, Replace) or not isinstance(primitive.data, str):
         return None
-    node = node_at(found.tree, primitive.path)
+    node = node_at(document.tree, primitive.path)
     if not isinstance(node, Scalar) or not node.literal or not node.text or primitive.path[-1] in ("name", "meaning"):
         return None
     if not primitive.data or any(mark in primitive.data for mark in '\n#;"'):
         return None
-    return [Edit(*found.extent(node), primitive.data)]
+    return [Edit(*document.extent(node), primitive.data)]
 
 
 def _blocks(text: str) -> _There:
@@ -98,20 +98,20 @@ class _Labelled:
     end: int
 
 
-def _patched(found: Written, block: _Block, old: list[Line], new: list[Line], section: str = "") -> list[Edit]:
+def _patched(document: Written, block: _Block, old: list[Line], new: list[Line], section: str = "") -> list[Edit]:
     """What differs between the lines before and after, put into the lines that are there."""
-    there = _labelled(found, block, section)
+    there = _labelled(document, block, section)
     before, after = _keyed(old, section), _keyed(new, section)
     if [key for key in before if key in after] != [key for key in after if key in before]:
-        return [_rewritten(found, block, new, section)]
+        return [_rewritten(document, block, new, section)]
     edits = []
     for key in before:
         line = there.get(key)
         if key not in after and line is not None:
-            end = min(len(found.text), line.end + 1)
-            edits.append(Edit(found.line_start(line.start), end, ""))
+            end = min(len(document.text), line.end + 1)
+            edits.append(Edit(document.line_start(line.start), end, ""))
     inserted: dict[int, str] = {}
-    position = _behind_heading(found, block)
+    position = _behind_heading(document, block)
     for key, (label, value) in after.items():
         line = there.get(key)
         if line is None and (key not in before or before[key][1] != value):
@@ -119,63 +119,63 @@ def _patched(found: Written, block: _Block, old: list[Line], new: list[Line], se
         elif line is not None:
             position = line.end
             if key in before and before[key][1] != value:
-                edits.append(_put(found, line, value))
+                edits.append(_put(document, line, value))
     return edits + [Edit(place, place, text) for place, text in inserted.items()]
 
 
-def _put(found: Written, line: _Labelled, value: str) -> Edit:
+def _put(document: Written, line: _Labelled, value: str) -> Edit:
     start, end = line.value
-    gap = "" if start == end or found.text[start - 1 : start] in (" ", "\t") or value.startswith("\n") else " "
-    if start == end and not value.startswith("\n") and found.text[start - 1 : start] != " ":
+    gap = "" if start == end or document.text[start - 1 : start] in (" ", "\t") or value.startswith("\n") else " "
+    if start == end and not value.startswith("\n") and document.text[start - 1 : start] != " ":
         gap = " "
     if value.startswith("\n"):
-        while found.text[start - 1 : start] in (" ", "\t", "\n"):
+        while document.text[start - 1 : start] in (" ", "\t", "\n"):
             start -= 1
     return Edit(start, end, gap + value)
 
 
 def _keyed(lines: list[Line], section: str) -> dict[tuple[str, int], Line]:
     seen: Counter[str] = Counter()
-    found = {}
+    lines_by_key = {}
     for label, value in lines:
         word = label if section else word_of(label)
-        found[word, seen[word]] = (label, value)
+        lines_by_key[word, seen[word]] = (label, value)
         seen[word] += 1
-    return found
+    return lines_by_key
 
 
-def _labelled(found: Written, block: _Block, section: str) -> dict[tuple[str, int], _Labelled]:
+def _labelled(document: Written, block: _Block, section: str) -> dict[tuple[str, int], _Labelled]:
     seen: Counter[str] = Counter()
     there: dict[tuple[str, int], _Labelled] = {}
     last: _Labelled | None = None
     for line in block.lines:
         label, value = label_of(line)
-        start, stop = _place(found, line)
+        start, stop = _place(document, line)
         word = line.text if section == ASSUMPTIONS else None if label is None else label.text
         if word is None and word_of(line.text) == "tensor of inertia":
             word = line.text
         if word is None:
             if last is not None:  # a row of a tensor, or a value below its label
                 first = last.value[0] if last.value[0] != last.value[1] else start
-                last.value, last.end = (first, stop), found.line_end(stop)
+                last.value, last.end = (first, stop), document.line_end(stop)
             continue
         word = word if section else word_of(word)
-        place = (stop, stop) if label is None or section == ASSUMPTIONS else _place(found, value)
-        last = _Labelled(start, place, found.line_end(stop))
+        place = (stop, stop) if label is None or section == ASSUMPTIONS else _place(document, value)
+        last = _Labelled(start, place, document.line_end(stop))
         there[word, seen[word]] = last
         seen[word] += 1
     return there
 
 
-def _place(found: Written, scalar: Scalar) -> tuple[int, int]:
-    start = found.offset(scalar.span)
+def _place(document: Written, scalar: Scalar) -> tuple[int, int]:
+    start = document.offset(scalar.span)
     return start, start + len(scalar.text)
 
 
-def _behind_heading(found: Written, block: _Block) -> int:
+def _behind_heading(document: Written, block: _Block) -> int:
     if block.heading is not None:
-        return found.line_end(found.offset(block.heading.span))
-    return found.line_end(found.offset(block.lines[-1].span)) if block.lines else 0
+        return document.line_end(document.offset(block.heading.span))
+    return document.line_end(document.offset(block.lines[-1].span)) if block.lines else 0
 
 
 def _written(label: str, value: str, section: str, block: _Block) -> str:
@@ -188,38 +188,38 @@ def _written(label: str, value: str, section: str, block: _Block) -> str:
     return f"{'  ' if block.heading is not None else ''}{shown}:{blank}{value}"
 
 
-def _rewritten(found: Written, block: _Block, new: list[Line], section: str) -> Edit:
+def _rewritten(document: Written, block: _Block, new: list[Line], section: str) -> Edit:
     """Where the order of lines is another one they are all written again."""
     if not block.lines:
         raise Refused("bad-path", "there is nothing to write again")
-    start = found.line_start(found.offset(block.lines[0].span))
-    end = found.line_end(found.offset(block.lines[-1].span))
+    start = document.line_start(document.offset(block.lines[0].span))
+    end = document.line_end(document.offset(block.lines[-1].span))
     return Edit(start, end, "\n".join(_written(label, value, section, block) for label, value in new))
 
 
 # --- blocks that come and go ------------------------------------------------------------------------------------------
 
 
-def _region(found: Written, block: _Block) -> tuple[int, int]:
+def _region(document: Written, block: _Block) -> tuple[int, int]:
     """The whole lines of a block, its heading with them; one blank line before it."""
     lines = [*([block.heading] if block.heading is not None else []), *block.lines]
-    start = found.line_start(found.offset(lines[0].span))
-    end = min(len(found.text), found.line_end(found.offset(lines[-1].span)) + 1)
-    if found.text[:start].endswith("\n\n"):
+    start = document.line_start(document.offset(lines[0].span))
+    end = min(len(document.text), document.line_end(document.offset(lines[-1].span)) + 1)
+    if document.text[:start].endswith("\n\n"):
         start -= 1
     return start, end
 
 
-def _at_end(found: Written, text: str) -> Edit:
-    end = len(found.text)
-    bare = found.text.endswith("\n") or not found.text
+def _at_end(document: Written, text: str) -> Edit:
+    end = len(document.text)
+    bare = document.text.endswith("\n") or not document.text
     return Edit(end, end, f"\n{text}\n" if bare else f"\n\n{text}")
 
 
-def _new_section(found: Written, title: str, lines: list[Line]) -> Edit:
-    block = _Block(Scalar(title, found.tree.span)) if found.tree is not None else _Block(None)
+def _new_section(document: Written, title: str, lines: list[Line]) -> Edit:
+    block = _Block(Scalar(title, document.tree.span)) if document.tree is not None else _Block(None)
     written = [title_shown(title), *(_written(label, value, title, block) for label, value in lines)]
-    return _at_end(found, "\n".join(written))
+    return _at_end(document, "\n".join(written))
 
 
 def _new_block(section: str, number: int, lines: Iterable[Line]) -> str:
@@ -232,7 +232,7 @@ def _new_block(section: str, number: int, lines: Iterable[Line]) -> str:
 
 
 def _listed(
-    found: Written,
+    document: Written,
     primitive: Primitive,
     section: str,
     there: _There,
@@ -249,32 +249,34 @@ def _listed(
     for number, origin in enumerate(order):
         if origin is None:
             continue
-        inner = _patched(found, blocks[origin], old[origin], new[number]) + _numbered(found, blocks[origin], number + 1)
+        inner = _patched(document, blocks[origin], old[origin], new[number]) + _numbered(
+            document, blocks[origin], number + 1
+        )
         if isinstance(primitive, Shift) and primitive.path[:1] == (section,) and primitive.path[1:2] == (origin,):
-            start, end = _region(found, blocks[origin])
+            start, end = _region(document, blocks[origin])
             moved = [Edit(edit.start - start, edit.end - start, edit.insert) for edit in inner]
-            texts[number] = applied(found.text[start:end], moved).strip("\n")
+            texts[number] = applied(document.text[start:end], moved).strip("\n")
             edits.append(Edit(start, end, ""))
         else:
             edits += inner
-    kept = {origin for origin in order if origin is not None}
-    edits += [Edit(*_region(found, block), "") for index, block in enumerate(blocks) if index not in kept]
+    remaining = {origin for origin in order if origin is not None}
+    edits += [Edit(*_region(document, block), "") for index, block in enumerate(blocks) if index not in remaining]
     for number, origin in enumerate(order):
         if origin is None:
             texts[number] = _new_block(section, number + 1, new[number])
     behind: dict[int, str] = {}
     for number in sorted(texts):
-        before = [one for one in order[:number] if one is not None and order.index(one) not in texts]
+        before = [earlier for earlier in order[:number] if earlier is not None and order.index(earlier) not in texts]
         if before:
-            place = _region(found, blocks[before[-1]])[1]
+            place = _region(document, blocks[before[-1]])[1]
         elif blocks:
-            place = _region(found, blocks[0])[0]
+            place = _region(document, blocks[0])[0]
         else:
-            edits.append(_at_end(found, texts[number]))
+            edits.append(_at_end(document, texts[number]))
             continue
         behind[place] = behind.get(place, "") + "\n" + texts[number] + "\n"
     for place, text in behind.items():
-        bare = place == len(found.text) and not found.text.endswith("\n")
+        bare = place == len(document.text) and not document.text.endswith("\n")
         edits.append(Edit(place, place, "\n" + text.removesuffix("\n") if bare else text))
     return edits
 
@@ -300,9 +302,9 @@ def _order(primitive: Primitive, section: str, old: int, new: int) -> list[int |
     return order
 
 
-def _numbered(found: Written, block: _Block, number: int) -> list[Edit]:
+def _numbered(document: Written, block: _Block, number: int) -> list[Edit]:
     match = HEADING.match(block.heading.text) if block.heading is not None else None
     if match is None or block.heading is None or int(match[2]) == number:
         return []
-    start = found.offset(block.heading.span)
+    start = document.offset(block.heading.span)
     return [Edit(start + match.start(2), start + match.end(2), str(number))]

@@ -45,8 +45,8 @@ def look(text: str, name: str) -> Json:
     Offsets (``from``, ``to``) count the characters of ``text``.  Where a section cannot be read the others are shown;
     the complaints are always those of the whole text.
     """
-    found = written(text, name)
-    shown = found if found.tree is not None else _what_can_be_had(found)
+    document = written(text, name)
+    shown = document if document.tree is not None else _what_can_be_had(document)
     tree = shown.tree if isinstance(shown.tree, Mapping) else None
     bodies = [] if tree is None else list(_bodies(shown, tree))
     view: Json = {
@@ -56,7 +56,7 @@ def look(text: str, name: str) -> Json:
         "bodies": bodies,
         "constraints": [] if tree is None else list(ties(shown, tree, "constraints")),
         "loads": [] if tree is None else list(ties(shown, tree, "loads", _moved_by(bodies))),
-        "complaints": [complaint_view(found, complaint) for complaint in found.complaints],
+        "complaints": [complaint_view(document, complaint) for complaint in document.complaints],
     }
     offsets = original_offsets(text)
     return view if offsets is None else _moved(view, offsets)
@@ -77,9 +77,9 @@ def formula(source: str) -> Json:
 # --- what cannot be read ----------------------------------------------------------------------------------------------
 
 
-def _what_can_be_had(found: Written) -> Written:
+def _what_can_be_had(document: Written) -> Written:
     """The text with the section in which it cannot be read left out (as blanks: all places stay)."""
-    text, complaints = found.text, found.complaints
+    text, complaints = document.text, document.complaints
     for _ in range(_TRIES):
         place = next((error.span for error in complaints.errors if error.span is not None), None)
         if place is None:
@@ -93,11 +93,11 @@ def _what_can_be_had(found: Written) -> Written:
         if last <= wrong:
             last = wrong + 1
         text = "\n".join([*lines[:first], *(" " * len(line) for line in lines[first:last]), *lines[last:]])
-        again = written(text, found.name, understand=False)
+        again = written(text, document.name, understand=False)
         if again.tree is not None:
             return again
         complaints = again.complaints
-    return found
+    return document
 
 
 def _begins(line: str) -> bool:
@@ -107,10 +107,10 @@ def _begins(line: str) -> bool:
 # --- bodies -----------------------------------------------------------------------------------------------------------
 
 
-def _bodies(found: Written, tree: Mapping) -> Iterator[Json]:
-    bodies, rates = child(tree, "bodies"), rates_of(found, tree)
+def _bodies(document: Written, tree: Mapping) -> Iterator[Json]:
+    bodies, rates = child(tree, "bodies"), rates_of(document, tree)
     for index, node in enumerate(bodies.items if isinstance(bodies, Sequence) else ()):
-        start, end = found.extent(node)
+        start, end = document.extent(node)
         name = _text(node, "name")
         parent = " ".join(_text(node, "attached to").split())
         yield {
@@ -119,33 +119,33 @@ def _bodies(found: Written, tree: Mapping) -> Iterator[Json]:
             "parent": None if parent in ("", "0") else parent,
             "from": start,
             "to": end,
-            "fields": _fields(found, tree, node, index, rates),
+            "fields": _fields(document, tree, node, index, rates),
         }
 
 
-def _fields(found: Written, tree: Mapping, body: Node, index: int, rates: dict[str, Expression]) -> Json:
+def _fields(document: Written, tree: Mapping, body: Node, index: int, rates: dict[str, Expression]) -> Json:
     fields: Json = {}
-    derived = understood(found, tree, body, index, rates)
+    derived = understood(document, tree, body, index, rates)
     for key in BODY:
         entry = entry_of(body, key)
         path = ["bodies", index, key if entry is None else entry.key.text]
-        if entry is None or (found.editor and is_understood(entry)):
+        if entry is None or (document.editor and is_understood(entry)):
             fields[key] = {"path": path, "source": None, "from": None, "to": None, "mathml": None}
         else:
-            start, end = found.extent(entry.value)
-            source = source_of(found, entry.value)
+            start, end = document.extent(entry.value)
+            source = source_of(document, entry.value)
             math = None if key in _NO_FORMULAS else mathml_of(entry.value)
             fields[key] = {"path": path, "source": source, "from": start, "to": end, "mathml": math}
         fields[key]["derived"] = derived.get(key) if fields[key]["source"] is None else None
     return fields
 
 
-def source_of(found: Written, node: Node) -> str:
+def source_of(document: Written, node: Node) -> str:
     """A node as it is spelled, in one line."""
     if isinstance(node, Scalar):
-        return found.source(node)
-    start, end = found.extent(node)
-    spelled = found.text[start:end]
+        return document.source(node)
+    start, end = document.extent(node)
+    spelled = document.text[start:end]
     if "\n" not in spelled and spelled[:1] in ("[", "{", "("):
         return spelled
     try:
@@ -172,17 +172,17 @@ def _moved_by(bodies: list[Json]) -> dict[str, str]:
     return owners
 
 
-def ties(found: Written, tree: Mapping, section: str, owners: dict[str, str] | None = None) -> Iterator[Json]:
+def ties(document: Written, tree: Mapping, section: str, owners: dict[str, str] | None = None) -> Iterator[Json]:
     """Loads or constraints: their kinds and the bodies that they name; what acts on a coordinate acts on the body that
     introduces it (``owners``)."""
     nodes = child(tree, section)
     for index, node in enumerate(_items(nodes) if nodes is not None else ()):
-        start, end = found.extent(node)
+        start, end = document.extent(node)
         entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
         kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)
         bodies = [] if entry is None else list(dict.fromkeys(named_bodies(kind, entry.value)))
         if entry is not None and owners and not bodies:
-            named = (owners.get(one) for one in _coordinates_in(kind, entry.value))
+            named = (owners.get(coordinate) for coordinate in _coordinates_in(kind, entry.value))
             bodies = list(dict.fromkeys(one for one in named if one is not None))
         path = [section, index]
         yield {"name": f"{kind} {index + 1}", "kind": kind, "path": path, "bodies": bodies, "from": start, "to": end}
@@ -217,45 +217,56 @@ def named_bodies(kind: str, node: Node) -> Iterator[str]:
 # --- the tree ---------------------------------------------------------------------------------------------------------
 
 
-def _node(found: Written, node: Node, path: list[str | int], entry: Entry | None = None) -> Json:
-    start, end = found.extent(node)
+def _node(document: Written, node: Node, path: list[str | int], entry: Entry | None = None) -> Json:
+    start, end = document.extent(node)
     shown: Json = {"path": path, "from": start, "to": end}
     if entry is not None:
-        first, last = found.key(entry)
+        first, last = document.key(entry)
         shown["key"] = {"from": first, "to": last}
     match node:
         case Scalar():
-            return shown | {"kind": "scalar", "source": found.source(node)}
+            return shown | {"kind": "scalar", "source": document.source(node)}
         case Sequence(items):
-            children = [_node(found, item, [*path, index]) for index, item in enumerate(items)]
+            children = [_node(document, item, [*path, index]) for index, item in enumerate(items)]
             return shown | {"kind": "sequence", "children": children}
     children = [
-        _node(found, one.value, [*path, one.key.text], one)
-        for one in node.entries
-        if not (found.editor and is_understood(one))
+        _node(document, inner_entry.value, [*path, inner_entry.key.text], inner_entry)
+        for inner_entry in node.entries
+        if not (document.editor and is_understood(inner_entry))
     ]
     return shown | {"kind": "mapping", "children": children}
 
 
 def _text(node: Node | None, key: str) -> str:
-    found = node_at(node, (key,))
-    return found.text if isinstance(found, Scalar) else ""
+    value = node_at(node, (key,))
+    return value.text if isinstance(value, Scalar) else ""
 
 
 # --- complaints -------------------------------------------------------------------------------------------------------
 
 
-def complaint_view(found: Written, one: Complaint) -> Json:
+def complaint_view(document: Written, complaint: Complaint) -> Json:
     """A complaint with its place; what concerns the whole text stands at its beginning."""
-    if one.span is None:
-        return _told(one, 0, 0, 1, 1)
-    start = found.offset(one.span)
-    return _told(one, start, min(len(found.text), start + one.span.length), one.span.line, one.span.column)
+    if complaint.span is None:
+        return _told(complaint, 0, 0, 1, 1)
+    start = document.offset(complaint.span)
+    return _told(
+        complaint,
+        start,
+        min(len(document.text), start + complaint.span.length),
+        complaint.span.line,
+        complaint.span.column,
+    )
 
 
-def _told(one: Complaint, start: int, end: int, line: int, column: int) -> Json:
-    told = {"severity": one.severity, "code": one.code, "message": one.message, "hint": one.hint}
-    return told | {"from": start, "to": end, "line": line, "column": column}
+def _told(complaint: Complaint, start: int, end: int, line: int, column: int) -> Json:
+    fields = {
+        "severity": complaint.severity,
+        "code": complaint.code,
+        "message": complaint.message,
+        "hint": complaint.hint,
+    }
+    return fields | {"from": start, "to": end, "line": line, "column": column}
 
 
 def _moved(value: Any, offsets: list[int]) -> Any:
@@ -297,15 +308,19 @@ def mathml_of(node: Node) -> str | None:
         return None
     if all(isinstance(item, Sequence) for item in node.items):
         rows = [_cells(item) for item in node.items]
-        return None if any(one is None for one in rows) else math(table([one for one in rows if one is not None]))
+        return (
+            None
+            if any(row_cells is None for row_cells in rows)
+            else math(table([row_cells for row_cells in rows if row_cells is not None]))
+        )
     cells = _cells(node)
     return None if cells is None else math(row(cells))
 
 
 def _cells(node: Node) -> list[str] | None:
     cells = [_cell(item) for item in node.items] if isinstance(node, Sequence) else []
-    found = [cell for cell in cells if cell is not None]
-    return found if cells and len(found) == len(cells) else None
+    formulas = [cell for cell in cells if cell is not None]
+    return formulas if cells and len(formulas) == len(cells) else None
 
 
 def _cell(node: Node) -> str | None:
@@ -324,7 +339,9 @@ _ZEROS = "[0, 0, 0]"
 _LONGEST = 2_000
 
 
-def understood(found: Written, tree: Mapping, body: Node, index: int, rates: dict[str, Expression]) -> dict[str, Any]:
+def understood(
+    document: Written, tree: Mapping, body: Node, index: int, rates: dict[str, Expression]
+) -> dict[str, Any]:
     """By key, ``{"source", "mathml"}`` of what goes without saying.
 
     The relative velocity is the derivative of the connection point, term by term: d/dt f = sum_q (df/dq) q' + df/dt, of
@@ -333,7 +350,7 @@ def understood(found: Written, tree: Mapping, body: Node, index: int, rates: dic
     shown = {key: _shown(_ZEROS) for key in ("connection point", "mass centre", "gyrostatic moment")}
     if index == 0:
         shown["attached to"] = _shown("0")
-    listed = coordinates_of(found, tree, body, index)
+    listed = coordinates_of(document, tree, body, index)
     shown["coordinates"] = _shown(f"[{', '.join(listed)}]")
     velocity = _velocity(body, rates)
     if velocity is not None:
@@ -345,10 +362,10 @@ def _shown(source: str, mathml: str | None = None) -> dict[str, Any]:
     return {"source": source, "mathml": mathml}
 
 
-def coordinates_of(found: Written, tree: Mapping, body: Node, index: int) -> list[str]:
+def coordinates_of(document: Written, tree: Mapping, body: Node, index: int) -> list[str]:
     """Of the system where there is one; else those listed, or names that stand alone as angles and are no others'."""
-    if found.system is not None and index < len(found.system.bodies):
-        return [*found.system.bodies[index].coordinates]
+    if document.system is not None and index < len(document.system.bodies):
+        return [*document.system.bodies[index].coordinates]
     node = child(body, "coordinates")
     if isinstance(node, Sequence):
         return [item.text for item in node.items if isinstance(item, Scalar)]
@@ -386,16 +403,16 @@ def _velocity(body: Node, rates: dict[str, Expression]) -> dict[str, Any] | None
         return None
 
     try:
-        derived = [Derivation(rates)(one) for one in radius]
+        derived = [Derivation(rates)(component) for component in radius]
     except ValueError:  # of a function that jumps
         return None
-    sources = [text(one) for one in derived]
+    sources = [text(component) for component in derived]
     if any(len(source) > _LONGEST for source in sources):
         return None
     return _shown(f"[{', '.join(sources)}]", vector(derived))
 
 
-def rates_of(found: Written, tree: Mapping) -> dict[str, Expression]:
+def rates_of(document: Written, tree: Mapping) -> dict[str, Expression]:
     """Name -> its derivative: coordinates, prescribed quantities, the time."""
     rates: dict[str, Expression] = {"t": ONE}
     prescribed = child(tree, "prescribed")
@@ -406,6 +423,6 @@ def rates_of(found: Written, tree: Mapping) -> dict[str, Expression]:
             rates[entry.key.text] = rate
     bodies = child(tree, "bodies")
     for index, body in enumerate(bodies.items if isinstance(bodies, Sequence) else ()):
-        for name in coordinates_of(found, tree, body, index):
+        for name in coordinates_of(document, tree, body, index):
             rates[name] = Name(velocity_name(name))
     return rates

@@ -49,15 +49,15 @@ class Place:
     is_key: bool = False
 
 
-def places(found: Written) -> Iterator[Place]:
+def places(document: Written) -> Iterator[Place]:
     """Every value and key of a description that names something of it."""
-    tree = found.tree
+    tree = document.tree
     for entry in tree.entries if isinstance(tree, Mapping) else ():
         key = SYSTEM.get(ALIASES.get(entry.key.text, entry.key.text))
-        if key is None or (found.editor and is_understood(entry)):
+        if key is None or (document.editor and is_understood(entry)):
             continue
         for place in _places(key.type, entry.value, (entry.key.text,)):
-            if not (found.editor and _goes_without_saying(entry.value, place)):
+            if not (document.editor and _goes_without_saying(entry.value, place)):
                 yield place
 
 
@@ -72,7 +72,7 @@ def _places(of: Type, node: Node, path: Path) -> Iterator[Place]:
     """What names something in a value of a type; where a value is of another shape, it is taken for a formula."""
     match of, node:
         case Either(types), _:
-            fitting = (one for one in types if _fits(one, node))
+            fitting = (candidate for candidate in types if _fits(candidate, node))
             yield from _places(next(fitting, Formula()), node, path)
         case ((Record() | Kinds()), Mapping(entries)):
             for entry in entries:
@@ -82,8 +82,8 @@ def _places(of: Type, node: Node, path: Path) -> Iterator[Place]:
                 yield Place((*path, entry.key.text), entry.key, "formula", True)
                 yield from _places(value, entry.value, (*path, entry.key.text))
         case ((Listed(item) | Ends(item)), Sequence(items)):
-            for index, one in enumerate(items):
-                yield from _places(item, one, (*path, index))
+            for index, inner_node in enumerate(items):
+                yield from _places(item, inner_node, (*path, index))
         case BodyName(new), _:
             yield from _leaves(node, path, "new body" if new else "body")
         case Name(own=True), _:
@@ -99,15 +99,19 @@ def _type_of(holder: Record | Kinds, node: Mapping, entry: Entry) -> Type:
     known: Map[str, Key] = holder.keys if isinstance(holder, Record) else holder.kinds
     key = known.get(ALIASES.get(entry.key.text, entry.key.text))
     if key is not None and isinstance(key.type, About):
-        kinds = [one.value.text for one in node.entries if one.key.text == "claim" and isinstance(one.value, Scalar)]
+        kinds = [
+            inner_entry.value.text
+            for inner_entry in node.entries
+            if inner_entry.key.text == "claim" and isinstance(inner_entry.value, Scalar)
+        ]
         return BodyName() if any(kind in CLAIMS and CLAIMS[kind].of == BODY for kind in kinds) else Formula()
     if key is None and isinstance(holder, Kinds):
-        return Record({name: one for kind in holder.kinds.values() for name, one in kind.keys.items()})
+        return Record({name: kind_key for kind in holder.kinds.values() for name, kind_key in kind.keys.items()})
     return Formula() if key is None else key.type
 
 
-def _fits(one: Type, node: Node) -> bool:
-    match one:
+def _fits(value_type: Type, node: Node) -> bool:
+    match value_type:
         case Record() | Named():
             return isinstance(node, Mapping)
         case Listed() | Vector():
@@ -138,19 +142,19 @@ def pattern(names: list[str]) -> re.Pattern[str]:
     return re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, longest))})(?=(?:_d?dot)?(?![\w]))")
 
 
-def words_of(found: Written) -> set[str]:
+def words_of(document: Written) -> set[str]:
     """Every word of formulas and keys, those of velocities and accelerations by what they are derivatives of, too."""
-    plain = {word for place in places(found) if place.role == "formula" for word in _WORD.findall(place.node.text)}
+    plain = {word for place in places(document) if place.role == "formula" for word in _WORD.findall(place.node.text)}
     return plain | {word.removesuffix(ending) for word in plain for ending in ("_dot", "_ddot")}
 
 
-def uses(found: Written, name: str) -> bool:
+def uses(document: Written, name: str) -> bool:
     """Whether a name, or its velocity, stands anywhere."""
     word = pattern([name])
-    return any(place.role == "formula" and word.search(place.node.text) for place in places(found))
+    return any(place.role == "formula" and word.search(place.node.text) for place in places(document))
 
 
-def renamed(found: Written, names: dict[str, str]) -> tuple[list[Primitive], list[Edit]]:
+def renamed(document: Written, names: dict[str, str]) -> tuple[list[Primitive], list[Edit]]:
     """Names to others wherever they stand in formulas and as keys: what becomes of the data, and of the text."""
     if not names:
         return [], []
@@ -158,7 +162,7 @@ def renamed(found: Written, names: dict[str, str]) -> tuple[list[Primitive], lis
     changed: list[Primitive] = []
     keys: list[Primitive] = []
     edits: list[Edit] = []
-    for place in places(found):
+    for place in places(document):
         text = place.node.text
         turned = word.sub(lambda match: names[match[1]], text)
         if place.role != "formula" or turned == text:
@@ -167,30 +171,30 @@ def renamed(found: Written, names: dict[str, str]) -> tuple[list[Primitive], lis
             keys.append(Rekey(place.path, turned))
         else:
             changed.append(Replace(place.path, turned))
-        start, end = found.extent(place.node)
-        for match in word.finditer(found.text[start:end]):
+        start, end = document.extent(place.node)
+        for match in word.finditer(document.text[start:end]):
             edits.append(Edit(start + match.start(1), start + match.end(1), names[match[1]]))
     # Inner keys first, for paths hold the old ones.
-    return [*changed, *sorted(keys, key=lambda one: -len(one.path))], edits
+    return [*changed, *sorted(keys, key=lambda primitive: -len(primitive.path))], edits
 
 
-def body_renamed(found: Written, old: str, new: str) -> tuple[list[Primitive], list[Edit]]:
+def body_renamed(document: Written, old: str, new: str) -> tuple[list[Primitive], list[Edit]]:
     """A body by another name wherever it is named."""
     changed: list[Primitive] = []
     edits: list[Edit] = []
-    for place in places(found):
+    for place in places(document):
         text = place.node.text
-        start, end = found.extent(place.node)
+        start, end = document.extent(place.node)
         if place.role == "formula":
             # omega[body][k] in a speed is the only formula that names bodies.
-            spins = [match for match in _SPIN.finditer(found.text[start:end]) if match[2] == old]
+            spins = [match for match in _SPIN.finditer(document.text[start:end]) if match[2] == old]
             if spins:
                 changed.append(Replace(place.path, _SPIN.sub(lambda match: _spin(match, old, new), text)))
                 edits += [Edit(start + match.start(2), start + match.end(2), new) for match in spins]
         elif " ".join(text.split()) == old:
             changed.append(Replace(place.path, new))
-            if not found.editor:
-                flow = any(found.style(node) == "flow" for node in found.above(place.path))
+            if not document.editor:
+                flow = any(document.style(node) == "flow" for node in document.above(place.path))
                 edits.append(Edit(start, end, scalar(new, flow)))
             elif place.role == "new body":
                 edits.append(Edit(start, end, new))

@@ -98,8 +98,8 @@ class Written:
 
     def above(self, path: Path) -> list[Node]:
         """What a path goes through, the whole first, what it leads to left out."""
-        found = (node_at(self.tree, path[:count]) for count in range(len(path)))
-        return [node for node in found if node is not None]
+        nodes = (node_at(self.tree, path[:count]) for count in range(len(path)))
+        return [node for node in nodes if node is not None]
 
     def source(self, node: Scalar) -> str:
         """A value as it is spelled; of several lines, what they say."""
@@ -151,11 +151,11 @@ def original_offsets(text: str) -> list[int] | None:
     """Where each character of the normalised text stands in the text itself; None where they are the same."""
     if "\r" not in text and not text.startswith("\ufeff"):
         return None
-    found, position = [], 1 if text.startswith("\ufeff") else 0
+    offsets, position = [], 1 if text.startswith("\ufeff") else 0
     while position < len(text):
-        found.append(position)
+        offsets.append(position)
         position += 2 if text.startswith("\r\n", position) else 1
-    return [*found, len(text)]
+    return [*offsets, len(text)]
 
 
 # --- data -------------------------------------------------------------------------------------------------------------

@@ -26,27 +26,27 @@ from mbsym.source.placed import Entry, Mapping, Node, Sequence
 _KEPT_EMPTY = ("bodies", "motion")
 
 
-def yaml_edits(found: Written, primitive: Primitive) -> list[Edit]:
+def yaml_edits(document: Written, primitive: Primitive) -> list[Edit]:
     """The edits of the text that one primitive is.  Refused where there is no place for it."""
     match primitive:
         case Replace(path, data, source):
-            return [_replaced(found, path, data, source)]
+            return [_replaced(document, path, data, source)]
         case Add(path, data, source, after):
-            return [_added(found, path, data, source, after)]
+            return [_added(document, path, data, source, after)]
         case Remove(path):
-            return [_removed(found, path)]
+            return [_removed(document, path)]
         case Rekey(path, new):
-            return [Edit(*found.key(_entry(found, path)), key(new))]
+            return [Edit(*document.key(_entry(document, path)), key(new))]
         case Shift(path, before):
-            return _shifted(found, path, before)
+            return _shifted(document, path, before)
 
 
-def emptied(found: Written, path: Path) -> Primitive:
+def emptied(document: Written, path: Path) -> Primitive:
     """To remove the last of a section is to remove the section, or to leave it empty where that says something."""
-    holder = node_at(found.tree, path[:-1])
+    holder = node_at(document.tree, path[:-1])
     if len(path) < 2 or holder is None or len(_parts(holder)) > 1:
         return Remove(path)
-    if len(path) == 2 and (path[0] not in _KEPT_EMPTY or (found.editor and path[0] == "bodies")):
+    if len(path) == 2 and (path[0] not in _KEPT_EMPTY or (document.editor and path[0] == "bodies")):
         return Remove(path[:1])
     return Replace(path[:-1], {} if isinstance(holder, Mapping) else [])
 
@@ -55,60 +55,60 @@ def _parts(node: Node) -> tuple[Entry, ...] | tuple[Node, ...]:
     return node.entries if isinstance(node, Mapping) else node.items if isinstance(node, Sequence) else ()
 
 
-def _entry(found: Written, path: Path) -> Entry:
-    holder = node_at(found.tree, path[:-1])
+def _entry(document: Written, path: Path) -> Entry:
+    holder = node_at(document.tree, path[:-1])
     entry = None if holder is None else entry_of(holder, path[-1])
     if entry is None:
         raise Refused("bad-path", f"there is no {path[-1]!r} there")
     return entry
 
 
-def _node(found: Written, path: Path) -> Node:
-    node = node_at(found.tree, path)
+def _node(document: Written, path: Path) -> Node:
+    node = node_at(document.tree, path)
     if node is None:
         raise Refused("bad-path", f"there is no {path[-1] if path else ''!r} there")
     return node
 
 
-def _in_flow(found: Written, path: Path) -> bool:
+def _in_flow(document: Written, path: Path) -> bool:
     """Whether what stands at a path stands between brackets."""
-    return any(found.style(_node(found, path[:k])) == "flow" for k in range(len(path)))
+    return any(document.style(_node(document, path[:k])) == "flow" for k in range(len(path)))
 
 
 # --- values -----------------------------------------------------------------------------------------------------------
 
 
-def _replaced(found: Written, path: Path, data: Data, source: str | None) -> Edit:
-    node, in_flow = _node(found, path), _in_flow(found, path)
+def _replaced(document: Written, path: Path, data: Data, source: str | None) -> Edit:
+    node, in_flow = _node(document, path), _in_flow(document, path)
     value = spelled(source, in_flow) if source is not None else _value(data, in_flow)
-    start, end = found.extent(node)
+    start, end = document.extent(node)
     if len(path) == 1 and data and not isinstance(data, str) and source is None and not in_flow:
-        return Edit(_colon(found, _entry(found, path)), end, _section(found, str(path[0]), data))
+        return Edit(_colon(document, _entry(document, path)), end, _section(document, str(path[0]), data))
     if isinstance(path[-1], str):
-        entry = _entry(found, path)
-        last = found.key(entry)[1]
+        entry = _entry(document, path)
+        last = document.key(entry)[1]
         if start == end:
-            return _into_empty(found, last, value, in_flow)
-        if found.style(node) == "block":
-            return Edit(_colon(found, entry), end, f" {value}")
+            return _into_empty(document, last, value, in_flow)
+        if document.style(node) == "block":
+            return Edit(_colon(document, entry), end, f" {value}")
     return Edit(start, end, value)
 
 
-def _into_empty(found: Written, after: int, value: str, in_flow: bool) -> Edit:
+def _into_empty(document: Written, after: int, value: str, in_flow: bool) -> Edit:
     """Behind a key without a value."""
-    match = re.compile(r"[ \t]*:").match(found.text, after)
+    match = re.compile(r"[ \t]*:").match(document.text, after)
     if match is None:
         if not in_flow:
             raise Refused("bad-path", "no colon follows the key")
         return Edit(after, after, f": {value}")
     end = match.end()
-    blank = found.text[end : end + 1] == " "
+    blank = document.text[end : end + 1] == " "
     return Edit(end + blank, end + blank, value if blank else f" {value}")
 
 
-def _colon(found: Written, entry: Entry) -> int:
+def _colon(document: Written, entry: Entry) -> int:
     """Behind the colon of a key."""
-    match = re.compile(r"[ \t]*:").match(found.text, found.key(entry)[1])
+    match = re.compile(r"[ \t]*:").match(document.text, document.key(entry)[1])
     if match is None:
         raise Refused("bad-path", f"no colon follows '{entry.key.text}'")
     return match.end()
@@ -121,61 +121,63 @@ def _value(data: Data, in_flow: bool) -> str:
 # --- new --------------------------------------------------------------------------------------------------------------
 
 
-def _added(found: Written, path: Path, data: Data, source: str | None, after: str | None) -> Edit:
-    holder = _node(found, path[:-1])
-    if found.style(holder) == "flow" or _in_flow(found, path[:-1]):
-        return _added_in_flow(found, holder, path, data, source, after)
+def _added(document: Written, path: Path, data: Data, source: str | None, after: str | None) -> Edit:
+    holder = _node(document, path[:-1])
+    if document.style(holder) == "flow" or _in_flow(document, path[:-1]):
+        return _added_in_flow(document, holder, path, data, source, after)
     if isinstance(holder, Sequence):
-        return _added_item(found, holder, path, data)
+        return _added_item(document, holder, path, data)
     if not isinstance(holder, Mapping) or not holder.entries:
         raise Refused("bad-path", "there is no mapping to add to")
     entries = holder.entries
     before = next((entry for entry in entries if entry.key.text == after), entries[-1])
-    start = found.key(entries[0])[0]
-    indent = start - found.line_start(start)
-    position = found.line_end(max(found.extent(before.value)[1], found.key(before)[1]))
+    start = document.key(entries[0])[0]
+    indent = start - document.line_start(start)
+    position = document.line_end(max(document.extent(before.value)[1], document.key(before)[1]))
     name = key(str(path[-1]))
     if len(path) == 1 and data and not isinstance(data, str):
-        return Edit(position, position, f"\n\n{name}:{_section(found, str(path[0]), data)}")
+        return Edit(position, position, f"\n\n{name}:{_section(document, str(path[0]), data)}")
     value = spelled(source, False) if source is not None else _value(data, False)
     return Edit(position, position, f"\n{' ' * indent}{name}: {value}")
 
 
-def _added_in_flow(found: Written, holder: Node, path: Path, data: Data, source: str | None, after: str | None) -> Edit:
+def _added_in_flow(
+    document: Written, holder: Node, path: Path, data: Data, source: str | None, after: str | None
+) -> Edit:
     value = spelled(source) if source is not None else _value(data, True)
-    start, _ = found.extent(holder)
+    start, _ = document.extent(holder)
     if isinstance(holder, Mapping):
         entries = holder.entries
         value = f"{key(str(path[-1]))}: {value}"
         before = next((entry for entry in entries if entry.key.text == after), entries[-1] if entries else None)
-        end = 0 if before is None else max(found.extent(before.value)[1], found.key(before)[1])
+        end = 0 if before is None else max(document.extent(before.value)[1], document.key(before)[1])
     else:
         items = holder.items if isinstance(holder, Sequence) else ()
         index = path[-1]
         assert isinstance(index, int)
         if items and index == 0:
-            first = found.extent(items[0])[0]
+            first = document.extent(items[0])[0]
             return Edit(first, first, f"{value}, ")
-        end = found.extent(items[index - 1])[1] if items else 0
+        end = document.extent(items[index - 1])[1] if items else 0
     if end:
         return Edit(end, end, f", {value}")
     return Edit(start + 1, start + 1, value)
 
 
-def _added_item(found: Written, holder: Sequence, path: Path, data: Data) -> Edit:
+def _added_item(document: Written, holder: Sequence, path: Path, data: Data) -> Edit:
     index, section = path[-1], str(path[0])
     assert isinstance(index, int)
     if not holder.items:
         raise Refused("bad-path", "there is no list to add to")
-    dashes = [_dash(found, item) for item in holder.items]
-    indent = dashes[0] - found.line_start(dashes[0])
+    dashes = [_dash(document, item) for item in holder.items]
+    indent = dashes[0] - document.line_start(dashes[0])
     text = _item(section, data, indent + 2) if len(path) == 2 else _item("", data, indent + 2)
-    apart = len(dashes) > 1 and "\n\n" in found.text[found.extent(holder.items[0])[1] : dashes[1]]
+    apart = len(dashes) > 1 and "\n\n" in document.text[document.extent(holder.items[0])[1] : dashes[1]]
     apart = apart or (len(dashes) == 1 and section == "bodies" and len(path) == 2)
     if index == 0:
-        start = found.line_start(dashes[0])
+        start = document.line_start(dashes[0])
         return Edit(start, start, f"{' ' * indent}- {text}\n" + ("\n" if apart else ""))
-    position = found.line_end(found.extent(holder.items[index - 1])[1])
+    position = document.line_end(document.extent(holder.items[index - 1])[1])
     return Edit(position, position, ("\n" if apart else "") + f"\n{' ' * indent}- {text}")
 
 
@@ -188,32 +190,36 @@ def _item(section: str, data: Data, indent: int) -> str:
     return scalar(data, False) if isinstance(data, str) else flow(data)
 
 
-def _section(found: Written, name: str, data: Data) -> str:
+def _section(document: Written, name: str, data: Data) -> str:
     """What stands behind the colon of a section, from the next line on."""
-    indent = " " * _indentation(found)
+    indent = " " * _indentation(document)
     if isinstance(data, list):
         apart = "\n\n" if name == "bodies" else "\n"
-        return "\n" + apart.join(f"{indent}- {_item(name, one, len(indent) + 2)}" for one in data)
+        return "\n" + apart.join(f"{indent}- {_item(name, entry, len(indent) + 2)}" for entry in data)
     assert isinstance(data, dict)
-    return "".join(f"\n{indent}{key(one)}: {_value(value, False)}" for one, value in data.items())
+    return "".join(f"\n{indent}{key(entry_name)}: {_value(value, False)}" for entry_name, value in data.items())
 
 
-def _indentation(found: Written) -> int:
+def _indentation(document: Written) -> int:
     """By how much sections are indented in this text."""
-    tree = found.tree
+    tree = document.tree
     for entry in tree.entries if isinstance(tree, Mapping) else ():
-        if found.style(entry.value) == "block" and isinstance(entry.value, Mapping):
-            start = found.key(entry.value.entries[0])[0]
-            return start - found.line_start(start)
+        if document.style(entry.value) == "block" and isinstance(entry.value, Mapping):
+            start = document.key(entry.value.entries[0])[0]
+            return start - document.line_start(start)
     return 2
 
 
-def _dash(found: Written, item: Node) -> int:
+def _dash(document: Written, item: Node) -> int:
     """Where the dash of an item stands, first in its line."""
-    position = found.extent(item)[0] - 1
-    while position >= 0 and found.text[position] in " \t\n":
+    position = document.extent(item)[0] - 1
+    while position >= 0 and document.text[position] in " \t\n":
         position -= 1
-    if position < 0 or found.text[position] != "-" or found.text[found.line_start(position) : position].strip():
+    if (
+        position < 0
+        or document.text[position] != "-"
+        or document.text[document.line_start(position) : position].strip()
+    ):
         raise Refused("bad-path", "this list is written in a way that is not changed here", "change it in the text")
     return position
 
@@ -221,25 +227,25 @@ def _dash(found: Written, item: Node) -> int:
 # --- gone and moved ---------------------------------------------------------------------------------------------------
 
 
-def _removed(found: Written, path: Path) -> Edit:
-    holder = _node(found, path[:-1])
+def _removed(document: Written, path: Path) -> Edit:
+    holder = _node(document, path[:-1])
     parts = _parts(holder)
     index = _index(holder, path[-1])
-    if found.style(holder) == "flow":
-        return _removed_in_flow(found, holder, index)
+    if document.style(holder) == "flow":
+        return _removed_in_flow(document, holder, index)
     if len(parts) == 1:
         raise Refused("bad-path", "the last of a mapping or list is not taken out of it")
-    start, end = _lines(found, holder, index)
+    start, end = _lines(document, holder, index)
     if start is None:
         following = parts[index + 1] if index + 1 < len(parts) else None
         if not isinstance(following, Entry):
             raise Refused("bad-path", "this is written in a way that is not changed here", "change it in the text")
         part = parts[index]
         assert isinstance(part, Entry)
-        return Edit(found.key(part)[0], found.key(following)[0], "")
-    if found.text[:start].endswith("\n\n") and found.text[end : end + 1] in ("\n", ""):
+        return Edit(document.key(part)[0], document.key(following)[0], "")
+    if document.text[:start].endswith("\n\n") and document.text[end : end + 1] in ("\n", ""):
         return Edit(start - 1, end, "")
-    if end == len(found.text) and not found.text.endswith("\n"):
+    if end == len(document.text) and not document.text.endswith("\n"):
         return Edit(max(0, start - 1), end, "")
     return Edit(start, end, "")
 
@@ -254,51 +260,51 @@ def _index(holder: Node, step: str | int) -> int:
     raise Refused("bad-path", f"there is no {step!r} there")
 
 
-def _lines(found: Written, holder: Node, index: int) -> tuple[int | None, int]:
+def _lines(document: Written, holder: Node, index: int) -> tuple[int | None, int]:
     """The whole lines of a part of a block, their line end with them; no beginning where a line begins with more."""
     if isinstance(holder, Mapping):
         entry = holder.entries[index]
-        start, last = found.key(entry)[0], max(found.extent(entry.value)[1], found.key(entry)[1])
+        start, last = document.key(entry)[0], max(document.extent(entry.value)[1], document.key(entry)[1])
     else:
         assert isinstance(holder, Sequence)
         item = holder.items[index]
-        start, last = _dash(found, item), found.extent(item)[1]
-    end = min(len(found.text), found.line_end(last) + 1)
-    first = found.line_start(start)
-    return (None if found.text[first:start].strip() else first), end
+        start, last = _dash(document, item), document.extent(item)[1]
+    end = min(len(document.text), document.line_end(last) + 1)
+    first = document.line_start(start)
+    return (None if document.text[first:start].strip() else first), end
 
 
-def _bounds(found: Written, part: Entry | Node) -> tuple[int, int]:
+def _bounds(document: Written, part: Entry | Node) -> tuple[int, int]:
     if isinstance(part, Entry):
-        start, end = found.key(part)
-        return start, max(end, found.extent(part.value)[1])
-    return found.extent(part)
+        start, end = document.key(part)
+        return start, max(end, document.extent(part.value)[1])
+    return document.extent(part)
 
 
-def _removed_in_flow(found: Written, holder: Node, index: int) -> Edit:
+def _removed_in_flow(document: Written, holder: Node, index: int) -> Edit:
     parts = _parts(holder)
-    start, end = _bounds(found, parts[index])
+    start, end = _bounds(document, parts[index])
     if index + 1 < len(parts):
-        return Edit(start, _bounds(found, parts[index + 1])[0], "")
-    return Edit(_bounds(found, parts[index - 1])[1] if index else start, end, "")
+        return Edit(start, _bounds(document, parts[index + 1])[0], "")
+    return Edit(_bounds(document, parts[index - 1])[1] if index else start, end, "")
 
 
-def _shifted(found: Written, path: Path, before: str | int | None) -> list[Edit]:
-    holder = _node(found, path[:-1])
+def _shifted(document: Written, path: Path, before: str | int | None) -> list[Edit]:
+    holder = _node(document, path[:-1])
     parts = _parts(holder)
     index = _index(holder, path[-1])
     target = len(parts) if before is None else _index(holder, before)
     if target in (index, index + 1):
         return []
-    if found.style(holder) == "flow":
+    if document.style(holder) == "flow":
         data = applied_to({"x": data_of(holder)}, Shift(("x", path[-1]), before))
         assert isinstance(data, dict)
-        return [Edit(*found.extent(holder), flow(data["x"]))]
-    start, end = _lines(found, holder, index)
-    goal = _lines(found, holder, target)[0] if target < len(parts) else _lines(found, holder, len(parts) - 1)[1]
+        return [Edit(*document.extent(holder), flow(data["x"]))]
+    start, end = _lines(document, holder, index)
+    goal = _lines(document, holder, target)[0] if target < len(parts) else _lines(document, holder, len(parts) - 1)[1]
     if start is None or goal is None:
         raise Refused("bad-path", "this is written in a way that is not moved here", "move it in the text")
-    text = found.text
+    text = document.text
     moved = text[start:end] if text[start:end].endswith("\n") else text[start:end] + "\n"
     if text[:start].endswith("\n\n"):
         start, apart = start - 1, True

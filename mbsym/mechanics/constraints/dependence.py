@@ -58,12 +58,12 @@ def dependent_sets(relations: Iterable[Collection[int]], independent: Collection
     sets: list[set[int]] = []
     for relation in relations:
         joined = set(relation)
-        for one in [one for one in sets if one & joined]:
-            joined |= one
-            sets.remove(one)
+        for group in [group for group in sets if group & joined]:
+            joined |= group
+            sets.remove(group)
         sets.append(joined)
-    dependents = (Dependent(tuple(sorted(one)), len(one & set(independent))) for one in sets)
-    return tuple(sorted(dependents, key=lambda one: one.rows))
+    dependents = (Dependent(tuple(sorted(group)), len(group & set(independent))) for group in sets)
+    return tuple(sorted(dependents, key=lambda group: group.rows))
 
 
 def counted_anew(
@@ -74,13 +74,15 @@ def counted_anew(
     The ``independent`` ones of sets of more than MOST_DEPENDENT rows come first: they are good where they were chosen.
     Sets of more than MOST_IN_TURN are left with these, of which nothing follows any more.
     """
-    long = {i for sets in kinds for one in sets if len(one.rows) > MOST_IN_TURN for i in one.rows}
+    long = {i for sets in kinds for group in sets if len(group.rows) > MOST_IN_TURN for i in group.rows}
     rows = [i for i in order if i not in long or i in independent]
     places = {i: place for place, i in enumerate(rows)}
 
-    def counted(one: Dependent) -> Dependent:
-        behind = {*one.rows} - {*independent} if len(one.rows) > MOST_DEPENDENT else ()
-        return Dependent(tuple(places[i] for i in sorted(one.rows, key=lambda i: (i in behind, places[i]))), one.rank)
+    def counted(group: Dependent) -> Dependent:
+        behind = {*group.rows} - {*independent} if len(group.rows) > MOST_DEPENDENT else ()
+        return Dependent(
+            tuple(places[i] for i in sorted(group.rows, key=lambda i: (i in behind, places[i]))), group.rank
+        )
 
     return rows, [tuple(counted(dependent) for dependent in sets if not long & {*dependent.rows}) for sets in kinds]
 
@@ -107,7 +109,7 @@ class Compliance:
         singular: str,
     ) -> None:
         self.program, self.dependent = program, dependent
-        tied = [i for one in dependent for i in one.rows]
+        tied = [i for group in dependent for i in group.rows]
         loose = [i for i in range(len(matrix)) if i not in tied]
         self._loose, self._tied = loose, tied
         rights = [[matrix[i][j] for i in loose] for j in tied]
@@ -123,7 +125,9 @@ class Compliance:
             sizes[kinds[i]] = sizes.get(kinds[i], program.zero) + matrix[i][i]
         rest = [right[i] - self._paired(x, own) for i, x in zip(tied, columns, strict=True)]
         self._second = _Chosen(program, block, rest, [sizes[kinds[i]] for i in tied], dependent)
-        self.owners = tuple((i,) for i in loose) + tuple(one.rows for one in dependent for _ in range(_pivots_of(one)))
+        self.owners = tuple((i,) for i in loose) + tuple(
+            group.rows for group in dependent for _ in range(_pivots_of(group))
+        )
 
     def _paired(self, x: Sequence[Node], y: Sequence[Node]) -> Node:
         total = self.program.zero
@@ -142,9 +146,9 @@ class Compliance:
         start = list(self._first.forward[0])
         for x, column in zip(second, self._columns, strict=True):
             start = [y if self.program.vanishes(c) else y - x * c for y, c in zip(start, column, strict=True)]
-        found = dict(zip(self._loose, self._first.backward(start), strict=True))
-        found |= dict(zip(self._tied, second, strict=True))
-        return tuple(found[i] for i in range(len(found)))
+        components = dict(zip(self._loose, self._first.backward(start), strict=True))
+        components |= dict(zip(self._tied, second, strict=True))
+        return tuple(components[i] for i in range(len(components)))
 
 
 def _pivots_of(dependent: Dependent) -> int:

@@ -115,10 +115,10 @@ def conditions(system: System, ring: Ring) -> Conditions:
 
 def conditions_in_states(form: SpeedForm) -> Conditions:
     """The same in the declared positions and speeds."""
-    found = speed_program(form)
-    program, carry = found.program, Carrier(form.ring, found.program, found.environment)
-    rows = [row for row in state_rows(form, found) if not row.is_trivial(program)]
-    turned = jacobian(program, found.rates, [program.input(u.name) for u in form.speeds])
+    lowered = speed_program(form)
+    program, carry = lowered.program, Carrier(form.ring, lowered.program, lowered.environment)
+    rows = [row for row in state_rows(form, lowered) if not row.is_trivial(program)]
+    turned = jacobian(program, lowered.rates, [program.input(u.name) for u in form.speeds])
     at_rest = tuple(carry(x) for x in form.drifts)
     return Conditions(program, holonomic_first(rows), tuple(x for row in turned for x in row), at_rest)
 
@@ -297,11 +297,11 @@ def _held_by_rows(
     numbers = Rationals(dict.fromkeys(ring.angles, fmpq(0)), ring.angles)
     nodes = [x for row in (*masses, *partials) for x in row]
     try:
-        found = program.evaluate(nodes, values, numbers)
+        entries = program.evaluate(nodes, values, numbers)
     except NOT_THERE:
         return False
     n = len(masses)
-    return bool(fmpq_mat(n, n, found[: n * n]).det() == 0 and fmpq_mat(len(nodes) // n, n, found).rank() == n)
+    return bool(fmpq_mat(n, n, entries[: n * n]).det() == 0 and fmpq_mat(len(nodes) // n, n, entries).rank() == n)
 
 
 def _moves_mass(scene: Scene[Node], body: Body) -> bool:

@@ -186,14 +186,14 @@ def _connected(
     ring: Ring, jacobian: Sequence[Sequence[Polynomial]], rows: Sequence[int]
 ) -> list[tuple[list[int], set[int]]]:
     """Rows that hang together by their columns, in the order of their first ones, and these columns."""
-    found: list[tuple[list[int], set[int]]] = []
+    blocks: list[tuple[list[int], set[int]]] = []
     for i in rows:
         own, columns = [i], {k for k, x in enumerate(jacobian[i]) if not ring.vanishes(x)}
-        for other in [one for one in found if one[1] & columns]:
+        for other in [block for block in blocks if block[1] & columns]:
             own, columns = [*other[0], *own], columns | other[1]
-            found.remove(other)
-        found.append((sorted(own, key=rows.index), columns))
-    return sorted(found, key=lambda one: rows.index(one[0][0]))
+            blocks.remove(other)
+        blocks.append((sorted(own, key=rows.index), columns))
+    return sorted(blocks, key=lambda block: rows.index(block[0][0]))
 
 
 def _choose(
@@ -240,16 +240,16 @@ def _one_block(
     missing: Sequence[int],
 ) -> list[tuple[int, ...]]:
     """The block of the first columns of ``free`` that can be taken, the others being left out one by one; or none."""
-    kept = list(free)
-    if not regular(rows, [*taken, *kept]):
+    remaining = list(free)
+    if not regular(rows, [*taken, *remaining]):
         return []
     for k in reversed(free):
-        if len(taken) + len(kept) == len(rows):
+        if len(taken) + len(remaining) == len(rows):
             break
-        fewer = [other for other in kept if other != k]
+        fewer = [other for other in remaining if other != k]
         if regular(rows, [*taken, *fewer]):
-            kept = fewer
-    return [(*missing, *kept)] if len(taken) + len(kept) == len(rows) else []
+            remaining = fewer
+    return [(*missing, *remaining)] if len(taken) + len(remaining) == len(rows) else []
 
 
 def _size(
@@ -259,10 +259,10 @@ def _size(
     if not block:
         return False, 1
     try:
-        found = determinant(ring, block)
+        value = determinant(ring, block)
     except NoClosedForm:
         return False, BEYOND
-    return any(vanishing(ring, found, places)), len(found)
+    return any(vanishing(ring, value, places)), len(value)
 
 
 def _units(
@@ -279,16 +279,16 @@ def _units(
         taken_rows, taken = {i for i, _ in units}, {k for _, k in units}
         waiting = [k for k in required if k not in taken]
         allowed = waiting if len(rows) - len(units) <= len(waiting) else columns
-        found = [
+        candidates = [
             (k not in waiting, kind, sum(not ring.vanishes(x) for x in rows[i]), -place, i, k)
             for i in rows
             if i not in taken_rows
             for place, k in enumerate(columns)
             if k not in taken and k in allowed and (kind := _unit_class(ring, rows[i][k])) is not None
         ]
-        if not found:
+        if not candidates:
             break
-        *_, i, k = min(found)
+        *_, i, k = min(candidates)
         units.append((i, k))
         _pivot(ring, rows, i, k)
     return units, rows
@@ -304,24 +304,24 @@ def _unit_class(ring: Ring, x: Polynomial) -> int | None:
 
 
 def projected(
-    algebra: Algebra, found: Embedding, mass_matrix: Sequence[Sequence[Scalar]], forcing: Sequence[Scalar]
+    algebra: Algebra, embedding: Embedding, mass_matrix: Sequence[Sequence[Scalar]], forcing: Sequence[Scalar]
 ) -> tuple[list[list[Scalar]], list[Scalar]]:
     """(Y^T M Y, Y^T (f - M a0)) of M and f as they are given."""
     n = len(forcing)
     a0 = [algebra.zero] * n
-    for k, x in zip(found.dependent, found.acceleration, strict=True):
+    for k, x in zip(embedding.dependent, embedding.acceleration, strict=True):
         a0[k] = x
     rest = [algebra.reduce(forcing[i] - algebra.dot(mass_matrix[i], a0)) for i in range(n)]
-    columns = [basis_vector(algebra, found, place) for place in range(len(found.free))]
+    columns = [basis_vector(algebra, embedding, place) for place in range(len(embedding.free))]
     products = [[algebra.dot(row, y) for row in mass_matrix] for y in columns]
     matrix = [[algebra.dot(y, product) for product in products] for y in columns]
     return matrix, [algebra.dot(y, rest) for y in columns]
 
 
-def basis_vector(algebra: Algebra, found: Embedding, place: int) -> list[Any]:
+def basis_vector(algebra: Algebra, embedding: Embedding, place: int) -> list[Any]:
     """A column of Y: q' for the independent velocity of that place equal to 1, the others 0."""
-    y = [algebra.zero] * (len(found.free) + len(found.dependent))
-    y[found.free[place]] = algebra.one
-    for k, row in zip(found.dependent, found.matrix, strict=True):
+    y = [algebra.zero] * (len(embedding.free) + len(embedding.dependent))
+    y[embedding.free[place]] = algebra.one
+    for k, row in zip(embedding.dependent, embedding.matrix, strict=True):
         y[k] = row[place]
     return y

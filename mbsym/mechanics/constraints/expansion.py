@@ -230,10 +230,16 @@ def over_jets(scene: Scene, base: Base, whole: System | None = None) -> Scene:
     names, values = system.coordinates, motion_values(system)
     n = len(names)
     at_rest = {name: values[name][0] for name in names if name not in base.turning}
-    held = {one.name: scene.lower(one.held) for one in system.inputs}
+    held = {system_input.name: scene.lower(system_input.held) for system_input in system.inputs}
     lowered = dict(scene.environment) | {name: scene.lower(value) for name, value in at_rest.items()} | held
     numbers = {name: i for i, name in enumerate(names)} | {name: 3 * n + k for k, name in enumerate(held)}
-    jets = Jets(ring, at_rest | {one.name: one.held for one in system.inputs}, numbers, lowered, order=1)
+    jets = Jets(
+        ring,
+        at_rest | {system_input.name: system_input.held for system_input in system.inputs},
+        numbers,
+        lowered,
+        order=1,
+    )
     environment = {name: Jet(value) for name, value in scene.environment.items()}
     for i, name in enumerate(names):
         environment[name] = jets.deviation(i, base.values[i])
@@ -248,8 +254,8 @@ def _completed(scene: Scene, signs: Signs) -> Base:
     """The motion with the rates and accelerations that follow from the constraints where none are given."""
     system, ring = scene.system, scene.ring
     names, values = system.coordinates, motion_values(system)
-    given = {entry.coordinate for entry in system.motion}
-    open_ones = [i for i, name in enumerate(names) if name not in given]
+    specified = {entry.coordinate for entry in system.motion}
+    open_ones = [i for i, name in enumerate(names) if name not in specified]
     rates = [scene.lower(values[name][1]) for name in names]
     images = relations(scene)
     turning = {name for name, rate in zip(names, rates, strict=True) if not ring.substitute(rate, images).is_zero()}
@@ -258,11 +264,11 @@ def _completed(scene: Scene, signs: Signs) -> Base:
         places = tuple(scene.environment[name] if name in turning else scene.lower(values[name][0]) for name in names)
         still = Base(places, frozenset(turning), tuple(rates), (ring.zero,) * len(names), related)
         moving = replace(still, rates=_followed(scene, signs, still, still.rates, open_ones, "g"))
-        found = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
+        moving_names = {name for name, rate in zip(names, moving.rates, strict=True) if not rate.is_zero()}
         related = _related(scene, moving.rates)
-        if found <= turning and related == still.related:
+        if moving_names <= turning and related == still.related:
             return replace(moving, accelerations=_followed(scene, signs, moving, still.accelerations, open_ones, "h"))
-        turning |= found
+        turning |= moving_names
     raise NoClosedForm("the rates of the motion do not follow from the constraints")
 
 
@@ -282,9 +288,9 @@ def _followed(
 def _preferred(scene: Scene) -> list[int]:
     """The places of the coordinates in the order in which they would rather be dependent."""
     system = scene.system
-    given = {entry.coordinate for entry in system.motion}
+    specified = {entry.coordinate for entry in system.motion}
     names = list(system.coordinates)
-    order = [*system.dependent, *(name for name in names if name not in given), *reversed(names)]
+    order = [*system.dependent, *(name for name in names if name not in specified), *reversed(names)]
     return [names.index(name) for name in dict.fromkeys(order)]
 
 
@@ -397,12 +403,12 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
     NoClosedForm.
     """
     pending = [{key: r for key, x in row.items() if not (r := ring.reduce(x)).is_zero()} for row in rows]
-    found: dict[int, Row] = {}
+    pivots: dict[int, Row] = {}
     assumed: list[Polynomial] = []
     while True:
         best = _best(ring, signs, pending, columns)
         if best is None:
-            return Echelon(found, tuple(pending), tuple(assumed))
+            return Echelon(pivots, tuple(pending), tuple(assumed))
         rank, column, chosen = best
         row = pending.pop(chosen)
         pivot = row[column]
@@ -411,7 +417,7 @@ def echelon(ring: Ring, signs: Signs, rows: Sequence[Mapping[Column, Polynomial]
         inverse = ring.reciprocal(pivot)
         row = {key: ring.reduce(ring.times(x, inverse)) for key, x in row.items()} | {column: ring.one}
         pending = [_without(ring, other, column, row) for other in pending]
-        found = {key: _without(ring, other, column, row) for key, other in found.items()} | {column: row}
+        pivots = {key: _without(ring, other, column, row) for key, other in pivots.items()} | {column: row}
 
 
 _NUMBER, _SURE, _OPEN = range(3)

@@ -63,22 +63,25 @@ class _Rows:
 
     # --- what is given by places ---
 
-    def _series(self, one: Constraint, place: Placement) -> list[Series]:
-        if isinstance(one, Relation):
-            return [place.lower(subtract(one.left, one.right))]
-        if isinstance(one, Parallel):
-            e = place.direction(one.second.body, place.lower.vector(one.second.direction))
-            found = []
-            for normal in normals(one.first.direction):
-                n = place.direction(one.first.body, place.lower.vector(normal))
-                found.append(dot(n, e))
-            return found
-        assert isinstance(one, Coincide | Distance)
-        apart = [a - b for a, b in zip(self._point(place, one.first), self._point(place, one.second), strict=True)]
-        if isinstance(one, Distance):
-            length, half = place.lower(one.length), place.algebra.number(Fraction(1, 2))
+    def _series(self, constraint: Constraint, place: Placement) -> list[Series]:
+        if isinstance(constraint, Relation):
+            return [place.lower(subtract(constraint.left, constraint.right))]
+        if isinstance(constraint, Parallel):
+            e = place.direction(constraint.second.body, place.lower.vector(constraint.second.direction))
+            products = []
+            for normal in normals(constraint.first.direction):
+                n = place.direction(constraint.first.body, place.lower.vector(normal))
+                products.append(dot(n, e))
+            return products
+        assert isinstance(constraint, Coincide | Distance)
+        apart = [
+            a - b
+            for a, b in zip(self._point(place, constraint.first), self._point(place, constraint.second), strict=True)
+        ]
+        if isinstance(constraint, Distance):
+            length, half = place.lower(constraint.length), place.algebra.number(Fraction(1, 2))
             return [half * (dot(apart, apart) - length * length)]
-        axes = place.axes[self._frame(one.first.body, one.second.body)]
+        axes = place.axes[self._frame(constraint.first.body, constraint.second.body)]
         return [dot([axes[i][k] for i in range(3)], apart) for k in range(3)]
 
     def _point(self, place: Placement, point: Point) -> Any:

@@ -40,11 +40,11 @@ class ConstrainedPrograms:
         return self.tree.environment
 
 
-def constrained_programs(system: System, ring: Ring, kept: Sequence[tuple[int, int]]) -> ConstrainedPrograms:
-    """M, f and the rows of ``kept`` (``rows.kept_rows`` of those over the ring) as straight-line code."""
+def constrained_programs(system: System, ring: Ring, selected: Sequence[tuple[int, int]]) -> ConstrainedPrograms:
+    """M, f and the rows of ``selected`` (``rows.kept_rows`` of those over the ring) as straight-line code."""
     tree = programs(system, ring, open_tree=True)
     still = {acceleration_name(name): tree.program.zero for name in system.coordinates}
-    rows = constraint_rows(Scene(system, tree.program, {**tree.environment, **still}, ring), kept)
+    rows = constraint_rows(Scene(system, tree.program, {**tree.environment, **still}, ring), selected)
     return ConstrainedPrograms(tree, *columns(rows))
 
 

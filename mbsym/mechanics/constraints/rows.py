@@ -91,17 +91,19 @@ class _Form:
     acceleration: Scalar
 
 
-def constraint_rows(scene: Scene, kept: Sequence[tuple[int, int]] | None = None) -> tuple[Row, ...]:
+def constraint_rows(scene: Scene, selected: Sequence[tuple[int, int]] | None = None) -> tuple[Row, ...]:
     """The rows of all constraints of a system, in the order of the description.
 
-    ``kept`` names rows by (constraint, component), the others are left out; ``kept_rows`` finds those that say
+    ``selected`` names rows by (constraint, component), the others are left out; ``kept_rows`` finds those that say
     something.
     """
     rows = []
     for number, constraint in enumerate(scene.system.constraints):
         forms = _forms(scene, constraint, along_motion(scene))
-        wanted = [k for k in range(len(forms)) if kept is None or (number, k + 1 if len(forms) > 1 else 0) in kept]
-        if not wanted:
+        components = [
+            k for k in range(len(forms)) if selected is None or (number, k + 1 if len(forms) > 1 else 0) in selected
+        ]
+        if not components:
             continue
         moved = _moved_by(scene, constraint)
         slopes = [
@@ -109,7 +111,7 @@ def constraint_rows(scene: Scene, kept: Sequence[tuple[int, int]] | None = None)
             for name in scene.system.coordinates
         ]
         labels = row_names(number, constraint)
-        for k in wanted:
+        for k in components:
             partials = tuple(
                 scene.algebra.zero if slope is None else scene.algebra.reduce(slope[k].velocity) for slope in slopes
             )
@@ -238,12 +240,12 @@ def normals(e: Expressions) -> tuple[Expressions, Expressions]:
     certain = [i for i in range(3) if numbers[i]]
     possible = [i for i in range(3) if numbers[i] is None]
     i = (certain or possible or [2])[0]
-    found = []
+    vectors = []
     for j in ((i + 1) % 3, (i + 2) % 3):
         normal: list[Expression] = [ZERO, ZERO, ZERO]
         normal[j], normal[i] = e[i], negative(e[j])
-        found.append((normal[0], normal[1], normal[2]))
-    return found[0], found[1]
+        vectors.append((normal[0], normal[1], normal[2]))
+    return vectors[0], vectors[1]
 
 
 def _rolling(scene: Scene, rolling: Rolling, rates: Rates) -> list[_Form]:

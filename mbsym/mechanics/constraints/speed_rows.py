@@ -35,14 +35,16 @@ def speed_rows(form: SpeedForm, scene: Scene, names: Sequence[RowName]) -> tuple
     return _rows(scene, names, form.drift, lambda g: tuple(ring.derivative(g, u.name) for u in form.speeds))
 
 
-def state_rows(form: SpeedForm, found: SpeedProgram, kept: Sequence[tuple[int, int]] | None = None) -> tuple[Row, ...]:
-    """All rows, or those that are ``kept``, by (constraint, component), as nodes of the program."""
-    program, scene, prescribed = found.program, found.scene, form.system.prescribed
+def state_rows(
+    form: SpeedForm, lowered: SpeedProgram, selected: Sequence[tuple[int, int]] | None = None
+) -> tuple[Row, ...]:
+    """All rows, or those that are ``selected``, by (constraint, component), as nodes of the program."""
+    program, scene, prescribed = lowered.program, lowered.scene, form.system.prescribed
     moving = [program.input(name) for name in (*(x.name for x in form.positions), *(x.name for x in prescribed), "t")]
-    ways: list[Node] = [*found.rates, *(scene.lower(x.rate) for x in prescribed), program.one]
+    ways: list[Node] = [*lowered.rates, *(scene.lower(x.rate) for x in prescribed), program.one]
     speeds = [program.input(u.name) for u in form.speeds]
     names = [row_name for k, x in enumerate(form.system.constraints) for row_name in row_names(k, x)]
-    names = [name for name in names if kept is None or (name.constraint, name.component) in kept]
+    names = [name for name in names if selected is None or (name.constraint, name.component) in selected]
     return _rows(
         scene,
         names,
@@ -121,9 +123,9 @@ def _velocity(scene: Scene, body: str) -> Vector:
 
     There nothing is turned forth and back: that this is nothing unit vectors do not know by themselves.
     """
-    one = scene.motions[body].body
-    before = one.attached_to
-    relative = scene.vector([scene.rate(x) for x in one.connection_point], before)
+    moving_body = scene.motions[body].body
+    before = moving_body.attached_to
+    relative = scene.vector([scene.rate(x) for x in moving_body.connection_point], before)
     if before == INERTIAL:
         return relative
     parent = scene.motions[before]

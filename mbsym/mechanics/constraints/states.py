@@ -78,13 +78,13 @@ class Manifold:
     def __init__(self, system: System, ring: Ring, found: ConstrainedPrograms) -> None:
         self.system = system
         self.ring = ring
-        self.found = found
+        self.programs = found
         self.program = found.tree.program
         self._known_slopes: dict[tuple[str, ...], tuple[tuple[Node, ...], ...]] = {}
 
     @cached_property
     def _positions(self) -> list[Node]:
-        return [node for node in self.found.position if node is not None]
+        return [node for node in self.programs.position if node is not None]
 
     @cached_property
     def _unknowns(self) -> list[str]:
@@ -98,22 +98,24 @@ class Manifold:
         To be used at a working precision of ``PRECISION`` where they are enclosures.
         """
         source = random.Random(SEED)
-        draw, found = self._rational, 0
+        draw, yielded = self._rational, 0
         for attempt in range(_ATTEMPTS * count):
             try:
-                one = draw(source)
+                state = draw(source)
             except NotRational:
-                one = None
+                state = None
             except NOT_THERE:
                 continue
-            if one is None or (draw == self._rational and not found and self._elsewhere(one)):
+            if state is None or (draw == self._rational and not yielded and self._elsewhere(state)):
                 draw = self._enclosed if self._begin is None else self._beside
                 continue
-            if attempt < _ATTEMPTS * count // 2 and not is_allowed(self.system, one.state.numbers, one.state.values):
+            if attempt < _ATTEMPTS * count // 2 and not is_allowed(
+                self.system, state.state.numbers, state.state.values
+            ):
                 continue  # parameters may have been solved for
-            found += 1
-            yield one
-            if found == count:
+            yielded += 1
+            yield state
+            if yielded == count:
                 return
 
     @property
@@ -152,7 +154,7 @@ class Manifold:
     @property
     def _holds_parameters(self) -> bool:
         """Whether the rows depend on parameters at all."""
-        nodes = [*self._positions, *(x for row in self.found.jacobian for x in row)]
+        nodes = [*self._positions, *(x for row in self.programs.jacobian for x in row)]
         names = {str(self.program.instructions[k].payload) for k in self.program.live(nodes)}
         return not names.isdisjoint(self.system.parameter_names)
 
@@ -162,7 +164,7 @@ class Manifold:
     def _pivots(self, values: Mapping[str, Any], numbers: Algebra) -> Eliminated:
         """J at a place, eliminated."""
         n = len(self.system.coordinates)
-        flat = self.program.evaluate([x for row in self.found.jacobian for x in row], values, numbers)
+        flat = self.program.evaluate([x for row in self.programs.jacobian for x in row], values, numbers)
         return eliminated([flat[i : i + n] for i in range(0, len(flat), n)], range(n))
 
     @cached_property
@@ -202,11 +204,11 @@ class Manifold:
 
     def _near(self, values: Mapping[str, Any]) -> dict[str, Any] | None:
         """A root not far from a place.  Raises as ``_root`` does."""
-        found = self._root(dict(values), self.system.coordinates)
+        root = self._root(dict(values), self.system.coordinates)
         for name in self.system.coordinates:
-            if not abs(float(found[name].mid()) - float(values[name].mid())) <= NEAR * self._size(name, values[name]):
+            if not abs(float(root[name].mid()) - float(values[name].mid())) <= NEAR * self._size(name, values[name]):
                 return None
-        return found
+        return root
 
     def _size(self, name: str, value: arb) -> float:
         """What a distance from a coordinate's value is measured by: 1 + |value|, of an angle without whole turns."""
@@ -269,8 +271,10 @@ class Manifold:
         names, parameters = self.system.coordinates, self.system.parameter_names
         slopes = self._slopes([*names, *parameters])
         normals: list[list[arb]] = []
-        for one in (state.enclosed for state in states):
-            flat = self.program.evaluate([x for row in slopes for x in row], one.state.values, one.state.numbers)
+        for enclosed in (state.enclosed for state in states):
+            flat = self.program.evaluate(
+                [x for row in slopes for x in row], enclosed.state.values, enclosed.state.numbers
+            )
             width = len(names) + len(parameters)
             done = eliminated([flat[i : i + width] for i in range(0, len(flat), width)], range(len(names)))
             pivots = {i for i, _ in done.pivots}
@@ -324,12 +328,12 @@ class Manifold:
         """The ranks of J at positions that were found at the given values of the parameters."""
         known = {name: arb(fmpq(x.numerator, x.denominator)) for name, x in known_values(self.system).items()}
         source = random.Random(SEED)
-        found = [] if self._own_rank is None else [self._own_rank]
+        ranks = [] if self._own_rank is None else [self._own_rank]
         for _ in range(_TRIED):
             with suppress(*NOT_THERE):
                 values = self._drawn(source) | known
-                found.append(self._rank(self._root(values, self.system.coordinates)))
-        return tuple(found)
+                ranks.append(self._rank(self._root(values, self.system.coordinates)))
+        return tuple(ranks)
 
     # --- rational numbers ---
 
@@ -360,9 +364,9 @@ class Manifold:
         names = self._unknowns
         slopes = self._slopes(names)
         nodes = [*self._positions, *(x for row in slopes for x in row)]
-        found = self.program.evaluate(nodes, values, numbers)
+        entries = self.program.evaluate(nodes, values, numbers)
         m, n = len(self._positions), len(names)
-        rows = [[*found[m + i * n : m + (i + 1) * n], -found[i]] for i in range(m)]
+        rows = [[*entries[m + i * n : m + (i + 1) * n], -entries[i]] for i in range(m)]
         done = eliminated(rows, range(n))
         changed = dict(values)
         for i, column in done.pivots:
@@ -374,7 +378,7 @@ class Manifold:
     def _slopes(self, names: Sequence[str]) -> tuple[tuple[Node, ...], ...]:
         known = self._known_slopes.get(tuple(names))
         if known is None:
-            inputs = [self.found.environment[name] for name in names]
+            inputs = [self.programs.environment[name] for name in names]
             known = self._known_slopes[tuple(names)] = jacobian(self.program, self._positions, inputs)
         return known
 
@@ -386,10 +390,13 @@ class Manifold:
         n = len(names)
         order = list(range(n))
         source.shuffle(order)  # no coordinate is dependent always
-        for suffix, remainder in ((velocity_name, self.found.velocity), (acceleration_name, self.found.acceleration)):
-            flat = [x for row in self.found.jacobian for x in row]
-            found = self.program.evaluate([*flat, *remainder], values, numbers)
-            rows = [[*found[i * n : (i + 1) * n], found[len(flat) + i]] for i in range(len(remainder))]
+        for suffix, remainder in (
+            (velocity_name, self.programs.velocity),
+            (acceleration_name, self.programs.acceleration),
+        ):
+            flat = [x for row in self.programs.jacobian for x in row]
+            entries = self.program.evaluate([*flat, *remainder], values, numbers)
+            rows = [[*entries[i * n : (i + 1) * n], entries[len(flat) + i]] for i in range(len(remainder))]
             if suffix is acceleration_name:  # gamma + J q''
                 for row in rows:
                     row[n] = sum((x * values[suffix(name)] for x, name in zip(row, names, strict=False)), row[n])
@@ -422,10 +429,10 @@ class Manifold:
             return self._root(values, self.system.coordinates)
         except ZeroDivisionError:
             further = [x for x in self._unknowns if x not in self.system.coordinates]
-            found = self._root(values, (*self.system.coordinates, *further))
-            if any(not is_certain(found[name]) for name in further):
+            root = self._root(values, (*self.system.coordinates, *further))
+            if any(not is_certain(root[name]) for name in further):
                 raise
-            return found
+            return root
 
     def _root(self, values: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:
         """A proved root of phi near a place, in those of the names that phi depends on most there.
@@ -437,8 +444,8 @@ class Manifold:
         m, n = len(self._positions), len(names)
 
         def at(place: Mapping[str, Any]) -> tuple[list[Any], list[list[Any]]]:
-            found = self.program.evaluate([*self._positions, *flat], place, Balls(dict(place)))
-            return found[:m], [found[m + i * n : m + (i + 1) * n] for i in range(m)]
+            entries = self.program.evaluate([*self._positions, *flat], place, Balls(dict(place)))
+            return entries[:m], [entries[m + i * n : m + (i + 1) * n] for i in range(m)]
 
         for _ in range(_NEWTON):
             residual, rows = at(values)
@@ -476,13 +483,13 @@ class Manifold:
         image = krawczyk.step(residuals, jacobian, box)
         if image is None or not all(outer.contains_interior(inner) for outer, inner in zip(box, image, strict=True)):
             raise ZeroDivisionError("no root was proved")
-        found = place(image)
-        residual, slopes = at(found)
+        root = place(image)
+        residual, slopes = at(root)
         if any(is_certain(x) for x in residual):
             raise ZeroDivisionError("the other rows do not hold there")
         if not all(_is_narrow(x) for row in (residual, *slopes) for x in row):  # sin of 1e400 may be anything
             raise ZeroDivisionError("too wide to tell whether the other rows hold there")
-        return found
+        return root
 
 
 def _is_narrow(x: Any) -> bool:
@@ -507,8 +514,8 @@ def _whole(x: fmpq) -> int:
 
 def _common_number(values: Sequence[arb]) -> fmpq | None:
     """The rational number that all are; None where they are not."""
-    found = [_rational_in(x) for x in values]
-    return found[0] if found[0] is not None and all(x == found[0] for x in found) else None
+    numbers = [_rational_in(x) for x in values]
+    return numbers[0] if numbers[0] is not None and all(x == numbers[0] for x in numbers) else None
 
 
 def _common_ratios(rows: Sequence[Sequence[arb]]) -> list[fmpq] | None:
@@ -516,5 +523,5 @@ def _common_ratios(rows: Sequence[Sequence[arb]]) -> list[fmpq] | None:
     first = max(range(len(rows[0])), key=lambda k: float(abs(rows[0][k]).upper()))
     if not all(is_certain(row[first]) for row in rows):
         return None
-    found = [_common_number([row[k] / row[first] for row in rows]) for k in range(len(rows[0]))]
-    return None if any(x is None for x in found) else [x for x in found if x is not None]
+    ratios = [_common_number([row[k] / row[first] for row in rows]) for k in range(len(rows[0]))]
+    return None if any(x is None for x in ratios) else [x for x in ratios if x is not None]

@@ -364,7 +364,11 @@ def _force_function_action(load: ForceFunction, scene: Scene[S]) -> Action[S]:
 def _torques(formula: Expression, sign: S, scene: Scene[S]) -> list[Wrench[S]]:
     held, torques = names(formula), []
     for body in scene.system.bodies:
-        vectors = [one for one in body.orientation if isinstance(one, UnitVector) and held & {*one.components}]
+        vectors = [
+            unit_vector
+            for unit_vector in body.orientation
+            if isinstance(unit_vector, UnitVector) and held & {*unit_vector.components}
+        ]
         if not vectors:
             continue
         torque = scene.zero(body.name)

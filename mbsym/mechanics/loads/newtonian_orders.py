@@ -66,12 +66,12 @@ def order_force_function(load: NewtonianGravity, scene: Scene[S]) -> S:
 
 def legendre(algebra: Algebra[S], x: S, y: S, order: int) -> list[S]:
     """P_0 to P_order, homogeneous: k P_k = (2k - 1) x P_(k-1) - (k - 1) y P_(k-2)."""
-    found = [algebra.one, x]
+    polynomials = [algebra.one, x]
     for k in range(2, order + 1):
-        ahead = algebra.times(algebra.number(Fraction(2 * k - 1, k)), algebra.times(x, found[-1]))
-        behind = algebra.times(algebra.number(Fraction(k - 1, k)), algebra.times(y, found[-2]))
-        found.append(algebra.reduce(ahead - behind))
-    return found
+        ahead = algebra.times(algebra.number(Fraction(2 * k - 1, k)), algebra.times(x, polynomials[-1]))
+        behind = algebra.times(algebra.number(Fraction(k - 1, k)), algebra.times(y, polynomials[-2]))
+        polynomials.append(algebra.reduce(ahead - behind))
+    return polynomials
 
 
 def _spread(scene: Scene[S], motion: BodyMotion[S], e: Vector[S], c: Vector[S], x: S, y: S, order: int) -> dict[int, S]:
@@ -90,15 +90,15 @@ def _spread(scene: Scene[S], motion: BodyMotion[S], e: Vector[S], c: Vector[S], 
         return algebra.reduce(total)
 
     one, half = algebra.one, Fraction(1, 2)
-    found = {2: sum_of((half, t, one), (-3 * half, ee, one))}
+    terms_by_degree = {2: sum_of((half, t, one), (-3 * half, ee, one))}
     if order >= 3:
-        found[3] = sum_of((-3 * half, x, t), (15 * half, x, ee), (-3, ec, one))
+        terms_by_degree[3] = sum_of((-3 * half, x, t), (15 * half, x, ee), (-3, ec, one))
     if order >= 4:
         cc, xx = c.dot(tensor @ c), algebra.times(x, x)
         pair = sum_of((15 * half, xx, one), (-3 * half, y, one))
         quartet = sum_of((105 * half, xx, one), (-15 * half, y, one))
-        found[4] = sum_of((half, pair, t), (-half, quartet, ee), (15, x, ec), (-3 * half, cc, one))
-    return found
+        terms_by_degree[4] = sum_of((half, pair, t), (-half, quartet, ee), (15, x, ec), (-3 * half, cc, one))
+    return terms_by_degree
 
 
 # --- wrenches ---
@@ -202,12 +202,12 @@ def gegenbauer(algebra: Algebra[S], x: S, y: S, exponent: int, order: int) -> li
 
     k q_k = -(2k + exponent - 2) x q_(k-1) - (k + exponent - 2) y q_(k-2).
     """
-    found = [algebra.one, algebra.times(algebra.number(-exponent), x)]
+    coefficients = [algebra.one, algebra.times(algebra.number(-exponent), x)]
     for k in range(2, order + 1):
-        ahead = algebra.times(algebra.number(Fraction(2 * k + exponent - 2, k)), algebra.times(x, found[-1]))
-        behind = algebra.times(algebra.number(Fraction(k + exponent - 2, k)), algebra.times(y, found[-2]))
-        found.append(algebra.reduce(-ahead - behind))
-    return found
+        ahead = algebra.times(algebra.number(Fraction(2 * k + exponent - 2, k)), algebra.times(x, coefficients[-1]))
+        behind = algebra.times(algebra.number(Fraction(k + exponent - 2, k)), algebra.times(y, coefficients[-2]))
+        coefficients.append(algebra.reduce(-ahead - behind))
+    return coefficients
 
 
 # --- exact ---

@@ -83,7 +83,7 @@ def _carried(
     algebra = scene.algebra
     turned: dict[str, Vector[S]] = {about: direction}
     origin: dict[str, Vector[S]] = {about: scene.zero(about)}
-    found = []
+    bodies = []
     for name, motion in scene.motions.items():
         parent = motion.body.attached_to
         if name != about:
@@ -93,8 +93,8 @@ def _carried(
             origin[name] = scene.to_axes(origin[parent] + motion.offset, name)
         massless = algebra.vanishes(motion.mass) and motion.inertia is None
         if not massless and name != centre:
-            found.append((motion, turned[name], origin[name] + motion.mass_centre))
-    return found
+            bodies.append((motion, turned[name], origin[name] + motion.mass_centre))
+    return bodies
 
 
 def central_inertia(scene: Scene[S], motion: BodyMotion[S]) -> Tensor[S] | None:
@@ -138,13 +138,13 @@ def completed(
     U changes neither when centre, O1 and bodies are all shifted, nor when all are turned about the centre.  So a centre
     that is a body itself feels minus the sum of all other forces, at its origin, and nothing else.
     """
-    found = list(wrenches)
+    all_wrenches = list(wrenches)
     centre_moves = _moves(scene, load.centre)
     if at_origin is not None and (centre_moves or _moves(scene, load.about)):
-        found.append(at_origin())
+        all_wrenches.append(at_origin())
     if centre_moves:
         total = scene.zero(load.centre)
-        for wrench in found:
+        for wrench in all_wrenches:
             total = total + scene.to_axes(wrench.force, load.centre)
-        found.append(Wrench(load.centre, -total, scene.zero(load.centre)))
-    return Action(tuple(wrench for wrench in found if wrench.body != INERTIAL))
+        all_wrenches.append(Wrench(load.centre, -total, scene.zero(load.centre)))
+    return Action(tuple(wrench for wrench in all_wrenches if wrench.body != INERTIAL))

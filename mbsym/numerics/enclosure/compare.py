@@ -141,7 +141,7 @@ def _exact(value: Any) -> arb:
     return arb(fmpq(int(numerator), int(denominator)))
 
 
-def passage_radii(found: Enclosure, dynamics: Dynamics, happened: Occurrences) -> tuple[float | None, ...]:
+def passage_radii(enclosure: Enclosure, dynamics: Dynamics, happened: Occurrences) -> tuple[float | None, ...]:
     """For each occurrence a radius: the exact solution passes once within it of the time, in the same direction.
 
     Let g(t) be the condition along the solution.  If g has opposite signs at the ends of [a, b], and g' one sign
@@ -152,12 +152,12 @@ def passage_radii(found: Enclosure, dynamics: Dynamics, happened: Occurrences) -
     None where that is not proved: beyond what is enclosed, where the condition only touches, or where it is not smooth.
     """
     radii: list[float | None] = []
-    with ctx.workprec(found.bits + GUARD):
-        functions = [_slopes(dynamics, event, found.bits + GUARD) for event in happened.events]
+    with ctx.workprec(enclosure.bits + GUARD):
+        functions = [_slopes(dynamics, event, enclosure.bits + GUARD) for event in happened.events]
         for time, which, turn in zip(happened.times, happened.which, happened.turns, strict=True):
             slopes = functions[which]
             proved = slopes is not None and turn != 0
-            radii.append(_radius(found, slopes, float(time), int(turn)) if proved and slopes is not None else None)
+            radii.append(_radius(enclosure, slopes, float(time), int(turn)) if proved and slopes is not None else None)
     return tuple(radii)
 
 
@@ -168,12 +168,12 @@ def _slopes(dynamics: Dynamics, event: Any, bits: int) -> Callable[[Sequence[Any
         return None
 
 
-def _radius(found: Enclosure, slopes: Callable[[Sequence[Any]], list[Any]], time: float, turn: int) -> float | None:
+def _radius(enclosure: Enclosure, slopes: Callable[[Sequence[Any]], list[Any]], time: float, turn: int) -> float | None:
     def at(first: float, last: float) -> tuple[arb, arb]:
-        values = slopes([arb(first).union(arb(last)), *found.within(first, last)])
+        values = slopes([arb(first).union(arb(last)), *enclosure.within(first, last)])
         return values[0], values[1]
 
-    if time > found.reached:
+    if time > enclosure.reached:
         return None
     value, slope = at(time, time)
     steepness = float(slope.abs_lower())
@@ -182,7 +182,7 @@ def _radius(found: Enclosure, slopes: Callable[[Sequence[Any]], list[Any]], time
     span = 2 * float(value.abs_upper()) / steepness + 4 * float(np.spacing(time))
     for _ in range(TRIALS):
         first, last = max(0.0, time - span), time + span
-        if last > found.reached:
+        if last > enclosure.reached:
             return None
         rate = at(first, last)[1]
         signs = (at(first, first)[0] * turn, at(last, last)[0] * turn)

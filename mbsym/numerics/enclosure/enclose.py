@@ -89,13 +89,13 @@ class Segment:
         if t == self.end:
             return list(self.last)
         s = t - self.start
-        found = []
+        balls = []
         for row, spread in zip(self.coefficients, self.spread, strict=True):
             value = row[-1]
             for coefficient in row[-2::-1]:
                 value = value * s + coefficient
-            found.append(value + arb(0, spread))
-        return found
+            balls.append(value + arb(0, spread))
+        return balls
 
 
 class CannotStep(Exception):
@@ -127,25 +127,25 @@ def advanced(field: Field, now: Bundle, bits: int, guess: float, end: arb) -> tu
     Raises CannotStep where the solutions are not proved to go on.
     """
     solutions = field.solution(now.time, now.hull, TERMS_OF_DERIVATIVE - 1)
-    found = disc(field, now.time, solutions, guess)
-    if found is None:
+    circle = disc(field, now.time, solutions, guess)
+    if circle is None:
         raise CannotStep(_blurred(solutions))
-    longest = arb(found.radius * PART)
+    longest = arb(circle.radius * PART)
     left = end - now.time
     last = bool(left <= longest)
     after = end if last else (now.time + longest).mid()
     step = after - now.time
-    terms = max(TERMS_OF_DERIVATIVE, int(bits / float(-(step / found.radius).log() / arb.const_log2())) + 2)
+    terms = max(TERMS_OF_DERIVATIVE, int(bits / float(-(step / circle.radius).log() / arb.const_log2())) + 2)
     coefficients = field.solution(now.time, now.centre, terms - 1)
-    tail = found.tail(float(step), terms)
+    tail = circle.tail(float(step), terms)
     reached = [_horner(row, step) + arb(0, left_out) for row, left_out in zip(coefficients, tail, strict=True)]
-    derivative, bound = _derivative(field, now.time, solutions, found, step)
+    derivative, bound = _derivative(field, now.time, solutions, circle, step)
     grown = bound * (_absolute(now.axes) * _absolute(now.box))
     between = tuple(upper(grown[i, 0] + tail[i]) for i in range(field.size))
     later = _carried(after, reached, derivative * now.axes, now.box)
     series = tuple(tuple(value * size for value in row) for row, size in zip(coefficients, field.sizes, strict=True))
     spread = tuple(upper(value) for value in field.whole(between))
-    return Segment(now.time, after, series, spread, tuple(field.whole(later.hull))), later, found
+    return Segment(now.time, after, series, spread, tuple(field.whole(later.hull))), later, circle
 
 
 def _blurred(coefficients: Sequence[Sequence[arb]]) -> bool:
@@ -154,12 +154,12 @@ def _blurred(coefficients: Sequence[Sequence[arb]]) -> bool:
 
 
 def _derivative(
-    field: Field, t: arb, solutions: Sequence[Sequence[arb]], found: Disc, step: arb
+    field: Field, t: arb, solutions: Sequence[Sequence[arb]], circle: Disc, step: arb
 ) -> tuple[arb_mat, arb_mat]:
     """S after the step, and a bound of |dx(s)/dx0| for all s up to it."""
     n, terms = field.size, TERMS_OF_DERIVATIVE
-    radius = min(found.radius, WIDER * float(step))
-    sizes = arb_mat(n, n, [arb(size) for size in field.jacobian_sizes(t, found.within(radius))])
+    radius = min(circle.radius, WIDER * float(step))
+    sizes = arb_mat(n, n, [arb(size) for size in field.jacobian_sizes(t, circle.within(radius))])
     gradients = field.gradients(t, solutions, terms)
     powers = [unit(n)]
     slopes = [arb_mat([[gradients[i][j][k] for j in range(n)] for i in range(n)]) for k in range(terms)]
@@ -266,8 +266,8 @@ def disc(field: Field, t: arb, coefficients: Sequence[Sequence[arb]], guess: flo
                 if not all(map(isfinite, needed)):
                     break
                 if all(new <= old for new, old in zip(needed, rests, strict=True)):
-                    found = zip(coefficients, rests, strict=True)
-                    return Disc(radius, tuple(model(ring, row, rest) for row, rest in found))
+                    pairs = zip(coefficients, rests, strict=True)
+                    return Disc(radius, tuple(model(ring, row, rest) for row, rest in pairs))
                 rests = [max(old, ROOM * new) for new, old in zip(needed, rests, strict=True)]
             radius *= SHORTER
     return None
@@ -282,12 +282,12 @@ def _picard(
         slopes: list[Any] = field.rates(model(ring, [t, arb(1)]), states)
     except (ValueError, ZeroDivisionError):  # a quotient by a ball that contains zero
         return [inf] * len(rests)
-    d, found = ring.degree, []
+    d, remainders = ring.degree, []
     for slope in slopes:
         rate = slope if isinstance(slope, Model) else model(ring, [slope])
         missed = float(rate.sizes[-1]) * ring.radius / (d + 1) + rate.rest * ring.radius / (d + 2)
-        found.append(missed * LARGER + TINY)
-    return found
+        remainders.append(missed * LARGER + TINY)
+    return remainders
 
 
 #: Bits of the first try, beyond those that the width itself has; of the arithmetic beyond those of the series; at most.
@@ -346,7 +346,7 @@ class Enclosure:
             begin, end = arb(first), arb(last)
             if first < 0 or last > self.reached or not self.segments:
                 raise ValueError(f"enclosed from 0 to {self.reached:g} only")
-            found: list[arb] | None = None
+            hull: list[arb] | None = None
             place = max(0, bisect_left(self._starts, first) - 1)
             for segment in self.segments[place:]:
                 if segment.start > end:
@@ -354,9 +354,9 @@ class Enclosure:
                 low = begin if begin > segment.start else segment.start
                 high = end if end < segment.end else segment.end
                 value = segment.at(low if first == last else low.union(high))
-                found = value if found is None else [a.union(b) for a, b in zip(found, value, strict=True)]
-            assert found is not None
-            return found
+                hull = value if hull is None else [a.union(b) for a, b in zip(hull, value, strict=True)]
+            assert hull is not None
+            return hull
 
     @cached_property
     def _starts(self) -> list[float]:
@@ -400,15 +400,15 @@ def enclosed(
         bits = min(MOST, bits + missing)
 
 
-def _missing(found: Enclosure, width: float, scales: Sequence[float]) -> int:
+def _missing(enclosure: Enclosure, width: float, scales: Sequence[float]) -> int:
     """How many bits more would make it as narrow as wanted; 0 where it is, or more bits would not help."""
-    if found.ended == "":
-        radii = [max(one) for one in zip(*(segment.radii for segment in found.segments), strict=True)]
+    if enclosure.ended == "":
+        radii = [max(component) for component in zip(*(segment.radii for segment in enclosure.segments), strict=True)]
         widest = max(radius / scale for radius, scale in zip(radii, scales, strict=True))
         # Twice: what the series of a segment are rounded by comes on top of that.
         return 0 if 2 * widest <= width else 8 + int(log2(2 * widest / width))
     # Too wide on the way: as many bits as that part of the way has cost, for the rest of it, with some to spare.
-    return max(32, found.bits) if found.ended == TOO_WIDE else 0
+    return max(32, enclosure.bits) if enclosure.ended == TOO_WIDE else 0
 
 
 def _once(
@@ -432,13 +432,13 @@ def _once(
         goal = arb(end)
         try:
             while now.time < goal:
-                segment, now, found = advanced(field, now, bits, guess, goal)
+                segment, now, circle = advanced(field, now, bits, guess, goal)
                 segments.append(segment)
-                guess = min(found.radius * GROWTH, end)
+                guess = min(circle.radius * GROWTH, end)
                 widest = max(_radius(value) / scale for value, scale in zip(segment.last, scales, strict=True))
                 if not widest <= max(MUCH_WIDER * width, WIDE):
                     ended = TOO_WIDE
-                elif found.radius < LEAST * end:
+                elif circle.radius < LEAST * end:
                     ended = NO_STEP
                 elif _late(perf_counter() - began, seconds, float(now.time) / end):
                     ended = OUT_OF_TIME if now.time < goal else ""

@@ -73,8 +73,8 @@ class Model:
         if self._sizes is None:
             d = self.ring.degree
             poly = self.poly
-            found = np.array([_bound(poly[k]) for k in range(d + 1)])
-            self._sizes = found * self.ring.powers * LARGER + TINY
+            bounds = np.array([_bound(poly[k]) for k in range(d + 1)])
+            self._sizes = bounds * self.ring.powers * LARGER + TINY
         return self._sizes
 
     @property
@@ -315,13 +315,13 @@ class Field:
 
         y_(k+1) = [f(t + s, y(s))]_k / (k + 1): each pass gives one coefficient more.
         """
-        found = [[value] for value in y]
+        coefficients = [[value] for value in y]
         for k in range(order):
             with cap(k + 1):
-                slopes = self.rates(series([t, arb(1)]), [series(item) for item in found])
-                for item, slope in zip(found, slopes, strict=True):
+                slopes = self.rates(series([t, arb(1)]), [series(item) for item in coefficients])
+                for item, slope in zip(coefficients, slopes, strict=True):
                     item.append(_coefficient(slope, k) / (k + 1))
-        return found
+        return coefficients
 
     def gradients(self, t: arb, solution: Sequence[Sequence[arb]], order: int) -> list[list[list[arb]]]:
         """Taylor coefficients of J along solutions: ``found[i][j][k]`` of s^k, k < order."""
@@ -334,5 +334,5 @@ class Field:
         """|J_ij|_R of the models of solutions, row by row."""
         ring = solutions[0].ring
         with cap(ring.degree + 1):
-            found = self.jacobian(model(ring, [t, arb(1)]), solutions)
-            return [value.norm if isinstance(value, Model) else model(ring, [value]).norm for value in found]
+            entries = self.jacobian(model(ring, [t, arb(1)]), solutions)
+            return [value.norm if isinstance(value, Model) else model(ring, [value]).norm for value in entries]

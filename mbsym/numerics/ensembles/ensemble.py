@@ -146,7 +146,7 @@ def joined(parts: Sequence[Statistics]) -> Statistics:
 
 
 def ensemble(
-    found: Members,
+    members: Members,
     method: str,
     setting: Setting,
     times: Any,
@@ -158,12 +158,12 @@ def ensemble(
     Ctrl-C ends it: what has been computed is kept.  Memory is needed for the members' states and a block of times.
     """
     times = np.asarray(times, float)
-    begin = beginning(found, method, threads)
+    begin = beginning(members, method, threads)
     run = begin(setting, slice(None))
     started = time.perf_counter()
-    parts = [statistics(found.starts[None])]
-    rows = max(1, BLOCK // max(1, found.starts.size))
-    reached, final, interrupted = 1, np.array(found.starts, float), False
+    parts = [statistics(members.starts[None])]
+    rows = max(1, BLOCK // max(1, members.starts.size))
+    reached, final, interrupted = 1, np.array(members.starts, float), False
     try:
         while reached < len(times):
             block = run.block(times[reached : reached + rows])
@@ -176,13 +176,13 @@ def ensemble(
     seconds = time.perf_counter() - started
     compared = Compared((), np.zeros(len(final)), np.zeros(len(final)))
     if not interrupted:
-        compared = _compared(found, begin, setting, times, run)
+        compared = _compared(members, begin, setting, times, run)
     accepted, rejected = run.steps
     fates = tuple(run.fates[member] for member in sorted(run.fates))
     steps = int(np.sum(accepted) + np.sum(rejected))
     spread = joined(parts)
     return Ensemble(
-        found,
+        members,
         method,
         setting,
         times[:reached],
@@ -203,21 +203,25 @@ def ensemble(
 Beginning = Callable[[Setting, Any], "SideBySide | OneByOne"]
 
 
-def beginning(found: Members, method: str, threads: int | None) -> Beginning:
+def beginning(members: Members, method: str, threads: int | None) -> Beginning:
     """Side by side; one by one where steps have to end at switches, be short beside what is narrow, or be led back."""
-    if not found.dynamics.features.none or found.dynamics.correction is not None:
-        whole = WithParameters(found.dynamics)
-        return lambda setting, some: OneByOne(whole, method, setting, found.starts[:, some], found.parameters[:, some])
-    made = compiled(found.dynamics, TABLEAUX[method])
-    return lambda setting, some: SideBySide(made, setting, found.starts[:, some], found.parameters[:, some], threads)
+    if not members.dynamics.features.none or members.dynamics.correction is not None:
+        whole = WithParameters(members.dynamics)
+        return lambda setting, some: OneByOne(
+            whole, method, setting, members.starts[:, some], members.parameters[:, some]
+        )
+    made = compiled(members.dynamics, TABLEAUX[method])
+    return lambda setting, some: SideBySide(
+        made, setting, members.starts[:, some], members.parameters[:, some], threads
+    )
 
 
-def _compared(found: Members, begin: Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
+def _compared(members: Members, begin: Beginning, setting: Setting, times: Any, run: SideBySide | OneByOne) -> Compared:
     """Some members, those with the most steps among them, once more: a hundredth of the tolerance, half the step."""
     whole = [member for member in range(run.members) if member not in run.fates]
     clamped = setting.tolerance is not None and setting.tolerance < FINEST
     if not whole or clamped:  # what cannot be done more finely would be compared with itself
-        return Compared((), np.zeros(len(found.starts)), np.zeros(len(found.starts)))
+        return Compared((), np.zeros(len(members.starts)), np.zeros(len(members.starts)))
     work = run.steps[0][whole]
     spread = [whole[int(place)] for place in np.linspace(0, len(whole) - 1, CHECKED - 2)]
     hardest = [whole[int(place)] for place in np.argsort(work)[-2:]]
@@ -229,11 +233,11 @@ def _compared(found: Members, begin: Beginning, setting: Setting, times: Any, ru
         setting.longest,
     )
     places = list(chosen)
-    ends = times[1:] if len(times) * len(places) * len(found.starts) <= BLOCK else times[-1:]
-    states = [begin(one, places).block(ends) for one in (setting, finer)]
+    ends = times[1:] if len(times) * len(places) * len(members.starts) <= BLOCK else times[-1:]
+    states = [begin(accuracy, places).block(ends) for accuracy in (setting, finer)]
     differences = np.max(np.abs(states[0] - states[1]), axis=(0, 2))
     own = np.max(np.abs(states[1]), axis=(0, 2))
-    usual = sizes_of_scene(dynamics_of(found.dynamics.scenario), ends, states[1][:, :, 0].T)
+    usual = sizes_of_scene(dynamics_of(members.dynamics.scenario), ends, states[1][:, :, 0].T)
     return Compared(chosen, differences, scaled(own, usual, differences))
 
 
@@ -309,8 +313,10 @@ class OneByOne:
     def steps(self) -> Any:
         """(accepted, rejected) of every member, so far."""
         work = [None if run is None else run.work for run in self._runs]
-        accepted = [0 if one is None else one.steps for one in work]
-        return np.array(accepted, float), np.array([0 if one is None else one.rejected for one in work], float)
+        accepted = [0 if run_work is None else run_work.steps for run_work in work]
+        return np.array(accepted, float), np.array(
+            [0 if run_work is None else run_work.rejected for run_work in work], float
+        )
 
     @property
     def missed(self) -> dict[int, Narrow]:
@@ -318,7 +324,7 @@ class OneByOne:
         found = {}
         for member, run in enumerate(self._runs):
             passed = met_by(run)
-            narrow = [] if passed is None else [one for one in passed.narrow if not one.followed]
+            narrow = [] if passed is None else [feature for feature in passed.narrow if not feature.followed]
             if narrow:
                 found[member] = narrow[0]
         return found

@@ -96,19 +96,19 @@ class Lanes(Function):
 
     def lanewise(self, function: str, x: Value) -> Value:
         """A function of the C library, lane after lane."""
-        found = "poison"
+        packed = "poison"
         for lane in range(self.lanes):
             value = self.value(DOUBLE, f"extractelement {self.kind} {x.text}, i32 {lane}")
             result = self.call(function, DOUBLE, value)
-            found = self.value(self.kind, f"insertelement {self.kind} {found}, double {result.text}, i32 {lane}").text
-        return Value(self, self.kind, found)
+            packed = self.value(self.kind, f"insertelement {self.kind} {packed}, double {result.text}, i32 {lane}").text
+        return Value(self, self.kind, packed)
 
     def splatted(self, x: Value) -> Value:
         """One number in every lane."""
-        found = "poison"
+        packed = "poison"
         for lane in range(self.lanes):
-            found = self.value(self.kind, f"insertelement {self.kind} {found}, double {x.text}, i32 {lane}").text
-        return Value(self, self.kind, found)
+            packed = self.value(self.kind, f"insertelement {self.kind} {packed}, double {x.text}, i32 {lane}").text
+        return Value(self, self.kind, packed)
 
 
 def wide_scalar(lanes: int) -> Scalar:
@@ -121,11 +121,11 @@ def library(code: Code, drivers: str, lanes: int) -> Library:
     scalar = SCALARS[FLOAT64]
     own = declarations([code], scalar, lanes)
     kind = vector(lanes, DOUBLE)
-    wanted = [f"declare {kind} @llvm.{name}.v{lanes}f64({kind})\n" for name in ("fabs", "sqrt")]
-    wanted += [f"declare double @{name}(double) #1\n" for name in ("exp", "log")]
+    declared = [f"declare {kind} @llvm.{name}.v{lanes}f64({kind})\n" for name in ("fabs", "sqrt")]
+    declared += [f"declare double @{name}(double) #1\n" for name in ("exp", "log")]
     called = "define internal void @rhs(ptr noalias %in, ptr noalias %out) #0 {\n"
     called += f"  call void @rhs.wide(ptr %in, ptr %out, i64 {lanes})\n  ret void\n}}\n"
-    more = "".join(line for line in wanted if line.split("(")[0] not in own)
+    more = "".join(line for line in declared if line.split("(")[0] not in own)
     text = "\n".join([own, more, wide_text("rhs", code, scalar, lanes), called, drivers, ATTRIBUTES])
     return Library(text, thorough=False)
 

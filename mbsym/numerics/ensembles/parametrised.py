@@ -106,14 +106,14 @@ class Parametrised(Dynamics):
         plain = self._given({})
         scenario = fitted(plain, self.in_states)
         center = closed(scenario, self.fixed).scenario
-        told = dict(scenario.parameters)
-        for one in (plain, scenario, shown(scenario, self.in_states)):
-            told |= dict(zip((*one.system.coordinates, *one.system.velocities), one.state, strict=True))
-        step = STEP * max(Fraction(1), abs(told[name]))
+        numbers = dict(scenario.parameters)
+        for version in (plain, scenario, shown(scenario, self.in_states)):
+            numbers |= dict(zip((*version.system.coordinates, *version.system.velocities), version.state, strict=True))
+        step = STEP * max(Fraction(1), abs(numbers[name]))
         p = len(scenario.positions)
 
         def state(offset: int) -> tuple[Fraction, ...]:
-            moved = fitted(self._given({name: number(told[name] + offset * step)}), self.in_states)
+            moved = fitted(self._given({name: number(numbers[name] + offset * step)}), self.in_states)
             here = tuple(x + a - b for x, a, b in zip(center.state, moved.state, scenario.state, strict=True))
             begun = replace(moved, positions=here[:p], velocities=here[p:])
             return shown(closed(begun, self.fixed).scenario, self.in_states).state
@@ -155,7 +155,7 @@ def parametrised(
 
 def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:
     """The parameters that follow from some others through relations, in an order in which they can be computed."""
-    moving, found = set(free), []
+    moving, ordered = set(free), []
     for _ in system.relations:
         for relation in system.relations:
             if relation.name not in moving and names(relation.value) & moving:
@@ -164,9 +164,9 @@ def dependent(system: System, free: Iterable[str]) -> tuple[str, ...]:
     waiting = [name for name in values if name not in set(free)]
     while waiting:
         ready = [name for name in waiting if not names(values[name]) & set(waiting)]
-        found += ready or waiting
-        waiting = [name for name in waiting if name not in found]
-    return tuple(found)
+        ordered += ready or waiting
+        waiting = [name for name in waiting if name not in ordered]
+    return tuple(ordered)
 
 
 def released(scenario: Scenario, free: Sequence[str]) -> Specialised:

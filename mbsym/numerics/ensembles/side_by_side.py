@@ -166,9 +166,9 @@ class SideBySide:
         angles, moving = (np.append(mask, np.zeros(still, bool)) for mask in (kinds.angles, kinds.velocities))
         constant = np.append(kinds.constant, np.ones(still, bool))
         behind = Variables(angles, moving, constant, kinds.masses)
-        found = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
+        extended = magnitudes(rates, behind, begin, np.vstack([starts, parameters]))
         size = self.made.size
-        return Magnitudes(found.sizes[:size], found.times, found.natural[:size], found.roundings[:size])
+        return Magnitudes(extended.sizes[:size], extended.times, extended.natural[:size], extended.roundings[:size])
 
     def _flat(self, grouped: Any) -> Any:
         """(rows, members and what fills the last group)."""
@@ -198,9 +198,9 @@ class SideBySide:
         out = np.full((len(times), self.made.size, self.groups * self.made.lanes), np.nan)
         (self._adaptive if self.made.tableau.errors else self._fixed)(times, out)
         self.time = float(times[-1])
-        found = out[:, :, : self.members]
-        self._bury(times, found)
-        return found
+        states = out[:, :, : self.members]
+        self._bury(times, states)
+        return states
 
     # --- drivers ---
 
@@ -275,14 +275,14 @@ class SideBySide:
 
     # --- ends ---
 
-    def _bury(self, times: Any, found: Any) -> None:
+    def _bury(self, times: Any, states: Any) -> None:
         """Members that are no numbers, or beyond all bounds, are ended there, and said to be."""
         with np.errstate(invalid="ignore"):
-            lost = ~np.all(np.abs(found) < self.bound, axis=1)
+            lost = ~np.all(np.abs(states) < self.bound, axis=1)
         ended = np.flatnonzero(lost[-1] | np.any(lost, axis=0))
         for member in ended:
             first = int(np.argmax(lost[:, member]))
-            found[first:, :, member] = np.nan
+            states[first:, :, member] = np.nan
             if int(member) not in self.fates:
                 self.fates[int(member)] = self._fate(int(member), times, first)
 
@@ -308,10 +308,10 @@ def _taken(waiting: Iterator[int], lock: threading.Lock) -> Iterator[int]:
     """The next ones, each taken once."""
     while True:
         with lock:
-            one = next(waiting, None)
-        if one is None:
+            index = next(waiting, None)
+        if index is None:
             return
-        yield one
+        yield index
 
 
 def _grouped(rows: Any, lanes: int) -> Any:

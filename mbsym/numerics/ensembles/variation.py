@@ -71,9 +71,9 @@ class Draw:
 Variation = Grid | Draw
 
 
-def variation(name: str, given: Sequence[float | str]) -> Variation:
+def variation(name: str, arguments: Sequence[float | str]) -> Variation:
     """(low, high, count), ("normal", mean, deviation) or ("uniform", low, high); else ValueError."""
-    first, *rest = given
+    first, *rest = arguments
     if len(rest) != 2:
         raise ValueError(f"{name}: (low, high, count), ('normal', mean, deviation) or ('uniform', low, high)")
     if isinstance(first, str):
@@ -169,8 +169,8 @@ def mixed(variations: Sequence[Variation]) -> Iterator[tuple[str, str, str]]:
     """That grids and draws stand side by side: (name, sentence, hint)."""
     grids = [one for one in variations if isinstance(one, Grid)]
     if grids and len(grids) < len(variations):
-        told = "a grid and draws at random do not go together"
-        yield grids[0].name, told, "draw all of them: name=uniform(low, high)"
+        sentence = "a grid and draws at random do not go together"
+        yield grids[0].name, sentence, "draw all of them: name=uniform(low, high)"
 
 
 def drawn(
@@ -248,8 +248,8 @@ def _starts(dynamics: Parametrised, varied: Sequence[str], values: Any, paramete
     system, own = dynamics.system, dict(zip(varied, values, strict=True))
     states = (*system.coordinates, *system.velocities)
     fixed = dict(zip(states, map(float, dynamics.scenario.state), strict=True))
-    given = [own.get(name, np.full(values.shape[1], fixed[name])) for name in states]
-    starts = arrays.kernel(dynamics.start)(np.vstack([parameters, np.array(given)]))
+    columns = [own.get(name, np.full(values.shape[1], fixed[name])) for name in states]
+    starts = arrays.kernel(dynamics.start)(np.vstack([parameters, np.array(columns)]))
     for place, name in enumerate(states):
         if name in own:
             starts[place] = own[name]
@@ -272,8 +272,8 @@ def _begun(dynamics: Parametrised, varied: Sequence[str], values: Any) -> Any:
         except (Failure, Incomplete) as reason:
             words, remedy = "no motion begins with [[values]]: [[why]]", "narrow the range"
             why = {"why": message_of(reason)}
-        told = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
-        raise Unvaried([(varied[0], Message(words, values=told, **why), remedy)])
+        printed = ", ".join(f"{name} = {value:.12g}" for name, value in zip(varied, column, strict=True))
+        raise Unvaried([(varied[0], Message(words, values=printed, **why), remedy)])
     return np.array(starts).T
 
 
@@ -282,9 +282,9 @@ def _signs(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str, str, 
     if not dynamics.free:
         return
     moving = (*dynamics.free, *dependent(dynamics.system, dynamics.free))
-    found = arrays.kernel(dynamics.parameters)(parameters)
+    rows = arrays.kernel(dynamics.parameters)(parameters)
     signs = {parameter.name: parameter.sign for parameter in dynamics.system.parameters}
-    for name, row in zip(moving, found, strict=True):
+    for name, row in zip(moving, rows, strict=True):
         ends = [float(np.min(row)), float(np.max(row))]
         if not np.all(np.isfinite(row)):
             count = int(np.sum(~np.isfinite(row)))
@@ -311,7 +311,7 @@ def _assumptions(dynamics: Parametrised, parameters: Any) -> Iterator[tuple[str,
         values = arrays.kernel(Code(fresh, dynamics.free, (gap,)))(parameters)[0]
         broken = np.flatnonzero(~np.array([holds(value, assumption.relation) for value in values]))
         if len(broken):
-            told = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
+            printed = f"{spelled(assumption.left)} {assumption.relation} {spelled(assumption.right)}"
             words = "[[count]] of [[all]] members break the assumption [[assumption]]"
-            count = Message(words, count=len(broken), all=len(values), assumption=told)
+            count = Message(words, count=len(broken), all=len(values), assumption=printed)
             yield next(name for name in dynamics.free), count, "narrow the range"

@@ -50,9 +50,9 @@ class Passage:
 
 def nodes(start: float, end: float) -> Any:
     """Chebyshev's points from ``start`` to ``end``, both included."""
-    found = 0.5 * (start + end) + 0.5 * (end - start) * _PLACES
-    found[0], found[-1] = start, end
-    return found
+    points = 0.5 * (start + end) + 0.5 * (end - start) * _PLACES
+    points[0], points[-1] = start, end
+    return points
 
 
 def series(values: Any) -> Any:
@@ -116,10 +116,10 @@ def _turning_points(found: Any) -> Any:
     """The zeros of g' within the interval, in order."""
     slope = np.polynomial.chebyshev.chebder(found)
     size = np.max(np.abs(slope), initial=0.0)
-    kept = np.flatnonzero(np.abs(slope) > 1e-15 * size)
-    if not size or kept[-1] < 1 or np.abs(slope[0]) > np.sum(np.abs(slope[1:])):
+    significant = np.flatnonzero(np.abs(slope) > 1e-15 * size)
+    if not size or significant[-1] < 1 or np.abs(slope[0]) > np.sum(np.abs(slope[1:])):
         return np.empty(0)
-    roots = np.polynomial.chebyshev.chebroots(slope[: kept[-1] + 1])
+    roots = np.polynomial.chebyshev.chebroots(slope[: significant[-1] + 1])
     return np.sort(roots.real[(np.abs(roots.imag) < IMAGINARY) & (np.abs(roots.real) < 1)])
 
 

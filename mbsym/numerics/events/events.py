@@ -152,8 +152,8 @@ class Watcher:
         if not waiting or self.ended is not None:
             return self.ended is not None
         values = self._values(sampled(waiting))
-        found = series(values.reshape(len(self.events), len(waiting), NODES))
-        free, signs = free_of_zeros(found) & ~self._faint(found), np.sign(found[..., 0])
+        coefficients = series(values.reshape(len(self.events), len(waiting), NODES))
+        free, signs = free_of_zeros(coefficients) & ~self._faint(coefficients), np.sign(coefficients[..., 0])
         met: list[Occurrence] = []
         for event, course in enumerate(self._courses):
             same = np.ones(len(waiting), bool)
@@ -162,16 +162,16 @@ class Watcher:
             for place in np.flatnonzero(~(free[event] & same)):
                 piece = waiting[place]
                 blur = self._blur(event, piece)
-                met += self._within(event, piece, piece.start, piece.end, found[event, place], blur, DEPTH)
+                met += self._within(event, piece, piece.start, piece.end, coefficients[event, place], blur, DEPTH)
         self._keep(met)
         return self.ended is not None
 
-    def _faint(self, found: Any) -> Any:
+    def _faint(self, coefficients: Any) -> Any:
         """Pieces (events, pieces) on which g may come within the tolerance of zero, in parts of its largest value."""
         with np.errstate(invalid="ignore"):
-            sizes = np.sum(np.abs(found), axis=-1)
+            sizes = np.sum(np.abs(coefficients), axis=-1)
             self._sizes = np.fmax(self._sizes, np.nanmax(sizes, axis=1, initial=0.0))
-            least = 2 * np.abs(found[..., 0]) - sizes
+            least = 2 * np.abs(coefficients[..., 0]) - sizes
             return least <= self._tolerance * self._sizes[:, None]
 
     def finish(self, end: float) -> Occurrences:
@@ -182,8 +182,12 @@ class Watcher:
         if self.ended is not None and self.ended.time > latest:
             self.ended = None  # a step may lead beyond the end
         occurrences = sorted(
-            (replace(one, time=min(one.time, end)) for one in self._found if one.time <= latest),
-            key=lambda one: (one.time, one.event),
+            (
+                replace(candidate, time=min(candidate.time, end))
+                for candidate in self._found
+                if candidate.time <= latest
+            ),
+            key=lambda candidate: (candidate.time, candidate.event),
         )
         undecided = () if self.ended is not None else tuple(self._undecided())
         return Occurrences(
@@ -277,10 +281,10 @@ class Watcher:
 
     def _keep(self, met: list[Occurrence]) -> None:
         """Those that count, up to the first that stops the run."""
-        for occurrence in sorted(met, key=lambda found: (found.time, found.event)):
+        for occurrence in sorted(met, key=lambda candidate: (candidate.time, candidate.event)):
             event = self.events[occurrence.event]
-            wanted = {Direction.BOTH: (-1, 0, 1), Direction.RISING: (1,), Direction.FALLING: (-1,)}[event.direction]
-            if occurrence.turn not in wanted or (self.ended is not None and occurrence.time > self.ended.time):
+            turns = {Direction.BOTH: (-1, 0, 1), Direction.RISING: (1,), Direction.FALLING: (-1,)}[event.direction]
+            if occurrence.turn not in turns or (self.ended is not None and occurrence.time > self.ended.time):
                 continue
             begun = occurrence.time > self._start or event.side
             if event.action is Action.STOP and occurrence.turn and begun and self.ended is None:

@@ -74,14 +74,14 @@ def features(code: Code) -> Features:
 
 def _moving(program: Program, code: Code) -> dict[int, set[str]]:
     """The inputs that each live instruction depends on."""
-    found: dict[int, set[str]] = {}
+    dependencies: dict[int, set[str]] = {}
     for number in program.live(code.outputs):
         instruction: Instruction = program.instructions[number]
         if instruction.operation == "input":
-            found[number] = {str(instruction.payload)}
+            dependencies[number] = {str(instruction.payload)}
         else:
-            found[number] = set().union(*(found[operand] for operand in instruction.operands))
-    return found
+            dependencies[number] = set().union(*(dependencies[operand] for operand in instruction.operands))
+    return dependencies
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def held(code: Code, standing_for: Standing) -> tuple[Node, ...]:
 
     # What is held already stands in cells, and a derivative may have them as factors.
     live = map(program.instructions.__getitem__, program.live(code.outputs))
-    cells = [str(one.payload) for one in live if one.operation == "input"]
+    cells = [str(instruction.payload) for instruction in live if instruction.operation == "input"]
     inputs = {name: program.input(name) for name in (*code.inputs, *cells)}
     return tuple(program.evaluate(code.outputs, inputs, program, standing))
 

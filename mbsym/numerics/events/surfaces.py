@@ -94,8 +94,8 @@ def node(dynamics: Dynamics, expression: Expression) -> Node:
     known = {name: program.input(name) for name in (names(expression) & own) | {"pi"}}
     for name in names(expression) - own:
         known[name] = _quantity(dynamics, name)
-    found: Node = Lowering(program, known)(expression)
-    return found
+    lowered: Node = Lowering(program, known)(expression)
+    return lowered
 
 
 def _quantity(dynamics: Dynamics, name: str) -> Node:
@@ -128,16 +128,18 @@ def slopes_code(dynamics: Dynamics, event: Event) -> Code:
 
 def source_of(dynamics: Dynamics, place: int) -> Expression | None:
     """The call, quotient or root of a load that holds the u at this place of ``Features.narrow``; None if unknown."""
-    wanted = dynamics.features.narrow.outputs[place].number
+    target = dynamics.features.narrow.outputs[place].number
     for load in dynamics.system.loads:
         for expression in expressions(load):
-            for one in walk(expression):
-                inside = one.argument if isinstance(one, Call) else one.right if isinstance(one, Operation) else None
-                if inside is None or (isinstance(one, Operation) and one.operator != "/"):
+            for part in walk(expression):
+                inside = (
+                    part.argument if isinstance(part, Call) else part.right if isinstance(part, Operation) else None
+                )
+                if inside is None or (isinstance(part, Operation) and part.operator != "/"):
                     continue
                 try:
-                    if node(dynamics, inside).number == wanted:
-                        return one
+                    if node(dynamics, inside).number == target:
+                        return part
                 except (Failure, KeyError):
                     continue
     return None

@@ -83,8 +83,8 @@ def rates(dynamics: Dynamics, state: Any = None, t: float = 0.0) -> tuple[float,
         matrix = (slopes[:, :n] - slopes[:, n:]) / (2 * step)
     if not np.all(np.isfinite(matrix)):
         return 0.0, 0.0
-    found = np.linalg.eigvals(matrix)
-    return max(0.0, float(np.max(-found.real))), float(np.max(np.abs(found.imag)))
+    eigenvalues = np.linalg.eigvals(matrix)
+    return max(0.0, float(np.max(-eigenvalues.real))), float(np.max(np.abs(eigenvalues.imag)))
 
 
 def _on_one_side(dynamics: Dynamics, t: float, x: Any) -> Dynamics:
@@ -130,10 +130,10 @@ class SwitchingRun(Stepping):
         self._since = 0, float(at)  # steps and time at the last look at the eigenvalues
         self._stiff = method.stiff
         self.work = Work()
-        one, size, stages = dynamics.right_hand_side.operations, dynamics.dimension, len(RODAS5P.stages)
+        operations, size, stages = dynamics.right_hand_side.operations, dynamics.dimension, len(RODAS5P.stages)
         # A Jacobian is about as many right-hand sides as the state has numbers.
-        implicit = OPERATION * ((stages + size) * one + size**3 / 3 + stages * size**2) + STEP
-        self._dearer = implicit / (12 * one * OPERATION + STEP)
+        implicit = OPERATION * ((stages + size) * operations + size**3 / 3 + stages * size**2) + STEP
+        self._dearer = implicit / (12 * operations * OPERATION + STEP)
         self._patience = 1
         self._turned(self._stiff, at, state)
         self.time, self.state = float(at), np.array(self.end)
@@ -143,8 +143,8 @@ class SwitchingRun(Stepping):
     @property
     def reached(self) -> float:
         """The end of the last step."""
-        found: float = self._active.reached
-        return found
+        end: float = self._active.reached
+        return end
 
     @property
     def end(self) -> Any:
@@ -182,28 +182,28 @@ class SwitchingRun(Stepping):
     def fill(self, times: Any) -> Any:
         """Rows in machine code while the explicit method is at work."""
         at = np.ascontiguousarray(times, dtype=float)
-        found, done = np.empty((len(self.state), len(at))), 0
+        states, done = np.empty((len(self.state), len(at))), 0
         try:
             while done < len(at):
                 if at[done] > self.reached:
                     self._considered()
                 run = self._active
                 if isinstance(run, CompiledRun):
-                    done = self._counted(partial(run.stretch, at, found, done, WINDOW))
+                    done = self._counted(partial(run.stretch, at, states, done, WINDOW))
                     run.settle(done == len(at))
                     continue
                 if at[done] > self.reached:
                     self._counted(run.one)
                 last = done + int(np.searchsorted(at[done:], self.reached, side="right"))
                 if last > done:
-                    found[:, done:last] = self.states(at[done:last])
+                    states[:, done:last] = self.states(at[done:last])
                 done = last
         except Breakdown as trouble:
-            trouble.filled = found[:, :done]
+            trouble.filled = states[:, :done]
             raise
         if done:
-            self.time, self.state = float(at[-1]), found[:, -1].copy()
-        return found
+            self.time, self.state = float(at[-1]), states[:, -1].copy()
+        return states
 
     # --- which method ---
 

@@ -131,9 +131,9 @@ def _positive(scenario: Scenario, singular_set: SingularSet, units: SceneUnits) 
     return bool(energies[0] > NO_MASS * energies[-1])
 
 
-def approaches(scenario: Scenario, found: SingularPositions, units: SceneUnits) -> Iterator[Ladder]:
+def approaches(scenario: Scenario, positions: SingularPositions, units: SceneUnits) -> Iterator[Ladder]:
     """One ladder for each of the first positions, along the constraints; none where no way out of it is found."""
-    for position in found.found[:MOST_APPROACHED]:
+    for position in positions.found[:MOST_APPROACHED]:
         probes = _approach(scenario, position, units)
         if probes:
             yield Ladder(SINGULAR, f"distance from {position.text}", tuple(probes))
@@ -199,7 +199,7 @@ class Row:
     subject: str
     size: float
     quantity: str
-    found: Digits
+    digits: Digits
 
 
 @dataclass(frozen=True)
@@ -219,7 +219,7 @@ class Compensated:
     kind: str
     subject: str
     size: float
-    found: Compensation
+    compensation: Compensation
 
 
 @dataclass(frozen=True)
@@ -324,10 +324,10 @@ class _Rungs:
     def __init__(
         self, given: Scenario, usual: Arithmetic, truth: Truth, linear: LinearModel | None, limit: float
     ) -> None:
-        self.given, self.usual, self.truth, self.linear, self.limit = given, usual, truth, linear, limit
-        self.spent = _operations(usual.found) * (COMPILED if usual.compiled else STEPWISE)
-        self.found = usual.found
-        self.lean = tuple(q for q in self.found if q.name != "Jacobian")
+        self.scenario, self.usual, self.truth, self.linear, self.limit = given, usual, truth, linear, limit
+        self.spent = _operations(usual.quantities) * (COMPILED if usual.compiled else STEPWISE)
+        self.quantities = usual.quantities
+        self.lean = tuple(q for q in self.quantities if q.name != "Jacobian")
         self.rows: list[Row] = []
         self.verdicts: list[VerdictRow] = []
         self.compensated = [Compensated("", "", 1.0, rate) for rate in _rates(usual)]
@@ -348,7 +348,7 @@ class _Rungs:
         return True
 
     def _state(self, ladder: Ladder, probe: Probe) -> None:
-        usual = probe.scenario is self.given
+        usual = probe.scenario is self.scenario
         try:
             arithmetic = self.usual if usual else Arithmetic(probe.scenario, self.lean, compiled=False)
         except Failure:  # a division by zero in the parameters alone: nothing to evaluate
@@ -357,7 +357,7 @@ class _Rungs:
             place = (ladder.kind, ladder.subject, probe.size)
             self.compensated += [Compensated(*place, rate) for rate in _rates(arithmetic)]
             self.spent += STEPWISE * _operations(self.lean)
-        for q in self.found if usual else self.lean:
+        for q in self.quantities if usual else self.lean:
             self.spent += QUANTITY + IN_BALLS * q.code.operations * self.truth.evaluations
             digits = measured(self.truth, arithmetic, q.name, probe.scenario, probe.state)
             self.rows.append(Row(ladder.kind, ladder.subject, probe.size, q.name, digits))
@@ -408,10 +408,10 @@ def _all(
 
 
 def _quantities(scenario: Scenario, ring: Ring, left_out: list[str]) -> tuple[Quantity, ...]:
-    found = quantities(scenario.system, ring, solved=equations(scenario, ring))
-    kept_quantities = tuple(q for q in found if q.code.operations <= MOST_OPERATIONS)
+    available = quantities(scenario.system, ring, solved=equations(scenario, ring))
+    kept_quantities = tuple(q for q in available if q.code.operations <= MOST_OPERATIONS)
     left_out += [
-        f"{q.name}: {q.code.operations} operations are too many here" for q in found if q not in kept_quantities
+        f"{q.name}: {q.code.operations} operations are too many here" for q in available if q not in kept_quantities
     ]
     return kept_quantities
 

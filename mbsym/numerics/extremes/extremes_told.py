@@ -23,33 +23,33 @@ GOOD = 10.0
 TOLD = 0.5
 
 
-def sentences(found: Extremes, file: str = "FILE") -> Iterator[str]:
+def sentences(extremes: Extremes, file: str = "FILE") -> Iterator[str]:
     """Where the model breaks down, in plain words; each follows from the rows.
 
     ``file`` stands in the commands that are advised.
     """
-    if found.falling is not None and found.falling.joined - found.falling.apart >= TOLD:
+    if extremes.falling is not None and extremes.falling.joined - extremes.falling.apart >= TOLD:
         yield Message(
             "Gravity and the acceleration of [[frames]] are joined before numbers are put in: with the bodies at rest "
             "float64 keeps [[joined]] digits of the forcing, where term by term it would keep [[apart]].",
-            frames=", ".join(found.falling.frames),
-            joined=f"{found.falling.joined:.1f}",
-            apart=f"{found.falling.apart:.1f}",
+            frames=", ".join(extremes.falling.frames),
+            joined=f"{extremes.falling.joined:.1f}",
+            apart=f"{extremes.falling.apart:.1f}",
         )
-    if found.positions is not None:
-        yield from lost_rank(found.positions)
-    if found.singularities is not None:
-        yield from _where(found.singularities, file, None if found.positions is None else found.positive)
-    yield from _near(found)
-    yield from _pairs(found)
-    yield from _range(found, RATES, Message("Rates"))
-    yield from _range(found, EQUILIBRIUM, Message("States at distances from the unperturbed motion"))
-    yield from _ratios(found, file)
-    if found.eigenvalues:
+    if extremes.positions is not None:
+        yield from lost_rank(extremes.positions)
+    if extremes.singularities is not None:
+        yield from _where(extremes.singularities, file, None if extremes.positions is None else extremes.positive)
+    yield from _near(extremes)
+    yield from _pairs(extremes)
+    yield from _range(extremes, RATES, Message("Rates"))
+    yield from _range(extremes, EQUILIBRIUM, Message("States at distances from the unperturbed motion"))
+    yield from _ratios(extremes, file)
+    if extremes.eigenvalues:
         text = "Eigenvalues of the first approximation at the given values, in proved enclosures: [[roots]]."
-        yield Message(text, roots=_roots(found))
-    yield from _verdicts(found)
-    yield from _formulas(found)
+        yield Message(text, roots=_roots(extremes))
+    yield from _verdicts(extremes)
+    yield from _formulas(extremes)
 
 
 def _onward(sizes: Iterable[float], bad: Iterable[float]) -> Message:
@@ -65,30 +65,30 @@ def _short(size: float) -> str:
     return f"{size:.0e}".replace("e-0", "e-").replace("e+0", "e").replace("e+", "e")
 
 
-def _pairs(found: Extremes) -> Iterator[str]:
+def _pairs(extremes: Extremes) -> Iterator[str]:
     """Where kernels carry operations in pairs: what that keeps, and what it costs."""
     said: dict[str, list[Compensated]] = {}
-    for compensated in found.compensated:
+    for compensated in extremes.compensated:
         said.setdefault(compensated.subject, []).append(compensated)
     for subject, places in said.items():
         where = Message("At the given values")
         if subject:
             sizes = ", ".join(f"{place.size:.0e}" for place in places)
             where = Message("[[name]] times [[sizes]]", name=subject, sizes=sizes)
-        worst = min(places, key=lambda one: one.found.after)
+        worst = min(places, key=lambda entry: entry.compensation.after)
         yield Message(
             "[[where]]: float64 kernels carry [[operations]] operations of the accelerations in pairs of "
             "numbers and keep "
             "[[after]] digits there, where plain ones keep [[before]]; they take up to [[cost]] times as "
             "many operations.",
             where=where,
-            operations=worst.found.sensitive,
-            after=f"{worst.found.after:.1f}",
-            before=f"{worst.found.before:.1f}",
-            cost=f"{max(place.found.cost for place in places):.1f}",
+            operations=worst.compensation.sensitive,
+            after=f"{worst.compensation.after:.1f}",
+            before=f"{worst.compensation.before:.1f}",
+            cost=f"{max(place.compensation.cost for place in places):.1f}",
         )
     if said:
-        least = min(one.found.before for one in found.compensated)
+        least = min(entry.compensation.before for entry in extremes.compensated)
         yield Message(
             "Ensembles (mbsym simulate --vary) are computed with plain kernels: of the accelerations "
             "they keep [[digits]] "
@@ -97,34 +97,34 @@ def _pairs(found: Extremes) -> Iterator[str]:
         )
 
 
-def lost_rank(found: SingularPositions) -> Iterator[str]:
+def lost_rank(positions: SingularPositions) -> Iterator[str]:
     """Where constraints lose their rank, how that is known, and that a search is no proof."""
     yield Message(
         "States are moved onto the constraints; mass matrix and forcing, and where that matrix is singular, "
         "are those of the "
         "tree without them."
     )
-    for one in found.found:
-        how = Message("proved by rational arithmetic") if one.proved else Message("to the roundings of float64")
+    for position in positions.found:
+        how = Message("proved by rational arithmetic") if position.proved else Message("to the roundings of float64")
         text = (
             "The constraints lose their rank where [[where]]: [[rank]] of [[usual]] rows are independent "
             "there ([[how]])"
         )
-        if found.moving:
+        if positions.moving:
             text = (
                 "The constraints lose their rank at t = 0 where [[where]]: [[rank]] of [[usual]] rows "
                 "are independent there "
                 "([[how]])"
             )
-        message = Message(text, where=one.text, rank=one.rank, usual=one.usual, how=how)
+        message = Message(text, where=position.text, rank=position.rank, usual=position.usual, how=how)
         yield (
             Message("[[told]]; others are next to it.", told=message)
-            if one.family
+            if position.family
             else Message("[[told]].", told=message)
         )
-    if found.found:
+    if positions.found:
         text = "These were found from [[starts]] starts, which is no proof that there are no others."
-        if found.more:
+        if positions.more:
             text = (
                 "These were found from [[starts]] starts, more than are listed, which is no proof that "
                 "there are no others."
@@ -134,13 +134,13 @@ def lost_rank(found: SingularPositions) -> Iterator[str]:
             "No position in which constraints lose their rank was found from [[starts]] starts, which is no proof that "
             "there are none."
         )
-        if found.moving:
+        if positions.moving:
             text = (
                 "No position in which constraints lose their rank at t = 0 was found from [[starts]] "
                 "starts, which is no "
                 "proof that there are none."
             )
-    yield Message(text, starts=found.starts)
+    yield Message(text, starts=positions.starts)
 
 
 #: With constraints, what their directions make of a singular matrix of the tree.
@@ -151,33 +151,33 @@ _ALLOWED = {
 }
 
 
-def _where(found: Singularities, file: str, positive: Sequence[bool | None] | None = None) -> Iterator[str]:
+def _where(singularities: Singularities, file: str, positive: Sequence[bool | None] | None = None) -> Iterator[str]:
     """Where M is singular, which of the two fails there, and whether that is all; with constraints, what they allow."""
-    if not found.how:
+    if not singularities.how:
         return
-    for number, singular_set in enumerate(found.sets):
+    for number, singular_set in enumerate(singularities.sets):
         why = _why(singular_set, file) if positive is None else _ALLOWED[positive[number]]
         text = "The mass matrix is singular where [[where]]: [[why]]."
         if singular_set.proved:
             text = "The mass matrix is singular where [[where]], whatever else is: [[why]]."
         yield Message(text, where=_set(singular_set), why=why)
-    for factor in found.undecided:
+    for factor in singularities.undecided:
         yield Message(
             "It is undecided whether the mass matrix is singular where [[factor]] vanishes, and whether that does.",
             factor=factor,
         )
-    within = ", ".join(f"|{name}| <= {float(bound):.3g}" for name, bound in found.ranges.items())
-    if found.complete:
+    within = ", ".join(f"|{name}| <= {float(bound):.3g}" for name, bound in singularities.ranges.items())
+    if singularities.complete:
         text = "The mass matrix is nowhere singular[[within]]: proved by [[how]]."
-        if found.sets:
+        if singularities.sets:
             text = "The mass matrix is nowhere else singular[[within]]: proved by [[how]]."
         bounds = Message(" (for [[ranges]])", ranges=within) if within else ""
-        yield Message(text, within=bounds, how=worded(found.how))
-    elif not found.undecided:
+        yield Message(text, within=bounds, how=worded(singularities.how))
+    elif not singularities.undecided:
         text = "No singular configuration was found, which is no proof; searched were [[how]]."
-        if found.sets:
+        if singularities.sets:
             text = "No other singular configuration was found, which is no proof; searched were [[how]]."
-        yield Message(text, how=worded(found.how))
+        yield Message(text, how=worded(singularities.how))
 
 
 def _alternatives(parts: Sequence[str]) -> str:
@@ -199,8 +199,8 @@ def _set(singular_set: SingularSet) -> str:
         points.append(enumerated(values))
     if singular_set.finite:
         more = len(singular_set.places) - LISTED
-        told = _alternatives(points)
-        return Message("[[places]] or at [[more]] more places", places=told, more=more) if more > 0 else told
+        listed = _alternatives(points)
+        return Message("[[places]] or at [[more]] more places", places=listed, more=more) if more > 0 else listed
     return Message("[[equation]] = 0 (for instance [[point]])", equation=singular_set.equation, point=points[0])
 
 
@@ -227,35 +227,35 @@ def _why(singular_set: SingularSet, file: str) -> Message:
     return why if singular_set.proved else Message(text, why=why)
 
 
-def _near(found: Extremes) -> Iterator[str]:
+def _near(extremes: Extremes) -> Iterator[str]:
     """What is lost near singular configurations; ladders of which the same is to be said are named together."""
     said: dict[tuple[Message, ...], list[str]] = {}
-    for kind, subject in found.ladders:
+    for kind, subject in extremes.ladders:
         if kind == SINGULAR:
-            said.setdefault(tuple(_lost(found, subject)), []).append(subject)
+            said.setdefault(tuple(_lost(extremes, subject)), []).append(subject)
     for facts, subjects in said.items():
         for fact in facts:
             yield Message("[[subjects]]: [[fact]].", subjects=", ".join(subjects), fact=fact)
 
 
-def _lost(found: Extremes, subject: str) -> Iterator[Message]:
+def _lost(extremes: Extremes, subject: str) -> Iterator[Message]:
     parts: list[Message] = []
     for quantity in ("accelerations", "Jacobian"):
-        rows = [r for r in found.of(SINGULAR, subject, quantity) if r.found.bits]
+        rows = [r for r in extremes.of(SINGULAR, subject, quantity) if r.digits.bits]
         for scalar in FULL:
-            lost = [r.size for r in rows if r.found.digits[scalar] < FEW]
+            lost = [r.size for r in rows if r.digits.digits[scalar] < FEW]
             if lost:
                 where = _onward((r.size for r in rows), lost)
                 text = "[[scalar]] keeps fewer than [[few]] digits of the accelerations [[where]]"
                 if quantity == "Jacobian":
                     text = "[[scalar]] keeps fewer than [[few]] digits of the Jacobian [[where]]"
                 parts.append(Message(text, scalar=scalar, few=f"{FEW:.0f}", where=where))
-    known = [r for r in found.of(SINGULAR, subject, "accelerations") if r.found.bits]
-    avoidable = [r for r in known if r.found.verdict == "formula"]
+    known = [r for r in extremes.of(SINGULAR, subject, "accelerations") if r.digits.bits]
+    avoidable = [r for r in known if r.digits.verdict == "formula"]
     if parts and not avoidable:
         parts.append(Message("the question makes that unavoidable in these coordinates, whatever the formula"))
     if not parts and known:
-        least = min(r.found.digits[FLOAT64] for r in known)
+        least = min(r.digits.digits[FLOAT64] for r in known)
         nearest = min(r.size for r in known)
         text = "float64 keeps at least [[least]] digits of the accelerations down to [[nearest]]"
         parts = [Message(text, least=f"{least:.0f}", nearest=f"{nearest:.0e}")]
@@ -268,18 +268,18 @@ def _lost(found: Extremes, subject: str) -> Iterator[Message]:
             "[[where]] more digits of the accelerations are lost than the question makes unavoidable (condition "
             "[[condition]], but [[digits]] digits at the state as rounded, at [[size]])",
             where=where,
-            condition=f"{r.found.condition:.0e}",
-            digits=f"{r.found.formula:.1f}",
+            condition=f"{r.digits.condition:.0e}",
+            digits=f"{r.digits.formula:.1f}",
             size=f"{r.size:.0e}",
         )
 
 
-def _range(found: Extremes, kind: str, title: Message) -> Iterator[str]:
-    rows = [r for r in found.rows if r.kind == kind and r.found.bits]
+def _range(extremes: Extremes, kind: str, title: Message) -> Iterator[str]:
+    rows = [r for r in extremes.rows if r.kind == kind and r.digits.bits]
     if not rows:
         return
-    least = min(rows, key=lambda r: r.found.digits[FLOAT64])
-    single = min(rows, key=lambda r: r.found.digits[FLOAT32])
+    least = min(rows, key=lambda r: r.digits.digits[FLOAT64])
+    single = min(rows, key=lambda r: r.digits.digits[FLOAT32])
     sizes = [r.size for r in rows]
     yield Message(
         "[[title]] from [[low]] to [[high]]: float64 keeps at least [[digits]] digits (worst: "
@@ -288,27 +288,27 @@ def _range(found: Extremes, kind: str, title: Message) -> Iterator[str]:
         title=title,
         low=_short(min(sizes)),
         high=_short(max(sizes)),
-        digits=f"{least.found.digits[FLOAT64]:.1f}",
+        digits=f"{least.digits.digits[FLOAT64]:.1f}",
         quantity=Message(least.quantity),
         size=f"{least.size:.0e}",
-        single=f"{single.found.digits[FLOAT32]:.1f}",
+        single=f"{single.digits.digits[FLOAT32]:.1f}",
         quantity32=Message(single.quantity),
         size32=f"{single.size:.0e}",
     )
 
 
-def _ratios(found: Extremes, file: str) -> Iterator[str]:
-    rows = [r for r in found.rows if r.kind == RATIO and r.found.bits]
+def _ratios(extremes: Extremes, file: str) -> Iterator[str]:
+    rows = [r for r in extremes.rows if r.kind == RATIO and r.digits.bits]
     poor: dict[str, list[Row]] = {}
     fine: dict[tuple[float, ...], dict[str, float]] = {}
     for row in rows:
-        if row.found.digits[FLOAT64] < GOOD:
+        if row.digits.digits[FLOAT64] < GOOD:
             poor.setdefault(row.subject, []).append(row)
     for subject in dict.fromkeys(row.subject for row in rows):
         own = [row for row in rows if row.subject == subject]
         if subject not in poor:
             factors = tuple(sorted({row.size for row in own}))
-            fine.setdefault(factors, {})[subject] = min(row.found.digits[FLOAT64] for row in own)
+            fine.setdefault(factors, {})[subject] = min(row.digits.digits[FLOAT64] for row in own)
     for factors, subjects in fine.items():
         listed = ", ".join(f"{factor:.0e}" for factor in factors)
         yield Message(
@@ -318,18 +318,18 @@ def _ratios(found: Extremes, file: str) -> Iterator[str]:
             digits=f"{min(subjects.values()):.1f}",
         )
     for subject, lost in poor.items():
-        worst = min(lost, key=lambda r: r.found.digits[FLOAT64])
+        worst = min(lost, key=lambda r: r.digits.digits[FLOAT64])
         yield Message(
             "[[name]] times [[factor]]: [[digits]] digits of the [[quantity]] are left in float64 (below "
             "[[good]] digits: "
             "[[quantities]]), [[why]].",
             name=subject,
             factor=f"{worst.size:.0e}",
-            digits=f"{worst.found.digits[FLOAT64]:.1f}",
+            digits=f"{worst.digits.digits[FLOAT64]:.1f}",
             quantity=_called(worst),
             good=f"{GOOD:.0f}",
             quantities=joined(map(Message, dict.fromkeys(r.quantity for r in lost)), ", "),
-            why=_blame(found, worst, file),
+            why=_blame(extremes, worst, file),
         )
 
 
@@ -339,14 +339,14 @@ def _called(row: Row) -> Message:
     return Message("matrix [[name]]", name=row.quantity) if matrix else Message(row.quantity)
 
 
-def _blame(found: Extremes, row: Row, file: str) -> Message:
+def _blame(extremes: Extremes, row: Row, file: str) -> Message:
     """What loses the digits, and what to do about it."""
-    condition = f"{row.found.condition:.0e}"
-    if row.found.verdict != "formula":
+    condition = f"{row.digits.condition:.0e}"
+    if row.digits.verdict != "formula":
         text = "the question itself loses them (condition [[condition]]), so that no formula keeps them"
         return Message(text, condition=condition)
     message = Message("lost by the formula (condition [[condition]])", condition=condition)
-    value = found.values.get(row.subject)
+    value = extremes.values.get(row.subject)
     if value is None:
         return message
     changed = f"--set {row.subject}={value * Fraction(f'{row.size:e}')}"
@@ -359,10 +359,10 @@ def _blame(found: Extremes, row: Row, file: str) -> Message:
     return message
 
 
-def _roots(found: Extremes) -> Message:
+def _roots(extremes: Extremes) -> Message:
     """``[-0.25 +/- 3e-13] + [3.13 +/- 2e-13]*i``; of a conjugate pair the upper one, with +-."""
     shown = []
-    for root in found.eigenvalues:
+    for root in extremes.eigenvalues:
         if bool(root.imag < 0):
             continue
         real = "" if root.real.is_zero() else root.real.str(13)
@@ -375,13 +375,13 @@ def _roots(found: Extremes) -> Message:
     return _cut(joined(listed[:LISTED], "; "), len(listed) - LISTED)
 
 
-def _cut(told: Message, more: int) -> Message:
+def _cut(listed: Message, more: int) -> Message:
     """With the number of those that are not listed."""
-    return Message("[[listed]]; and [[more]] more", listed=told, more=more) if more > 0 else told
+    return Message("[[listed]]; and [[more]] more", listed=listed, more=more) if more > 0 else listed
 
 
-def _verdicts(found: Extremes) -> Iterator[str]:
-    borders = [row for row in found.verdicts if row.kind == BORDER]
+def _verdicts(extremes: Extremes) -> Iterator[str]:
+    borders = [row for row in extremes.verdicts if row.kind == BORDER]
     subjects = dict.fromkeys(row.subject.rsplit(" from ", 1)[0] for row in borders)
     for subject in subjects:
         own = [row for row in borders if row.subject.startswith(subject + " from ")]
@@ -399,7 +399,7 @@ def _verdicts(found: Extremes) -> Iterator[str]:
                 text = "[[scalar]] eigenvalues say otherwise [[where]]"
                 messages.append(Message(text, scalar=scalar, where=_onward((row.size for row in own), wrong)))
         yield Message("[[told]].", told=joined(messages, "; "))
-    others = [row for row in found.verdicts if row.kind == RATIO]
+    others = [row for row in extremes.verdicts if row.kind == RATIO]
     misjudged = [row for row in others if row.judged.wrong(FLOAT64)]
     if misjudged:
         cases = (Message("[[name]] times [[sizes]]", name=r.subject, sizes=f"{r.size:.0e}") for r in misjudged[:LISTED])
@@ -421,15 +421,17 @@ def _side(rows: Sequence[VerdictRow]) -> str:
     return enumerated(parts)
 
 
-def _formulas(found: Extremes) -> Iterator[str]:
+def _formulas(extremes: Extremes) -> Iterator[str]:
     rows = [
-        r for r in found.rows if r.found.verdict == "formula" and r.kind != SINGULAR and isfinite(r.found.condition)
+        r
+        for r in extremes.rows
+        if r.digits.verdict == "formula" and r.kind != SINGULAR and isfinite(r.digits.condition)
     ]
     if rows:
         listed = dict.fromkeys(joined((Message(r.quantity), f"({r.subject})")) for r in rows)
         text = "More is lost than the condition explains, so another formula could keep it: [[quantities]]."
         yield Message(text, quantities=joined(listed, ", "))
-    unbounded = (r for r in found.rows if not r.found.bits)
+    unbounded = (r for r in extremes.rows if not r.digits.bits)
     open_ = dict.fromkeys(joined((Message(r.quantity), f"({r.subject} {r.size:.0e})")) for r in unbounded)
     if open_:
         quantities = _cut(joined(list(open_)[:LISTED], ", "), len(open_) - LISTED)

@@ -56,7 +56,7 @@ class Kinds:
     """Ranks of M and of what q' moves, at points with many bits."""
 
     def __init__(self, given: Scenario, system: System, ring: Ring, sizes: Mapping[str, Fraction]) -> None:
-        self.given, self.system, self.sizes = given, system, sizes
+        self.scenario, self.system, self.sizes = given, system, sizes
         whole = programs(system, ring, open_tree=True)
         self.n = len(system.coordinates)
         self.matrix = (whole.program, [x for row in whole.mass_matrix for x in row])
@@ -98,14 +98,14 @@ class Kinds:
             return _rank(scaled) < n
 
     def _point(self, place: Mapping[str, Any], beside: int) -> dict[str, Any]:
-        found: dict[str, Any] = {}
-        for k, (name, value) in enumerate(zip(self.system.coordinates, self.given.positions, strict=True)):
+        point: dict[str, Any] = {}
+        for k, (name, value) in enumerate(zip(self.system.coordinates, self.scenario.positions, strict=True)):
             step = Fraction(beside * (7 + 3 * k), 50)
-            found[name] = place.get(name, ball(value + step * self.sizes.get(name, Fraction(1))))
-        for name, (start, _) in self.given.prescribed.items():
-            found[name] = place.get(name, ball(start))
-        found["t"], found["pi"] = place.get("t", arb(0)), arb.pi()
-        return found
+            point[name] = place.get(name, ball(value + step * self.sizes.get(name, Fraction(1))))
+        for name, (start, _) in self.scenario.prescribed.items():
+            point[name] = place.get(name, ball(start))
+        point["t"], point["pi"] = place.get("t", arb(0)), arb.pi()
+        return point
 
     def _masses(self, point: Mapping[str, Any]) -> Any:
         program, nodes = self.matrix
@@ -232,7 +232,11 @@ def singularities(scenario: Scenario, ranges: Mapping[str, Fraction]) -> Singula
             zeros = _of_determinant(ring, system, ranges)
     except Failure as reason:
         if own is not None and own.complete and all(len(zero_set.names) == 1 for zero_set in own.sets):
-            seen = [one for one in own.sets if all(kinds.singular({one.names[0]: zero.ball}) for zero in one.zeros)]
+            seen = [
+                candidate
+                for candidate in own.sets
+                if all(kinds.singular({candidate.names[0]: zero.ball}) for zero in candidate.zeros)
+            ]
             if len(seen) == len(own.sets):
                 return _told(ring, own, kinds, joints, OWN, ranges, proved=False)
         return _searched(scenario, kinds, joints, str(reason))
@@ -246,18 +250,18 @@ OWN = Message("the kinetic energy that every joint gives its own body while what
 
 def _told(
     ring: Ring,
-    found: Zeros,
+    zeros: Zeros,
     kinds: Kinds,
     joints: Sequence[tuple[str, ZeroSet]],
     how: str,
     ranges: Mapping[str, Fraction],
     proved: bool = True,
 ) -> Singularities:
-    decided = [zero_set for zero_set in found.sets if zero_set.known != UNDECIDED]
+    decided = [zero_set for zero_set in zeros.sets if zero_set.known != UNDECIDED]
     sets = [_described(ring, zero_set, kinds, joints, proved) for zero_set in decided]
-    undecided = tuple(_text(ring, zero_set.factor) for zero_set in found.sets if zero_set.known == UNDECIDED)
-    bounds = {name: ranges[name] for name in found.bounded if name in ranges}
-    return Singularities(_joined(sets), found.complete, how, bounds, undecided)
+    undecided = tuple(_text(ring, zero_set.factor) for zero_set in zeros.sets if zero_set.known == UNDECIDED)
+    bounds = {name: ranges[name] for name in zeros.bounded if name in ranges}
+    return Singularities(_joined(sets), zeros.complete, how, bounds, undecided)
 
 
 def _of_determinant(ring: Ring, system: System, ranges: Mapping[str, Fraction]) -> Zeros:
@@ -323,20 +327,27 @@ def _equal(a: Zero, b: Zero) -> bool:
 
 
 def _described(
-    ring: Ring, one: ZeroSet, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], proved: bool
+    ring: Ring, zero_set: ZeroSet, kinds: Kinds, joints: Sequence[tuple[str, ZeroSet]], proved: bool
 ) -> SingularSet:
-    joint = next((body for body, other in joints if _same(one, other)), "")
+    joint = next((body for body, other in joints if _same(zero_set, other)), "")
     places: tuple[Mapping[str, Fraction], ...]
-    if len(one.names) == 1:
-        values = tuple(_value(zero) for zero in one.zeros)
-        places = tuple({one.names[0]: value.exact} for value in values)
-        first: Mapping[str, Any] = {one.names[0]: one.zeros[0].ball}
+    if len(zero_set.names) == 1:
+        values = tuple(_value(zero) for zero in zero_set.zeros)
+        places = tuple({zero_set.names[0]: value.exact} for value in values)
+        first: Mapping[str, Any] = {zero_set.names[0]: zero_set.zeros[0].ball}
     else:
-        values, first = (), one.points[0]
-        places = tuple({name: _exact(x) for name, x in point.items()} for point in one.points)
+        values, first = (), zero_set.points[0]
+        places = tuple({name: _exact(x) for name, x in point.items()} for point in zero_set.points)
     kind = CHART if joint else kinds.kind(first)
     return SingularSet(
-        one.names, values, _text(ring, one.factor), places, one.isolated, kind, joint, proved or bool(joint)
+        zero_set.names,
+        values,
+        _text(ring, zero_set.factor),
+        places,
+        zero_set.isolated,
+        kind,
+        joint,
+        proved or bool(joint),
     )
 
 
@@ -373,19 +384,23 @@ def _text(ring: Ring, factor: Polynomial) -> str:
 def _joined(sets: Sequence[SingularSet]) -> tuple[SingularSet, ...]:
     """Sets of one coordinate and one kind are one set with several values."""
     kept_sets: dict[tuple[Any, ...], SingularSet] = {}
-    for number, one in enumerate(sets):
-        key = (one.names, one.kind, one.joint) if len(one.names) == 1 else (one.names, number)
+    for number, singular_set in enumerate(sets):
+        key = (
+            (singular_set.names, singular_set.kind, singular_set.joint)
+            if len(singular_set.names) == 1
+            else (singular_set.names, number)
+        )
         before = kept_sets.get(key)
         if before is None:
-            kept_sets[key] = one
+            kept_sets[key] = singular_set
             continue
-        new = [i for i, value in enumerate(one.values) if value not in before.values]
-        values = (*before.values, *(one.values[i] for i in new))
-        places = (*before.places, *(one.places[i] for i in new))
+        new = [i for i, value in enumerate(singular_set.values) if value not in before.values]
+        values = (*before.values, *(singular_set.values[i] for i in new))
+        places = (*before.places, *(singular_set.places[i] for i in new))
         order = sorted(range(len(values)), key=lambda i: (abs(values[i].exact), -values[i].exact))
         kept_sets[key] = SingularSet(
-            one.names, tuple(values[i] for i in order), before.equation, tuple(places[i] for i in order),
-            before.finite, one.kind, one.joint, before.proved and one.proved,
+            singular_set.names, tuple(values[i] for i in order), before.equation, tuple(places[i] for i in order),
+            before.finite, singular_set.kind, singular_set.joint, before.proved and singular_set.proved,
         )  # fmt: skip
     return tuple(kept_sets.values())
 
@@ -399,11 +414,11 @@ def _searched(scenario: Scenario, kinds: Kinds, joints: Sequence[tuple[str, Zero
     """The joints' own sets, and one coordinate at a time at multiples of pi/12."""
     known = [
         SingularSet(
-            one.names, tuple(map(_value, one.zeros)), "", tuple({one.names[0]: _exact(z.ball)} for z in one.zeros),
-            False, CHART, body, True,
+            zero_set.names, tuple(map(_value, zero_set.zeros)), "",
+            tuple({zero_set.names[0]: _exact(z.ball)} for z in zero_set.zeros), False, CHART, body, True,
         )
-        for body, one in joints
-        if len(one.names) == 1 and one.names[0] in scenario.system.coordinates
+        for body, zero_set in joints
+        if len(zero_set.names) == 1 and zero_set.names[0] in scenario.system.coordinates
     ]  # fmt: skip
     covered = {singular_set.names[0] for singular_set in known}
     sets = []

@@ -105,7 +105,7 @@ class Search:
     steps = 0
 
     def __init__(self, given: Scenario, constraints: Constraints, sizes: Any) -> None:
-        self.given, self.constraints, self.sizes = given, constraints, sizes
+        self.scenario, self.constraints, self.sizes = given, constraints, sizes
         self.names, self.n = given.system.coordinates, constraints.size
         self.kept = list(constraints.kept)
         self.h = constraints.holonomic
@@ -124,9 +124,9 @@ class Search:
         self.time = time
         return self._rank(position) < len(self.kept)
 
-    def difference(self, one: Any, other: Any) -> Any:
+    def difference(self, position: Any, other: Any) -> Any:
         """By how much positions differ, angles by the shorter way, in parts of the coordinates' sizes."""
-        return self._wrapped(one - other) / self.scales
+        return self._wrapped(position - other) / self.scales
 
     @property
     def spent(self) -> float:
@@ -141,20 +141,20 @@ class Search:
                 break
             starts += 1
             place = self._from(self._start(number))
-            if place is None or any(self._same(place, one) for one in places):
+            if place is None or any(self._same(place, earlier) for earlier in places):
                 continue
             if self._rank(place) < len(self.kept):  # else others take over from the rows that are kept
                 places.append(place)
         shown = [position for position in map(self._described, places[:MOST]) if position is not None]
-        shown.sort(key=lambda one: (not one.proved, [abs(x) for x in one.place.values()]))
+        shown.sort(key=lambda entry: (not entry.proved, [abs(x) for x in entry.place.values()]))
         return SingularPositions(tuple(shown), starts, len(places) > MOST, self._moving())
 
     def _start(self, number: int) -> Any:
-        given = np.array([float(x) for x in self.given.state])
+        state = np.array([float(x) for x in self.scenario.state])
         if number:
             spread = np.where(self.angular, pi, 2 * self.sizes)
-            given[: self.n] = np.where(self.angular, 0.0, given[: self.n]) + self.source.uniform(-1, 1, self.n) * spread
-        return given
+            state[: self.n] = np.where(self.angular, 0.0, state[: self.n]) + self.source.uniform(-1, 1, self.n) * spread
+        return state
 
     # --- the equations ---
 
@@ -223,15 +223,15 @@ class Search:
 
     def _wrapped(self, q: Any) -> Any:
         """Angles within (-pi d, pi d], d their denominators."""
-        found = np.array(q)
+        wrapped = np.array(q)
         for k, name in enumerate(self.names):
             if self.angular[k]:
                 period = 2 * pi * self.denominators[name]
-                found[k] -= period * np.ceil(found[k] / period - 0.5 - SAME)
-        return found
+                wrapped[k] -= period * np.ceil(wrapped[k] / period - 0.5 - SAME)
+        return wrapped
 
-    def _same(self, one: Any, other: Any) -> bool:
-        return bool(np.all(np.abs(self._wrapped(one - other)) < SAME * self.scales))
+    def _same(self, position: Any, other: Any) -> bool:
+        return bool(np.all(np.abs(self._wrapped(position - other)) < SAME * self.scales))
 
     # --- what is said of one ---
 
@@ -251,17 +251,17 @@ class Search:
     def _weighted(self, q: Any, every: bool = False) -> Any:
         """J at a position, or ``every`` row, by the lengths that rows have elsewhere."""
         states = np.concatenate([q, np.zeros(self.n)])
-        found = self.constraints.at(self.time, states).partials * self.scales
-        found = found / self._lengths[:, None]
-        return found if every else found[self.kept]
+        rows = self.constraints.at(self.time, states).partials * self.scales
+        rows = rows / self._lengths[:, None]
+        return rows if every else rows[self.kept]
 
     @cached_property
     def _lengths(self) -> Any:
         """The largest length of every row at the starts."""
         starts = [np.concatenate([self._start(k)[: self.n], np.zeros(self.n)]) for k in range(8)]
         rows = [self.constraints.at(0.0, x).partials * np.where(self.angular, 1.0, self.sizes) for x in starts]
-        found = np.max(np.nan_to_num(np.linalg.norm(np.array(rows), axis=2)), axis=0)
-        return np.where(found > 0, found, 1.0)
+        lengths = np.max(np.nan_to_num(np.linalg.norm(np.array(rows), axis=2)), axis=0)
+        return np.where(lengths > 0, lengths, 1.0)
 
     def _rank(self, q: Any) -> int:
         """Of all rows: where others take over from those that are kept, nothing is lost."""
@@ -301,24 +301,24 @@ class Search:
             labels[name], exact[name] = str(value), value
         # An angle itself is irrational: only its sine and cosine may be asked for.
         values |= dict.fromkeys(basic, _Irrational()) | {"pi": _Irrational()}
-        values |= dict.fromkeys(self.given.system.velocities, fmpq(0)) | {"t": fmpq(0)}
+        values |= dict.fromkeys(self.scenario.system.velocities, fmpq(0)) | {"t": fmpq(0)}
         numbers = Rationals({}, self.denominators)
         numbers.basic.update(basic)
         code = self.constraints.code
         try:
-            found = code.program.evaluate(code.outputs, values, numbers)
+            evaluated = code.program.evaluate(code.outputs, values, numbers)
         except (Failure, KeyError, ZeroDivisionError):
             return None
-        if any(isinstance(x, _Irrational) for x in found):
+        if any(isinstance(x, _Irrational) for x in evaluated):
             return None
         h, r = self.h, len(self.constraints)
-        if any(x != 0 for x in found[:h]):
+        if any(x != 0 for x in evaluated[:h]):
             return None
-        flat = found[h + r :]
+        flat = evaluated[h + r :]
         return exact, labels, int(fmpq_mat(r, self.n, flat).rank())
 
     def _moving(self) -> bool:
-        state = np.array([float(x) for x in self.given.state])
+        state = np.array([float(x) for x in self.scenario.state])
         values, other = (self.constraints.at(t, state) for t in (0.0, 0.37))
         pairs = ((values.positions, other.positions), (values.partials, other.partials))
         return any(not np.array_equal(a, b) for a, b in pairs)
@@ -379,18 +379,18 @@ def stepped_over(dynamics: Dynamics, times: Any, states: Any, known: Sequence[fl
     inner = (
         np.flatnonzero((least[1:-1] <= least[:-2]) & (least[1:-1] <= least[2:]) & (least[1:-1] < FALLEN * usual)) + 1
     )
-    found: list[float] = []
+    passed: list[float] = []
     for k in sorted(inner.tolist(), key=lambda k: float(least[k]))[:MOST_HALVINGS]:
         span = slice(max(0, k - 1), min(len(times), k + 2))
-        if any(times[span][0] <= one <= times[span][-1] for one in known):
+        if any(times[span][0] <= moment <= times[span][-1] for moment in known):
             continue
         if search is None:
             time = _fallen(dynamics, times[span], states[:, span], WITHIN * usual)
         else:
             time = _met(search, times[span], states[:, span], times[k])
         if time is not None:
-            found.append(time)
-    return tuple(sorted(found))
+            passed.append(time)
+    return tuple(sorted(passed))
 
 
 def _least(constraints: Any, scales: Any, times: Any, states: Any) -> Any:
@@ -408,14 +408,14 @@ def _fallen(dynamics: Dynamics, times: Any, states: Any, least: float) -> float 
     assert dynamics.constraints is not None
     rates = compiled_kernel(dynamics, "right_hand_side")(np.vstack([times, states]))
     at = np.linspace(times[0], times[-1], FINE)
-    found = _least(
+    singular_values = _least(
         dynamics.constraints,
         np.ones(dynamics.constraints.size),
         at,
         CubicHermiteSpline(times, states, rates, axis=1)(at),
     )
-    best = int(np.argmin(found))
-    return float(at[best]) if found[best] <= least else None
+    best = int(np.argmin(singular_values))
+    return float(at[best]) if singular_values[best] <= least else None
 
 
 def _met(search: Search, times: Any, states: Any, middle: float) -> float | None:

@@ -33,13 +33,13 @@ def stepwise(code: Code, scalar: str) -> Kernel:
     named = {"log": np.log, "atan": np.arctan}
     slots = {name: place for place, name in enumerate(code.inputs)}
     steps: list[tuple[int, Any, tuple[int, ...]]] = []
-    given: dict[int, Any] = {}
+    constants: dict[int, Any] = {}
     entries: list[tuple[int, int]] = []
     for number in program.live(code.outputs):
         operation, operands, payload = program.instructions[number]
         if operation == "constant":
             assert isinstance(payload, Fraction)
-            given[number] = kind(float(payload))
+            constants[number] = kind(float(payload))
         elif operation == "input":
             entries.append((number, slots[str(payload)]))
         else:
@@ -47,7 +47,7 @@ def stepwise(code: Code, scalar: str) -> Kernel:
             steps.append((number, function, operands))
 
     def kernel(inputs: Any) -> Any:
-        values = dict(given)
+        values = dict(constants)
         for number, place in entries:
             values[number] = kind(inputs[place])
         for number, function, operands in steps:
@@ -90,8 +90,8 @@ def source(code: Code) -> str:
         local=lambda count: f"s{count}",
         number=lambda value: repr(float(value)),
     )
-    found = listing(code.program, code.outputs, names, dialect, {"np", "f"})
-    return _text(code, found, names)
+    body = listing(code.program, code.outputs, names, dialect, {"np", "f"})
+    return _text(code, body, names)
 
 
 def kernel(code: Code, scalar: str = FLOAT64) -> Kernel:
@@ -141,8 +141,8 @@ def _names(code: Code) -> Mapping[str, str]:
     return injective(code.inputs, lambda name: f"x_{''.join(c if c.isalnum() else '_' for c in name)}")
 
 
-def _text(code: Code, found: Listing, names: Mapping[str, str]) -> str:
+def _text(code: Code, body: Listing, names: Mapping[str, str]) -> str:
     lines = [f"def f({', '.join(names[name] for name in code.inputs)}):"]
-    lines += [f"    {name} = {text}" for name, text in found.assignments]
-    lines.append(f"    return [{', '.join(found.results)}]")
+    lines += [f"    {name} = {text}" for name, text in body.assignments]
+    lines.append(f"    return [{', '.join(body.results)}]")
     return "\n".join([*lines, ""])

@@ -42,13 +42,13 @@ def powers() -> tuple[Any, Any, Any]:
         power = LEAST + place
         above, below = 10 ** max(power, 0), 10 ** max(-power, 0)
         shift = 127 - (above.bit_length() - below.bit_length())
-        found = _scaled(above, below, shift)
-        if found >> 128:
+        quotient = _scaled(above, below, shift)
+        if quotient >> 128:
             shift -= 1
-        elif not found >> 127:
+        elif not quotient >> 127:
             shift += 1
-        found = _scaled(above, below, shift)
-        words[place], shifts[place] = (found & (2**64 - 1), found >> 64), shift
+        quotient = _scaled(above, below, shift)
+        words[place], shifts[place] = (quotient & (2**64 - 1), quotient >> 64), shift
     return words, shifts, np.array([_decade(16 - LEAST - place) for place in range(POWERS)])
 
 
@@ -265,7 +265,7 @@ def lines(table: Any) -> str:
         return "\n" * rows
     _, function, tables = _writer()
     out, reached = np.empty(rows * columns * ROOM + ROOM, np.uint8), np.zeros(1, np.int64)
-    addresses = (table.ctypes.data, out.ctypes.data, *(one.ctypes.data for one in tables), reached.ctypes.data)
+    addresses = (table.ctypes.data, out.ctypes.data, *(array.ctypes.data for array in tables), reached.ctypes.data)
     pieces, row = [], 0
     while row < rows:
         size = function(*addresses, row, rows, columns, rows)

@@ -197,13 +197,13 @@ def _steps(code: Code, live: Sequence[int], scalar: Scalar) -> list[Step]:
         return list(live)
     instructions = code.program.instructions
     level: dict[int, int] = {}
-    wanted: dict[int, dict[int, list[int | None]]] = {}
+    angles_by_level: dict[int, dict[int, list[int | None]]] = {}
     for number in live:
         operation, operands, _ = instructions[number]
         level[number] = max((level[operand] for operand in operands), default=0)
         if operation in ("sin", "cos"):
-            found = wanted.setdefault(level[number], {}).setdefault(operands[0], [None, None])
-            found[operation == "cos"] = number
+            slots = angles_by_level.setdefault(level[number], {}).setdefault(operands[0], [None, None])
+            slots[operation == "cos"] = number
             level[number] += 1
     steps: list[Step] = []
     done: set[int] = set()
@@ -214,18 +214,18 @@ def _steps(code: Code, live: Sequence[int], scalar: Scalar) -> list[Step]:
             steps.append(number)
             done.add(number)
             continue
-        angles = wanted.pop(level[number] - 1)
+        angles = angles_by_level.pop(level[number] - 1)
         needed, reached = [angle for angle in angles if angle not in done], set()
         while needed:
-            one = needed.pop()
-            if one not in reached:
-                reached.add(one)
-                needed += [operand for operand in instructions[one].operands if operand not in done]
+            current = needed.pop()
+            if current not in reached:
+                reached.add(current)
+                needed += [operand for operand in instructions[current].operands if operand not in done]
         steps += sorted(reached)
         steps.append(tuple((angle, sine, cosine) for angle, (sine, cosine) in angles.items()))
-        done |= reached | {one for pair in angles.values() for one in pair if one is not None}
+        done |= reached | {member for pair in angles.values() for member in pair if member is not None}
     fused = _fused(code, live)
-    taken = {one.product for one in fused.values()}
+    taken = {fusion.product for fusion in fused.values()}
     return [fused.get(step, step) if isinstance(step, int) else step for step in steps if step not in taken]
 
 
@@ -244,8 +244,12 @@ def _fused(code: Code, live: Sequence[int]) -> dict[int, Fused]:
         operation, operands, _ = instructions[number]
         if operation not in ("add", "subtract"):
             continue
-        products = [one for one in operands if instructions[one].operation == "multiply" and uses[one] == 1]
-        products = [one for one in products if instructions[one].operands not in rounded]
+        products = [
+            candidate
+            for candidate in operands
+            if instructions[candidate].operation == "multiply" and uses[candidate] == 1
+        ]
+        products = [candidate for candidate in products if instructions[candidate].operands not in rounded]
         if products:
             product = max(products)
             first = operands[0] == product
@@ -270,7 +274,7 @@ def _results(step: Step) -> list[int]:
         return [step]
     if isinstance(step, Fused):
         return [step.number]
-    return [one for _, sine, cosine in step for one in (sine, cosine) if one is not None]
+    return [number for _, sine, cosine in step for number in (sine, cosine) if number is not None]
 
 
 def _split(name: str, code: Code, live: Sequence[int], scalar: Scalar, lanes: int) -> tuple[str, list[str]]:
@@ -284,13 +288,13 @@ def _split(name: str, code: Code, live: Sequence[int], scalar: Scalar, lanes: in
         for step in part:
             needed[place].update(number for number in _used(code, step) if home[number] != place)
     needed[-1].update(node.number for node in code.outputs if home[node.number] != len(parts) - 1)
-    kept: dict[int, int] = {}
+    cells: dict[int, int] = {}
     for number in sorted(set().union(*needed)):
         if instructions[number].operation != "constant":
-            kept[number] = len(kept)
-    texts, calls = [], [f"  %w = alloca [{max(len(kept), 1)} x {vector(lanes, scalar.type)}]"]
+            cells[number] = len(cells)
+    texts, calls = [], [f"  %w = alloca [{max(len(cells), 1)} x {vector(lanes, scalar.type)}]"]
     for place, part in enumerate(parts):
-        form = _Form(code, scalar, lanes, kept)
+        form = _Form(code, scalar, lanes, cells)
         lines = [*form.given(sorted(needed[place])), *form.body(part)]
         if place == len(parts) - 1:
             lines += form.stores()
@@ -394,16 +398,16 @@ class _Form:
 
     def _cell(self, local: str, address: int) -> Iterator[str]:
         """A number from memory, the same for all lanes."""
-        one, before = self.scalar.type, "poison"
+        scalar_type, before = self.scalar.type, "poison"
         single = local if self.lanes == 1 else f"{local}.s"
-        known = single if one == "double" else f"{local}.d"
+        known = single if scalar_type == "double" else f"{local}.d"
         yield f"  {known} = load double, ptr {_IN_MEMORY} (i64 {address} to ptr)"
-        if one != "double":
+        if scalar_type != "double":
             change = "fpext" if self.scalar.name == EXTENDED else "fptrunc"
-            yield f"  {single} = {change} double {known} to {one}"
+            yield f"  {single} = {change} double {known} to {scalar_type}"
         for lane in range(self.lanes if self.lanes > 1 else 0):
             after = local if lane == self.lanes - 1 else f"{local}.x{lane}"
-            yield f"  {after} = insertelement {self.kind} {before}, {one} {single}, i32 {lane}"
+            yield f"  {after} = insertelement {self.kind} {before}, {scalar_type} {single}, i32 {lane}"
             before = after
 
     def _rounding(self, operation: str, local: str, a: str, b: str) -> Iterator[str]:
@@ -455,16 +459,16 @@ class _Form:
 
     def _function(self, function: str, local: str, argument: str) -> Iterator[str]:
         """A call of the C library, or one for every lane."""
-        one, kind = self.scalar.type, self.kind
+        scalar_type, kind = self.scalar.type, self.kind
         if self.lanes == 1:
-            yield f"  {local} = call {one} @{function}({one} {argument}) #1"
+            yield f"  {local} = call {scalar_type} @{function}({scalar_type} {argument}) #1"
             return
         before = "poison"
         for lane in range(self.lanes):
             yield f"  {local}.x{lane} = extractelement {kind} {argument}, i32 {lane}"
-            yield f"  {local}.y{lane} = call {one} @{function}({one} {local}.x{lane}) #1"
+            yield f"  {local}.y{lane} = call {scalar_type} @{function}({scalar_type} {local}.x{lane}) #1"
             after = local if lane == self.lanes - 1 else f"{local}.z{lane}"
-            yield f"  {after} = insertelement {kind} {before}, {one} {local}.y{lane}, i32 {lane}"
+            yield f"  {after} = insertelement {kind} {before}, {scalar_type} {local}.y{lane}, i32 {lane}"
             before = after
 
     def _angles(self, step: tuple[Angle, ...]) -> Iterator[str]:
@@ -480,13 +484,13 @@ class _Form:
         for start in range(0, len(step), MOST_ANGLES):
             chunk = step[start : start + MOST_ANGLES]
             lanes = packed(len(chunk))
-            local, kind, one = f"%g{self._group()}", vector(lanes, self.scalar.type), self.scalar.type
+            local, kind, scalar_type = f"%g{self._group()}", vector(lanes, self.scalar.type), self.scalar.type
             argument = self.values[chunk[0][0]]
             if lanes > 1:
                 argument = "poison"
                 for lane in range(lanes):  # what is left over repeats the last one
                     value = self.values[chunk[min(lane, len(chunk) - 1)][0]]
-                    yield f"  {local}.x{lane} = insertelement {kind} {argument}, {one} {value}, i32 {lane}"
+                    yield f"  {local}.x{lane} = insertelement {kind} {argument}, {scalar_type} {value}, i32 {lane}"
                     argument = f"{local}.x{lane}"
             yield from self._pair(local, argument, lanes)
             for lane, (_, sine, cosine) in enumerate(chunk):
@@ -613,12 +617,12 @@ def declarations(codes: Iterable[Code], scalar: Scalar, lanes: int = 1) -> str:
     if lanes > 1 and "sqrt" in called:
         called.remove("sqrt")
         lines.append(f"declare {kind} @llvm.sqrt.{suffix(scalar, lanes)}({kind})\n")
-    one = scalar.type
+    scalar_type = scalar.type
     for name in sorted(called):
         if isinstance(name, Tabulated):
-            lines.append(lookup.llvm_text(name, one, scalar.suffix, constant))
+            lines.append(lookup.llvm_text(name, scalar_type, scalar.suffix, constant))
         else:
-            lines.append(f"declare {one} @{name}{scalar.suffix}({one}) #1\n")
+            lines.append(f"declare {scalar_type} @{name}{scalar.suffix}({scalar_type}) #1\n")
     return "".join(lines)
 
 

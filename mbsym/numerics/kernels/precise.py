@@ -76,5 +76,5 @@ def written(
             lines.append(f"    {local} = {text}")
     lines.append("    return [" + ", ".join(values[node.number] for node in code.outputs) + "]")
     exec(compile("\n".join(lines), "<straight-line program>", "exec"), scope)  # our own text, made of numbers only
-    found: Callable[[Sequence[Any]], list[Any]] = scope["f"]
-    return found
+    compiled: Callable[[Sequence[Any]], list[Any]] = scope["f"]
+    return compiled

@@ -35,9 +35,9 @@ def load(key: str, kind: str = CODE) -> bytes | None:
     with suppress(OSError):
         folder = _folder(kind)
         if folder is not None and _own(folder):
-            kept = (folder / key).read_bytes()
-            if kept[:_DIGEST] == _digest(key, kept[_DIGEST:]):
-                return kept[_DIGEST:]
+            content = (folder / key).read_bytes()
+            if content[:_DIGEST] == _digest(key, content[_DIGEST:]):
+                return content[_DIGEST:]
     return None
 
 
@@ -62,9 +62,9 @@ def keep(key: str, code: bytes, kind: str = CODE) -> None:
 
 def _folder(kind: str = CODE) -> Path | None:
     """Where a kind of thing is kept; None where nothing is to be, or where nobody is at home."""
-    told = os.environ.get("MBSYM_CACHE")
-    if told is not None:
-        return Path(told) / kind if told else None
+    setting = os.environ.get("MBSYM_CACHE")
+    if setting is not None:
+        return Path(setting) / kind if setting else None
     with suppress(RuntimeError):
         base = os.environ.get("XDG_CACHE_HOME", "")
         return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "mbsym" / kind
@@ -85,7 +85,7 @@ def _digest(key: str, code: bytes) -> bytes:
 
 def _make_room(folder: Path, size: int) -> None:
     """Deletes the oldest files where the folder would hold too much."""
-    known = sorted((one.stat().st_mtime, one.stat().st_size, one.path) for one in os.scandir(folder))
+    known = sorted((entry.stat().st_mtime, entry.stat().st_size, entry.path) for entry in os.scandir(folder))
     total = size + sum(size for _, size, _ in known)
     if total > MOST_BYTES:
         for _, freed, path in known:

@@ -145,8 +145,8 @@ class Function:
         return self.value(kind, f"load {kind}, ptr {self.at(kind, base, index).text}")
 
     def store(self, value: Value | Number, kind: str, base: Value, index: Value | int = 0) -> None:
-        found = self.number(value, kind)
-        self.lines.append(f"  store {kind} {found.text}, ptr {self.at(kind, base, index).text}")
+        operand = self.number(value, kind)
+        self.lines.append(f"  store {kind} {operand.text}, ptr {self.at(kind, base, index).text}")
 
     # --- control -----------------------------------------------------------------------------------------------------
 

@@ -28,24 +28,24 @@ from mbsym.numerics.scenario import PRECISION, Scenario
 
 def massless_bodies(work: Work) -> Iterator[Saving]:
     """Frames without mass and inertia, against the same frames with a mass."""
-    found = {body.name for body in work.system.bodies if rational(body.mass) == 0 and body.inertia is None}
-    if not found:
+    massless = {body.name for body in work.system.bodies if rational(body.mass) == 0 and body.inertia is None}
+    if not massless:
         return
     symbols = Symbols(work.system)
 
     def heavy(body: Body) -> Body:
-        return replace(body, mass=symbols("m")) if body.name in found else body
+        return replace(body, mass=symbols("m")) if body.name in massless else body
 
     other = changed_bodies(work.system, heavy, symbols)
     why = Message("structural zero: m = 0 and no inertia, so T, forces and moments of the body are identically 0")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.MASSLESS, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.MASSLESS, _in_order(work, massless), why, Certainty.PROVED, measures)
 
 
 def welded_bodies(work: Work) -> Iterator[Saving]:
     """Bodies without a coordinate of their own, lumped into what carries them, against each on a frame of its own."""
-    found = lumped(work.system)
-    if not found:
+    welds = lumped(work.system)
+    if not welds:
         return
     work.begin(work.price)
     apart, spent = work.timed(lambda: forward_dynamics(work.system, ring_of(work.system), apart=True))
@@ -54,23 +54,23 @@ def welded_bodies(work: Work) -> Iterator[Saving]:
         Measure("operations of q'' for one state", OPERATIONS, every, work.operations(work.forward.accelerations)),
         Measure("seconds of writing the program of q''", SECONDS, spent, work.cost[1]),
     )
-    carriers = ", ".join(dict.fromkeys(found.values()))
+    carriers = ", ".join(dict.fromkeys(welds.values()))
     why = Message(
         "no coordinate moves them against [[carriers]]: m, m c and the tensor add up there, once, by Steiner's theorem",
         carriers=carriers,
     )
-    yield Saving(Kind.WELDED, tuple(found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.WELDED, tuple(welds), why, Certainty.PROVED, measures)
 
 
 def point_masses(work: Work) -> Iterator[Saving]:
     """Bodies with a mass and no tensor, against the same bodies with principal moments about their mass centres."""
-    found = {body.name for body in work.system.bodies if rational(body.mass) != 0 and body.inertia is None}
-    if not found:
+    points = {body.name for body in work.system.bodies if rational(body.mass) != 0 and body.inertia is None}
+    if not points:
         return
     symbols = Symbols(work.system)
 
     def extended(body: Body) -> Body:
-        if body.name not in found:
+        if body.name not in points:
             return body
         a, b, c = symbols("J1"), symbols("J2"), symbols("J3")
         tensor: Tensor = ((a, ZERO, ZERO), (ZERO, b, ZERO), (ZERO, ZERO, c))
@@ -79,18 +79,18 @@ def point_masses(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, extended, symbols)
     why = Message("structural zero: the tensor about the mass centre is 0, so is omega.J omega/2 and its moment")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.POINTS, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.POINTS, _in_order(work, points), why, Certainty.PROVED, measures)
 
 
 def unused_axes(work: Work) -> Iterator[Saving]:
     """Joints that turn about fewer than three axes, against joints with constant angles about the others."""
-    found = {body.name for body in work.system.bodies if len(list(body.rotation.turns())) < 3}
-    if not found:
+    affected = {body.name for body in work.system.bodies if len(list(body.rotation.turns())) < 3}
+    if not affected:
         return
     symbols = Symbols(work.system)
 
     def turned(body: Body) -> Body:
-        if body.name not in found:
+        if body.name not in affected:
             return body
         turns = list(body.rotation.turns())
         while len(turns) < 3:
@@ -100,7 +100,7 @@ def unused_axes(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = Message("structural: a turn that is not there is the identity matrix, and is never multiplied")
     measures = (*work.right_hand_sides(other), *work.kinetic_energies(other))
-    yield Saving(Kind.AXES, _in_order(work, found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.AXES, _in_order(work, affected), why, Certainty.PROVED, measures)
 
 
 def constant_rotations(work: Work) -> Iterator[Saving]:
@@ -110,8 +110,8 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
     def constant(angle: Expression) -> bool:
         return angle != ZERO and not names(angle) & moving
 
-    found = [b.name for b in work.system.bodies if any(constant(angle) for _, angle in b.rotation.turns())]
-    if not found:
+    affected = [b.name for b in work.system.bodies if any(constant(angle) for _, angle in b.rotation.turns())]
+    if not affected:
         return
     symbols = Symbols(work.system)
 
@@ -122,7 +122,7 @@ def constant_rotations(work: Work) -> Iterator[Saving]:
     other = changed_bodies(work.system, turned, symbols)
     why = Message("the angle holds no coordinate and no time: its sine and cosine are worked out once, or are 0 and 1")
     measures = work.right_hand_sides(other, changing=symbols.names)
-    yield Saving(Kind.TURNS, tuple(found), why, Certainty.PROVED, measures)
+    yield Saving(Kind.TURNS, tuple(affected), why, Certainty.PROVED, measures)
 
 
 def gravity_orders(work: Work) -> Iterator[Saving]:
@@ -186,5 +186,5 @@ def relative_size(numbers: Scenario | None, load: NewtonianGravity) -> float | N
     return ratio if 0 < ratio < float("inf") else None
 
 
-def _in_order(work: Work, found: set[str]) -> tuple[str, ...]:
-    return tuple(body.name for body in work.system.bodies if body.name in found)
+def _in_order(work: Work, bodies: set[str]) -> tuple[str, ...]:
+    return tuple(body.name for body in work.system.bodies if body.name in bodies)

@@ -39,24 +39,24 @@ def resting_coordinates(work: Work) -> Iterator[Saving]:
         return
     whole, seconds = work.timed(lambda: _written(scenario))
     work.begin(INSTRUCTION * len(whole.right_hand_side.program.instructions))
-    found = reduced(whole)
-    if found is None:
+    subsystem = reduced(whole)
+    if subsystem is None:
         return
-    _, spent = work.timed(lambda: _written(found.reduction.scenario))
-    before, after = found.operations
-    normal = _plane(found.dynamics.system)
+    _, spent = work.timed(lambda: _written(subsystem.reduction.scenario))
+    before, after = subsystem.operations
+    normal = _plane(subsystem.dynamics.system)
     why = Message("from this initial state, with q_S held, f_S and M_SF vanish for all other q, q', t: q_S'' = 0")
     if normal:
         text = "what is left moves in the plane normal to inertial axis [[axis]]"
         why = joined([why, Message(text, axis=normal)], "; ")
     n = whole.size
     measures = (
-        Measure("coordinates to integrate", COUNT, n, n - len(found.names)),
+        Measure("coordinates to integrate", COUNT, n, n - len(subsystem.names)),
         Measure("operations of the right-hand side at these values", OPERATIONS, before, after),
         Measure("seconds of writing the right-hand side", SECONDS, seconds, spent),
     )
     kind = Kind.PLANE if normal else Kind.RESTING
-    yield Saving(kind, found.names, why, found.reduction.how, measures)
+    yield Saving(kind, subsystem.names, why, subsystem.reduction.how, measures)
 
 
 def separate_parts(work: Work) -> Iterator[Saving]:
@@ -113,16 +113,16 @@ def cyclic_coordinates(work: Work) -> Iterator[Saving]:
     energy: Energy | None = work.result("energy")
     if energy is None or not set(energy.cyclic) & set(work.system.coordinates):
         return
-    found = tuple(name for name in energy.cyclic if name in _undriven(work))
-    if not found:
+    cyclic = tuple(name for name in energy.cyclic if name in _undriven(work))
+    if not cyclic:
         return
     n = len(work.system.coordinates)
     why = Message(
         "identities of the ring: dL/dq = 0 and Q = 0, so p = dL/dq' is constant and q follows by "
         "a quadrature; told, not used: mbsym simulate integrates them"
     )
-    measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(found))),)
-    yield Saving(Kind.CYCLIC, found, why, Certainty.PROVED, measures)
+    measures = (Measure("order of the equations, on a level of the momenta", COUNT, 2 * n, 2 * (n - len(cyclic))),)
+    yield Saving(Kind.CYCLIC, cyclic, why, Certainty.PROVED, measures)
 
 
 def _undriven(work: Work) -> set[str]:
@@ -133,10 +133,10 @@ def _undriven(work: Work) -> set[str]:
         return {name for name, force in forces.items() if force.is_zero}
     ring = ring_of(work.system)
     try:
-        found = generalized_forces(Scene(work.system, ring, ring_environment(work.system, ring), ring))
+        generalized = generalized_forces(Scene(work.system, ring, ring_environment(work.system, ring), ring))
     except Failure:
         return set()
-    return {name for name, force in found.items() if ring.reduce(force).is_zero()}
+    return {name for name, force in generalized.items() if ring.reduce(force).is_zero()}
 
 
 def dropped_parameters(work: Work) -> Iterator[Saving]:
@@ -158,19 +158,19 @@ def dropped_parameters(work: Work) -> Iterator[Saving]:
     by_reason: dict[tuple[str, Certainty], list[str]] = {}
     for name in _without_influence(work, read):
         by_reason.setdefault(_reason(work, name), []).append(name)
-    for (reason, how), found in by_reason.items():
-        measures = _dropped(work, used, found)[: 1 if reason == FACTOR else 2]
-        yield Saving(Kind.DROPPED, tuple(found), reason, how, measures)
+    for (reason, how), parameters in by_reason.items():
+        measures = _dropped(work, used, parameters)[: 1 if reason == FACTOR else 2]
+        yield Saving(Kind.DROPPED, tuple(parameters), reason, how, measures)
 
 
-def _dropped(work: Work, used: Sequence[str], found: Sequence[str]) -> tuple[Measure, ...]:
-    measures = [Measure("parameters that q'' depends on", COUNT, len(used), len(used) - len(found))]
+def _dropped(work: Work, used: Sequence[str], parameters: Sequence[str]) -> tuple[Measure, ...]:
+    measures = [Measure("parameters that q'' depends on", COUNT, len(used), len(used) - len(parameters))]
     energy: Energy | None = work.result("energy")
     if energy is not None:
         ring = energy.kinetic_energy.ring
         lagrangian = ring.reduce(energy.kinetic_energy.polynomial + energy.force_function.polynomial)
         terms = len(lagrangian)
-        without = sum(_term_holds(ring, term, found) for term in _terms(ring, lagrangian))
+        without = sum(_term_holds(ring, term, parameters) for term in _terms(ring, lagrangian))
         measures.append(Measure("terms of L without them", TERMS, terms, terms - without))
     return tuple(measures)
 
@@ -180,8 +180,8 @@ def _terms(ring: Ring, x: Polynomial) -> Iterator[Polynomial]:
         yield ring.context.term(exp_vec=monomial, coeff=coefficient)
 
 
-def _term_holds(ring: Ring, term: Polynomial, found: Sequence[str]) -> bool:
-    return any(holds(ring, term, name) for name in found)
+def _term_holds(ring: Ring, term: Polynomial, parameters: Sequence[str]) -> bool:
+    return any(holds(ring, term, name) for name in parameters)
 
 
 def _without_influence(work: Work, read: Sequence[str]) -> list[str]:

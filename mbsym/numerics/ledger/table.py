@@ -62,9 +62,9 @@ def dead_operations(work: Work) -> Iterator[Saving]:
     forward = work.forward
     work.begin(work.price)
     alone = forward_dynamics(work.system, ring_of(work.system), forward.method)
-    given = work.given
+    constant_names = work.given
     every = [alone.program.node(k) for k in range(len(alone.program.instructions))]
-    written, live = (alone.program.operations(x, given) for x in (every, alone.accelerations))
+    written, live = (alone.program.operations(x, constant_names) for x in (every, alone.accelerations))
     measures = (Measure("operations written for one state", OPERATIONS, written, live),)
     why = Message("liveness: counted backwards from q'', no output needs them")
     yield Saving(Kind.DEAD, (Message("[[count]] operations", count=written - live),), why, Certainty.PROVED, measures)
@@ -221,13 +221,13 @@ ALONG = 1e-6
 
 def skew_plane(work: Work) -> Iterator[Saving]:
     """Motion normal to a direction that is no axis of inertial space, until the time of the accuracy asked for."""
-    if work.wanted is None or work.scenario is None:
+    if work.goal is None or work.scenario is None:
         return
     work.begin(work.price)
     dynamics = Dynamics(work.scenario)
-    times = np.linspace(0.0, work.wanted.time, _TIMES)
+    times = np.linspace(0.0, work.goal.time, _TIMES)
     try:
-        method = choose(dynamics, TIGHT, work.wanted.time).method
+        method = choose(dynamics, TIGHT, work.goal.time).method
         states = trial_of(method, dynamics, Setting(TIGHT), times).whole().states
         rates = arrays.kernel(dynamics.right_hand_side)(np.vstack([times, states]))[dynamics.size :]
         motions = body_motions(work.scenario, times, states, rates)
@@ -243,7 +243,7 @@ def skew_plane(work: Work) -> Iterator[Saving]:
         "inertial space and all velocities normal to it, but for [[part]] of them; told, not "
         "used: mbsym simulate integrates all coordinates",
         times=_TIMES,
-        time=f"{work.wanted.time:g}",
+        time=f"{work.goal.time:g}",
         direction=direction,
         part=f"{off:.0e}",
     )
@@ -259,16 +259,16 @@ def skew_plane(work: Work) -> Iterator[Saving]:
     yield Saving(Kind.SKEW, names, why, Certainty.VERIFIED, measures)
 
 
-def _kinds(work: Work, found: BodyMotions) -> tuple[list[bool], list[bool]]:
+def _kinds(work: Work, motions: BodyMotions) -> tuple[list[bool], list[bool]]:
     """Which bodies have inertia, and which a mass: of the others it does not matter how they move."""
-    bodies = [work.system.body(name) for name in found.names]
+    bodies = [work.system.body(name) for name in motions.names]
     return [body.inertia is not None for body in bodies], [rational(body.mass) != 0 for body in bodies]
 
 
-def plane_of(found: BodyMotions, turning: list[bool], moving: list[bool]) -> tuple[Any | None, float]:
+def plane_of(motions: BodyMotions, turning: list[bool], moving: list[bool]) -> tuple[Any | None, float]:
     """(e, the largest part of the motion that is not normal to it); None where there is no such direction."""
-    spins = np.einsum("kijt,kit->jkt", found.axes, found.angular_velocities)[:, turning].reshape(3, -1)
-    speeds = np.moveaxis(found.velocities, 1, 0)[:, moving].reshape(3, -1)
+    spins = np.einsum("kijt,kit->jkt", motions.axes, motions.angular_velocities)[:, turning].reshape(3, -1)
+    speeds = np.moveaxis(motions.velocities, 1, 0)[:, moving].reshape(3, -1)
     if np.any(spins):
         e = np.linalg.svd(spins, full_matrices=False)[0][:, 0]
     else:
@@ -322,9 +322,9 @@ def _given_up(work: Work, number: int) -> Counted:
     return Counted(None, alone.ring.work, time.thread_time() - started)
 
 
-def _terms(found: Any) -> int:
+def _terms(result: Any) -> int:
     """Terms of a problem's result, or of all of them where there are several."""
-    return sum(item.formula.terms for item in found) if isinstance(found, tuple) else int(found.terms)
+    return sum(item.formula.terms for item in result) if isinstance(result, tuple) else int(result.terms)
 
 
 def vanishing_entries(work: Work) -> Iterator[Saving]:
@@ -369,16 +369,18 @@ def _linearisation(work: Work) -> Linearisation | None:
     return linearisation
 
 
-def _characteristic(work: Work, found: Linearisation, part: Sequence[int]) -> Counted:
+def _characteristic(work: Work, linearisation: Linearisation, part: Sequence[int]) -> Counted:
     """The characteristic polynomial of some coordinates in the declared parameters, within its budget of products."""
-    ring = found.M[0, 0].ring
+    ring = linearisation.M[0, 0].ring
 
     def cut(*matrices: Matrix) -> list[list[Any]]:
         return [[ring.reduce(sum((m[i, j].polynomial for m in matrices), ring.zero)) for j in part] for i in part]
 
     def size() -> int | None:
         try:
-            polynomial = characteristic_polynomial(cut(found.M), cut(found.D, found.G), cut(found.K, found.N))
+            polynomial = characteristic_polynomial(
+                cut(linearisation.M), cut(linearisation.D, linearisation.G), cut(linearisation.K, linearisation.N)
+            )
         except Failure:
             return None
         return sum(len(x) for x in polynomial)
@@ -394,27 +396,27 @@ TIMES = 501
 def gravity_orders(work: Work) -> Iterator[Saving]:
     """Terms of the Newtonian field above the chosen order: their size, or what they change of the motion."""
     savings = list(described.gravity_orders(work))
-    if work.wanted is None or not savings:
+    if work.goal is None or not savings:
         yield from savings
         return
-    scene = _scene(work, work.wanted)
+    scene = _scene(work, work.goal)
     tried = None if scene is None else model_settled(scene, Model()).taken
     for saving in savings:
-        yield saving if tried is None else _held(saving, tried, work.wanted)
+        yield saving if tried is None else _held(saving, tried, work.goal)
 
 
 def simpler_model(work: Work) -> Iterator[Saving]:
     """What a run to the accuracy leaves out of the equations as well: all that is not linear, parameters, masses."""
-    scene = None if work.wanted is None else _scene(work, work.wanted)
-    if scene is None or work.wanted is None:
+    scene = None if work.goal is None else _scene(work, work.goal)
+    if scene is None or work.goal is None:
         return
     taken = model_chosen(scene).taken
     model = taken.model
     before = scene.rich.right_hand_side.operations
     measures = (Measure("operations of the right-hand side at these values", OPERATIONS, before, taken.operations),)
-    why = Message("simulate --accuracy [[accuracy]] leaves it out", accuracy=f"{work.wanted.accuracy:g}")
+    why = Message("simulate --accuracy [[accuracy]] leaves it out", accuracy=f"{work.goal.accuracy:g}")
     for kind, what in _left_out(scene, model):
-        yield _held(Saving(kind, what, why, Certainty.ESTIMATED, measures), taken, work.wanted)
+        yield _held(Saving(kind, what, why, Certainty.ESTIMATED, measures), taken, work.goal)
 
 
 def _left_out(scene: Scene, model: Model) -> Iterator[tuple[str, tuple[str, ...]]]:
@@ -494,16 +496,16 @@ def ledger(analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | No
     the equations leave out is held against ``wanted``, an accuracy over a time.
     """
     work = Work(analysis, budget, wanted)
-    found: list[Saving] = []
+    entries: list[Saving] = []
     unmeasured = []
     tied = bool(analysis.system.constraints or analysis.system.speeds)
     for kind, savings in KINDS.items():
         if tied and kind not in OF_ANY_SYSTEM:
             continue
         try:
-            found += [saving for saving in savings(work) if saving.saves]
+            entries += [saving for saving in savings(work) if saving.saves]
         except TooDear:
             unmeasured.append(kind)
         except Failure:
             continue
-    return Ledger(tuple(found), tuple(unmeasured))
+    return Ledger(tuple(entries), tuple(unmeasured))

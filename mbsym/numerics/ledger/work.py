@@ -76,7 +76,7 @@ class Work:
 
     def __init__(self, analysis: Analysis, budget: float = BUDGET, wanted: AccuracyGoal | None = None) -> None:
         self.analysis = analysis
-        self.wanted = wanted
+        self.goal = wanted
         self.system = analysis.system
         self._budget, self._spent = budget, 0.0
         self._rings: list[Ring] = []
@@ -127,8 +127,8 @@ class Work:
 
     def accelerations_at(self, values: Mapping[str, arb]) -> list[arb]:
         """q'' at numbers for all inputs."""
-        found: list[arb] = self.forward.program.evaluate(self.forward.accelerations, values, Balls(values))
-        return found
+        accelerations: list[arb] = self.forward.program.evaluate(self.forward.accelerations, values, Balls(values))
+        return accelerations
 
     def right_hand_sides(self, other: System, changing: Collection[str] = ()) -> tuple[Measure, ...]:
         """The accelerations of another system against those of this one: operations, and seconds of building them.
@@ -213,12 +213,12 @@ class Work:
         best, total = float("inf"), 0.0
         for _ in range(REPEATS):
             started = time.thread_time()
-            found = build()
+            built = build()
             spent = time.thread_time() - started
             best, total = min(best, spent), total + spent
             if total > SOON:
                 break
-        return found, best
+        return built, best
 
 
 # --- counterfactual systems ---
@@ -259,9 +259,9 @@ def moving_names(system: System) -> frozenset[str]:
 def holds(ring: Ring, x: Polynomial, name: str) -> bool:
     """Whether a parameter occurs in a polynomial: plainly, under sin and cos, or inside what is adjoined."""
     for k in occurring([x]):
-        found = ring.generators[k]
-        if found.name == name and found.kind in ("parameter", "sine", "cosine"):
+        generator = ring.generators[k]
+        if generator.name == name and generator.kind in ("parameter", "sine", "cosine"):
             return True
-        if found.argument is not None and holds(ring, found.argument, name):
+        if generator.argument is not None and holds(ring, generator.argument, name):
             return True
     return False

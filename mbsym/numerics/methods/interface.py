@@ -58,6 +58,9 @@ class Breakdown(Exception):
         self.told = Message(text, kind=Message(kind), time=f"{self.time:.9g}", message=self.message)
         super().__init__(str(self.told))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.kind, self.message, self.time, self.state, self.filled)
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -275,16 +278,16 @@ def up_to(passed: Passed | None, end: float) -> Passed | None:
         return None
     return Passed(
         [time for time in passed.switches if time <= end],
-        [one for one in passed.narrow if one.time - one.width <= end],
+        [feature for feature in passed.narrow if feature.time - feature.width <= end],
         [time for time in passed.unresolved if time <= end],
-        [one for one in passed.inside if one[0] <= end],
+        [point for point in passed.inside if point[0] <= end],
     )
 
 
 def together(runs: Iterable[Run], whole: Iterable[Callable[[Any], Any]]) -> Passed | None:
     """What runs of parts of a system have met; ``whole`` makes of the state of each that of the system."""
     runs = list(runs)
-    passages = [one for run in runs if (one := met_by(run)) is not None]
+    passages = [met for run in runs if (met := met_by(run)) is not None]
     if not passages:
         return None
     return Passed(
@@ -320,22 +323,24 @@ def machine_code(dynamics: Any, name: str, scalar: str = FLOAT64) -> Code:
     it is.
     """
     code: Code = getattr(dynamics, name)
-    given = getattr(dynamics, "scenario", None)
-    if scalar != FLOAT64 or name not in COMPENSATED or not isinstance(given, Scenario):
+    scenario = getattr(dynamics, "scenario", None)
+    if scalar != FLOAT64 or name not in COMPENSATED or not isinstance(scenario, Scenario):
         return code
     judged = range(len(code.outputs) // 2 if name == "right_hand_side" else 0, len(code.outputs))
     instructions = [code.program.instructions[number] for number in code.program.live(code.outputs)]
-    read = {str(one.payload) for one in instructions if one.operation == "input"} - set(code.inputs)
-    compensation = compensated_code(given, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
+    read = {str(instruction.payload) for instruction in instructions if instruction.operation == "input"} - set(
+        code.inputs
+    )
+    compensation = compensated_code(scenario, replace(code, inputs=(*code.inputs, *sorted(read))), judged)
     return code if compensation is None else replace(compensation.code, inputs=code.inputs)
 
 
 def once(dynamics: Dynamics, key: Hashable, make: Callable[[], Made]) -> Made:
     """``make()``, or what it made before for the same dynamics and key; it must not hold on to the dynamics."""
-    kept = _KEPT.setdefault(dynamics, {})
-    if key not in kept:
-        kept[key] = make()
-    made: Made = kept[key]
+    memo = _KEPT.setdefault(dynamics, {})
+    if key not in memo:
+        memo[key] = make()
+    made: Made = memo[key]
     return made
 
 

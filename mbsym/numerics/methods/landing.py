@@ -129,11 +129,11 @@ class Blocks:
             return None
         self._size, self._waits = min(2 * self._size, MOST), 0
         length *= count / max(1, run.work.steps - steps)
-        found = states[:, np.searchsorted(times, within)]
+        filled = states[:, np.searchsorted(times, within)]
         if rest is not None:
             later = rows[len(within) : int(np.searchsorted(rows, rest.end, side="right"))]
-            found = np.concatenate([found, rest(later)], axis=1) if len(later) else found
-        return Block(found, float(run.time), length)
+            filled = np.concatenate([filled, rest(later)], axis=1) if len(later) else filled
+        return Block(filled, float(run.time), length)
 
     def _undone(self, run: CompiledRun, saved: Any) -> None:
         run.undo(saved)
@@ -161,8 +161,8 @@ class Blocks:
             values = self._by_interval(self._narrow(points))
             if not np.all(np.isfinite(values)):
                 return False
-            found = series(values)
-            return all(np.all(harmless(kind, own)) for kind, own in zip(self._kinds, found, strict=True))
+            expansions = series(values)
+            return all(np.all(harmless(kind, own)) for kind, own in zip(self._kinds, expansions, strict=True))
         return True
 
     @staticmethod
@@ -269,31 +269,31 @@ class LandingRun:
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at increasing times; raises Breakdown with those that there are."""
         at = np.asarray(times)
-        found = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
+        states = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
         done = int(np.searchsorted(at, self.time, side="right"))
-        found[:, :done] = np.asarray(self.state)[:, None]
+        states[:, :done] = np.asarray(self.state)[:, None]
         try:
             while done < len(at):
                 block = self._block(at[done:])
                 if block is not None:
                     last = done + block.rows.shape[1]
-                    found[:, done:last] = block.rows
+                    states[:, done:last] = block.rows
                     done = last
                     continue
                 # Steps of one length end at the last row: there is more in a step than in what lies between.
                 piece = self.step(at[-1]) if self._method.traits.fixed else self._onwards(float(at[-1]))
                 last = int(np.searchsorted(at, piece.end, side="right"))
                 if last > done:
-                    found[:, done:last] = piece(at[done:last])
+                    states[:, done:last] = piece(at[done:last])
                 done = last
         except Breakdown as trouble:
-            trouble.filled = found[:, :done]
+            trouble.filled = states[:, :done]
             raise
         if done and self.time > at[-1]:
             # Steps do not depend on where rows are asked for: the last one goes on where the next question begins.
             self._beyond = piece, self.state
-            self.time, self.state = float(at[-1]), found[:, -1].copy()
-        return found
+            self.time, self.state = float(at[-1]), states[:, -1].copy()
+        return states
 
     def _block(self, rows: Any) -> Block | None:
         """A stretch of steps at once, where nothing is near; the last row is left to single steps."""
@@ -464,9 +464,9 @@ class LandingRun:
             self.passed.inside.append((float(middle), np.array(piece(np.array([middle])), dtype=float)[:, 0]))
 
     def _note_switch(self) -> None:
-        kept = self.passed.switches
-        if len(kept) < MOST_KEPT and not (kept and kept[-1] == self.time):
-            kept.append(self.time)
+        switches = self.passed.switches
+        if len(switches) < MOST_KEPT and not (switches and switches[-1] == self.time):
+            switches.append(self.time)
 
     # --- sides ---
 

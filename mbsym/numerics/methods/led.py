@@ -120,18 +120,18 @@ def _history(
     A repetition from amid the run takes other steps, one of which may come too near long before the stop; then it is
     tried from further back, as far as the beginning.
     """
-    befores = [one for one in reversed(past) if one[0] <= times[0]] or [past[0]]
+    befores = [point for point in reversed(past) if point[0] <= times[0]] or [past[0]]
     longest: tuple[Any, Any] | None = None
     for start, state in (*befores[: REPETITIONS - 1], *befores[REPETITIONS - 1 :][-1:]):
-        wanted = times[times > start]
+        requested = times[times > start]
         try:
-            states = begin(start, state).fill(wanted) if len(wanted) else None
+            states = begin(start, state).fill(requested) if len(requested) else None
         except Breakdown as earlier:
             states = earlier.filled
         made = 0 if states is None else states.shape[1]
         if made > (0 if longest is None else len(longest[0])):
-            longest = wanted[:made], states
-        if made == len(wanted):
+            longest = requested[:made], states
+        if made == len(requested):
             break
     return None if longest is None else (longest[0], led(*longest))
 
@@ -141,16 +141,16 @@ def _distance(
 ) -> float | None:
     """How long until the singular position: 1/sqrt(nearness) falls to zero in a straight line."""
     lengths = (stop.time - past[0][0]) * 0.5 ** np.arange(0.0, 40.0)
-    found = _history(led, begin, past, stop.time - lengths)
-    if found is None:
+    history = _history(led, begin, past, stop.time - lengths)
+    if history is None:
         return None
     now = 1 / np.sqrt(float(led.nearness(stop.time, stop.state)))
-    before = 1 / np.sqrt(led.nearness(*found))
+    before = 1 / np.sqrt(led.nearness(*history))
     away = np.flatnonzero(before >= 2 * now)
     if not len(away):
         return None
     last = away[-1]
-    return float((stop.time - found[0][last]) * now / (before[last] - now))
+    return float((stop.time - history[0][last]) * now / (before[last] - now))
 
 
 class _Fitted:
@@ -206,14 +206,14 @@ class Lead:
         return magnitudes(rates, variables(self._dynamics), np.zeros(1), first).sizes[:, 0]
 
     def __call__(self, times: Any, states: Any) -> Any:
-        found = np.array(states)
-        sizes = self.sizes if found.ndim == 1 else self.sizes[:, None]
+        corrected = np.array(states)
+        sizes = self.sizes if corrected.ndim == 1 else self.sizes[:, None]
         with np.errstate(all="ignore"):
             for _ in range(TIMES):
-                change = self._correct(_points(times, found))[:-1]
-                near = np.all(np.abs(change) <= LARGEST_PART * (sizes + np.abs(found)), axis=0)
-                found = found + np.where(near, change, 0.0)
-        return found
+                change = self._correct(_points(times, corrected))[:-1]
+                near = np.all(np.abs(change) <= LARGEST_PART * (sizes + np.abs(corrected)), axis=0)
+                corrected = corrected + np.where(near, change, 0.0)
+        return corrected
 
     def nearness(self, times: Any, states: Any) -> Any:
         """How near to a singular position: beyond 1 nothing is computed; about 1/distance^2."""
@@ -243,8 +243,8 @@ def nearly_singular(time: Any, state: Any) -> Breakdown:
 def refuse(dynamics: Dynamics, method: str) -> None:
     """Raises Unusable for a method that does not lead states back, where there is something to be kept."""
     if dynamics.constraints is not None:
-        told = dynamics.constraints.told()
-        raise Unusable(Message("[[method]] does not keep to constraints ([[which]])", method=method, which=told))
+        listed = dynamics.constraints.told()
+        raise Unusable(Message("[[method]] does not keep to constraints ([[which]])", method=method, which=listed))
     if dynamics.correction is not None:
         text = "[[method]] does not keep quaternions and unit vectors at their lengths"
         raise Unusable(Message(text, method=method))
@@ -293,31 +293,31 @@ class LedRun:
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at m increasing times; raises Breakdown with those that there are."""
         at = np.asarray(times)
-        found = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
+        states = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
         done = 0
         while done < len(at):
             if self._bridge is not None:
                 last = max(done, int(np.searchsorted(at, self._bridge.end, side="right")))
                 if last > done:
-                    found[:, done:last] = self._bridge.curve(at[done:last])
+                    states[:, done:last] = self._bridge.curve(at[done:last])
                 done = last
                 self._along(self._bridge, float(at[-1]) if done == len(at) else self._bridge.end)
                 continue
             try:
-                found[:, done:] = self._led(at[done:], self._inner.fill(at[done:]))
+                states[:, done:] = self._led(at[done:], self._inner.fill(at[done:]))
                 done = len(at)
                 self._arrived()
             except Breakdown as trouble:
                 made = 0 if trouble.filled is None else trouble.filled.shape[1]
                 if made:
-                    found[:, done : done + made] = self._led(at[done : done + made], trouble.filled)
+                    states[:, done : done + made] = self._led(at[done : done + made], trouble.filled)
                 done += made
-                trouble.filled = found[:, :done]
+                trouble.filled = states[:, :done]
                 self._bridged(trouble)
                 # Rows that the last step before it has passed by are on its curve, not on the bridge.
                 bridge = self._bridge
                 assert bridge is not None
-        return found
+        return states
 
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state."""
@@ -335,11 +335,11 @@ class LedRun:
         """The way over a singular position; raises what ended the run where that is another thing, or none is found."""
         if trouble.kind != Cause.SINGULAR_CONSTRAINTS:
             raise trouble
-        found = bridge(self._led, self._begin, self._past, trouble)
-        if found is None:
+        crossing = bridge(self._led, self._begin, self._past, trouble)
+        if crossing is None:
             raise trouble
-        self._bridge = found
-        self.work.singular.append(found.singular)
+        self._bridge = crossing
+        self.work.singular.append(crossing.singular)
 
     def _along(self, over: Bridge, until: float) -> None:
         """On the way over a singular position; at its end the run goes on from there."""

@@ -110,7 +110,7 @@ def variables(dynamics: Dynamics) -> Variables:
     system = dynamics.system
     names = dynamics.inputs[1 : 1 + dynamics.dimension]
     bounded = set(angle_denominators(system))
-    bounded |= {name for body in described(system).bodies for one in body.orientation for name in one.components}
+    bounded |= {name for body in described(system).bodies for vector in body.orientation for name in vector.components}
     bounded &= set(system.coordinates)
     groups = bounded, set(system.velocities), set(system.parameter_names)
     n = len(system.velocities)
@@ -122,7 +122,7 @@ def variables(dynamics: Dynamics) -> Variables:
 
     angles, moving, constant = (np.array([name in group for name in names], dtype=bool) for group in groups)
     columns: dict[str, list[int]] = {}
-    for place, (name, joined, number) in enumerate(one.partition("~") for one in names):
+    for place, (name, joined, number) in enumerate(full_name.partition("~") for full_name in names):
         if joined and number.isdecimal() and name in names:
             columns.setdefault(number, []).append(place)
     return Variables(
@@ -156,9 +156,9 @@ def magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magni
     at_once = max(1, COLUMNS // max(1, 2 * len(states)))
     parts = range(0, states.shape[1], at_once)
     with np.errstate(all="ignore"):
-        found = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
-    sizes, natural = (np.hstack([getattr(one, name) for one in found]) for name in ("sizes", "natural"))
-    return replace(found[0], sizes=sizes, times=np.concatenate([one.times for one in found]), natural=natural)
+        blocks = [_magnitudes(rates, kinds, begin[k : k + at_once], states[:, k : k + at_once]) for k in parts]
+    sizes, natural = (np.hstack([getattr(block, name) for block in blocks]) for name in ("sizes", "natural"))
+    return replace(blocks[0], sizes=sizes, times=np.concatenate([block.times for block in blocks]), natural=natural)
 
 
 def about(dynamics: Dynamics, time: float, state: Any) -> Magnitudes:
@@ -179,8 +179,8 @@ def counted(rhs: Kernel, work: Work) -> Rates:
 
 def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magnitudes:
     moving, placed = (np.flatnonzero(mask) for mask in (kinds.velocities, kinds.positions))
-    given = np.abs(states).astype(float)
-    sizes = np.where(kinds.angles[:, None], np.maximum(given, 1.0), given)
+    absolute = np.abs(states).astype(float)
+    sizes = np.where(kinds.angles[:, None], np.maximum(absolute, 1.0), absolute)
     base = rates(begin, states)
     reach = (DISPLACED * sizes[placed]).astype(states.dtype)
     largest = np.max(_finite(_beside(rates, begin, states, np.tile(placed, 2), np.vstack([reach, -reach]))), axis=1)
@@ -194,11 +194,11 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     bends = np.max(ways * rate, axis=1, initial=0.0)
     arcs = _arcs(kinds, placed, sizes[placed], _finite(base)[placed], largest[placed], bends)
     sizes[placed] = _sizes_above_noise(np.maximum(sizes[placed], LEAST * arcs), ways, weights)
-    given[moving] = _above_noise(given[moving], weights)
+    absolute[moving] = _above_noise(absolute[moving], weights)
     path = np.min(_ratio(np.where(sizes > 0, sizes, np.inf)[placed][:, None], ways), axis=0, initial=np.inf)
     path = np.where(np.isfinite(path), path, 0.0)
     times = np.sqrt(_ratio(path, rate))
-    speeds = np.maximum(given[moving], np.where(np.isfinite(times), rate * times, 0.0))
+    speeds = np.maximum(absolute[moving], np.where(np.isfinite(times), rate * times, 0.0))
     if not (np.all(path > 0) and np.all(speeds > 0)):
         path, speeds = _weighed(path, weights), _weighed(speeds, weights)
         times = np.minimum(np.sqrt(_ratio(path, rate)), _ratio(path, speeds))
@@ -206,9 +206,9 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     shortest = np.min(times, axis=0, initial=np.inf)
     passing = _ratio(np.where(sizes > 0, sizes, np.inf)[placed], largest[placed])
     shortest = np.where(np.isfinite(shortest), shortest, np.min(passing, axis=0, initial=np.inf))
-    told = np.isfinite(shortest) & (shortest > 0)
-    if not np.all(told):
-        shortest = np.where(told, shortest, _from_rest(rates, begin, states, placed, moving, ways, rate, base))
+    known = np.isfinite(shortest) & (shortest > 0)
+    if not np.all(known):
+        shortest = np.where(known, shortest, _from_rest(rates, begin, states, placed, moving, ways, rate, base))
     sizes[moving] = np.where(speeds > 0, speeds, rate * shortest)
     path = np.where(path > 0, path, rate * shortest**2)
     reached = np.maximum(np.max(ways * path, axis=1, initial=0.0), largest[placed] * shortest)
@@ -216,11 +216,11 @@ def _magnitudes(rates: Rates, kinds: Variables, begin: Any, states: Any) -> Magn
     sizes = np.where(np.isfinite(sizes) & (sizes > 0), sizes, 1.0)
     for column in kinds.columns:
         own = sizes[: len(column)]
-        extent, growth = (np.max(values[column] / own, axis=0) for values in (given, _finite(base) * shortest))
+        extent, growth = (np.max(values[column] / own, axis=0) for values in (absolute, _finite(base) * shortest))
         extent = np.where(extent > 0, extent, growth)
         sizes[column] = own * np.where(extent > 0, extent, 1.0)
     natural = sizes.copy()
-    own = np.maximum(given[moving], np.sqrt(_finite(base)[moving] * path))
+    own = np.maximum(absolute[moving], np.sqrt(_finite(base)[moving] * path))
     natural[placed] = np.maximum(sizes[placed], SHARE * arcs)
     own = np.maximum(own, _alike(own, weights))
     natural[moving] = np.minimum(sizes[moving], np.where(own > 0, own, SHARE * sizes[moving]))
@@ -241,8 +241,8 @@ def _from_rest(rates: Rates, begin: Any, states: Any, placed: Any, moving: Any, 
         bends.append(np.where(reach > 0, change / np.where(reach > 0, reach, 1.0), 0.0))
     stiff = np.max(bends[0] * np.swapaxes(ways, 0, 1), axis=(0, 1), initial=0.0)
     damped = np.max(bends[1], axis=(0, 1), initial=0.0)
-    found = np.where(stiff > 0, 1 / np.sqrt(np.where(stiff > 0, stiff, 1.0)), 1 / np.where(damped > 0, damped, 1.0))
-    return np.where(np.isfinite(found), found, 1.0)
+    times = np.where(stiff > 0, 1 / np.sqrt(np.where(stiff > 0, stiff, 1.0)), 1 / np.where(damped > 0, damped, 1.0))
+    return np.where(np.isfinite(times), times, 1.0)
 
 
 def _arcs(kinds: Variables, placed: Any, sizes: Any, base: Any, largest: Any, bends: Any) -> Any:
@@ -279,8 +279,8 @@ def _weighed(values: Any, weights: Any) -> Any:
 
 def _alike(values: Any, weights: Any) -> Any:
     """What the kinetic energy of the largest of the values would be in each of them; 0 where masses are not known."""
-    found = _ratio(np.max(values * weights, axis=0, initial=0.0), weights)
-    return np.where(np.isfinite(found), found, 0.0)
+    alike = _ratio(np.max(values * weights, axis=0, initial=0.0), weights)
+    return np.where(np.isfinite(alike), alike, 0.0)
 
 
 def _beside(rates: Rates, begin: Any, states: Any, places: Any, changes: Any) -> Any:
@@ -293,8 +293,8 @@ def _beside(rates: Rates, begin: Any, states: Any, places: Any, changes: Any) ->
 
 def _finite(values: Any) -> Any:
     """|values|, 0 where one is no number."""
-    found = np.abs(values).astype(float)
-    return np.where(np.isfinite(found), found, 0.0)
+    absolute = np.abs(values).astype(float)
+    return np.where(np.isfinite(absolute), absolute, 0.0)
 
 
 def first_steps(

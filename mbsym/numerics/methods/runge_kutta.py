@@ -218,7 +218,7 @@ def _fill_text(scalar: Scalar) -> str:
     row, end = f.slot(INTEGER), f.slot(INTEGER)
     f.store(f["first"], INTEGER, row)
     slack = f.load(clock, f["clock"], Clock.SLACK)
-    again, over, go, reached, stopped, found = (f.label() for _ in range(6))
+    again, over, go, reached, stopped, write_rows = (f.label() for _ in range(6))
     f.jump(again)
     f.place(again)
     now = f.load(INTEGER, row)
@@ -241,14 +241,14 @@ def _fill_text(scalar: Scalar) -> str:
     f.jump(check)
     f.place(check)
     upto = f.load(INTEGER, end)
-    f.branch(upto.compare("<", last), more, found)
+    f.branch(upto.compare("<", last), more, write_rows)
     f.place(more)
     within = (f.load(clock, times, upto) - slack).compare("<=", f.load(clock, f["clock"], Clock.TIME))
-    f.branch(within, one_more, found)
+    f.branch(within, one_more, write_rows)
     f.place(one_more)
     f.store(upto + 1, INTEGER, end)
     f.jump(check)
-    f.place(found)
+    f.place(write_rows)
     arguments = [f[name] for name in ("x", "old", "terms", "clock", "times", "out")]
     f.call("rows", INTEGER, *arguments, now, f.load(INTEGER, end), f["stride"])
     f.store(f.load(INTEGER, end), INTEGER, row)
@@ -394,24 +394,24 @@ class CompiledRun(Stepping):
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at m increasing times, steps and rows alike in machine code."""
         at = np.ascontiguousarray(times, dtype=self.clock_type)
-        found = np.empty((self.size, len(at)), self.dtype)
+        states = np.empty((self.size, len(at)), self.dtype)
         done = 0
         try:
             while done < len(at):
-                done = self.stretch(at, found, done, self._at_once)
+                done = self.stretch(at, states, done, self._at_once)
                 self.settle(done == len(at))
         except Breakdown as trouble:
-            trouble.filled = found[:, :done]
+            trouble.filled = states[:, :done]
             raise
         if done:
-            self.time, self.state = times[-1], found[:, -1].copy()
-        return found
+            self.time, self.state = times[-1], states[:, -1].copy()
+        return states
 
-    def stretch(self, at: Any, found: Any, done: int, attempts: int) -> int:
-        """Fills columns of ``found`` from number ``done`` on, by so many attempted steps; how many are filled then."""
+    def stretch(self, at: Any, states: Any, done: int, attempts: int) -> int:
+        """Fills columns of ``states`` from number ``done`` on, by so many attempted steps; how many are filled then."""
         if at[done] - self.clock[Clock.SLACK] > self.clock[Clock.TIME]:
             self._allow(attempts)
-        pointers = (*self._pointers, address(self.terms), address(at), address(found))
+        pointers = (*self._pointers, address(self.terms), address(at), address(states))
         done = self._fill(*pointers, done, len(at), len(at))
         self._counted()
         return done
@@ -527,9 +527,9 @@ class AdaptiveRun(CompiledRun):
         """One step that is accepted; where ``until`` shortens it, the next one is as long as it would have been."""
         clock = self.clock
         room = np.inf if until is None else until - clock[Clock.TIME]
-        wanted = clock[Clock.STEP]
-        if wanted < room:
-            if 2 * wanted > room:
+        length = clock[Clock.STEP]
+        if length < room:
+            if 2 * length > room:
                 clock[Clock.STEP] = room / 2  # rather two of a length than one that is tiny
             super().one()
             return
@@ -542,7 +542,7 @@ class AdaptiveRun(CompiledRun):
         super().one()
         if clock[Clock.LAST] == room:
             clock[Clock.TIME], clock[Clock.TIME_CARRY] = until, 0
-            clock[Clock.STEP] = max(clock[Clock.STEP], wanted)
+            clock[Clock.STEP] = max(clock[Clock.STEP], length)
 
     def _over(self, until: float) -> None:
         """To a time that is no further than roundings: the state is the same."""

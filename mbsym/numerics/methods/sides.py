@@ -59,13 +59,13 @@ def met(kinds: Sequence[str], values: Callable[[Any], Any], piece: Piece) -> lis
     """
     if not kinds or not piece.end > piece.start:  # short floats: a step may end where it began
         return []
-    found, most = [], NARROW * (piece.end - piece.start)
+    narrow, most = [], NARROW * (piece.end - piece.start)
     whole = along(values, piece, piece.start, piece.end)
     for k, kind in enumerate(kinds):
         for start, end, known in _resolved(k, values, piece, (piece.start, piece.end), whole[k], HALVINGS):
             if np.all(np.isfinite(known)) and not _is_plain(kind, series(known), 2.0 * most / (end - start)):
-                found += [(time, width, k) for time, width in _places(kind, start, end, known)]
-    return sorted(one for one in found if one[1] < most)
+                narrow += [(time, width, k) for time, width in _places(kind, start, end, known)]
+    return sorted(feature for feature in narrow if feature[1] < most)
 
 
 def along(values: Callable[[Any], Any], piece: Piece, start: float, end: float) -> Any:
@@ -82,10 +82,10 @@ def _resolved(
     if depth == 0 or not np.all(np.isfinite(known)) or resolved(series(known)):
         return [(start, end, known)]
     middle = 0.5 * (start + end)
-    found = []
+    parts = []
     for part in ((start, middle), (middle, end)):
-        found += _resolved(k, values, piece, part, along(values, piece, *part)[k], depth - 1)
-    return found
+        parts += _resolved(k, values, piece, part, along(values, piece, *part)[k], depth - 1)
+    return parts
 
 
 def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[float, float]]:
@@ -95,10 +95,10 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
     slope, bend = polynomial.deriv(), polynomial.deriv(2)
     if kind == TURN:
         passed, _, _ = passages(polynomial.coef, Sign(), 1e-14 * float(np.max(np.abs(values))))
-        zeros = [one.place for one in passed if one.turn]
+        zeros = [crossing.place for crossing in passed if crossing.turn]
         widths = [1.0 / max(abs(float(slope(s))) * per, 1e-300) for s in zeros]
         return [(float(start + 0.5 * (s + 1) * (end - start)), w) for s, w in zip(zeros, widths, strict=True)]
-    found = []
+    narrow = []
     roots = slope.roots() if np.any(slope.coef) else np.empty(0)
     at = np.clip(roots.real[(np.abs(roots.imag) < 1e-6) & (np.abs(roots.real) < 1 + 1e-6)], -1, 1)
     for s in at:
@@ -106,16 +106,16 @@ def _places(kind: str, start: float, end: float, values: Any) -> list[tuple[floa
         u, curvature = float(polynomial(s)), float(bend(s)) * per * per
         time = start + 0.5 * (float(s) + 1) * (end - start)
         if kind == PEAK and curvature < 0 and u > -SMALL and u - max(_others(values, s)) > 1:
-            found.append((time, (2.0 / -curvature) ** 0.5))
+            narrow.append((time, (2.0 / -curvature) ** 0.5))
         if kind == DIP and u * curvature > 0 and abs(u) < SHALLOW * min(map(abs, _others(values, s))):
-            found.append((time, (2.0 * u / curvature) ** 0.5))
-    if kind == PEAK and not found and values[0] < -SMALL:  # a wall
+            narrow.append((time, (2.0 * u / curvature) ** 0.5))
+    if kind == PEAK and not narrow and values[0] < -SMALL:  # a wall
         passed, _, _ = passages(series(values + SMALL), Sign(), 1e-14)
         for passage in passed[:1]:
             if passage.turn > 0:
                 width = WALL / max(abs(float(slope(passage.place))) * per, 1e-300)
-                found.append((start + 0.5 * (passage.place + 1) * (end - start) + BESIDE * width, width))
-    return [(float(time), float(width)) for time, width in found]
+                narrow.append((start + 0.5 * (passage.place + 1) * (end - start) + BESIDE * width, width))
+    return [(float(time), float(width)) for time, width in narrow]
 
 
 def _is_plain(kind: str, coefficients: Any, most: float) -> bool:
@@ -198,8 +198,8 @@ class Sides:
         steps = np.diag(np.append(self.time, scene.sizes[:, 0]))
         point = np.append(time, state)[:, None]
         changes = np.abs(self.values(np.hstack([point + steps, point - steps])) - values[:, None])
-        found = np.max(np.where(np.isfinite(changes), changes, 0.0), axis=1, initial=0.0)
-        self.sizes = np.where(found > 0, found, 1.0)
+        largest = np.max(np.where(np.isfinite(changes), changes, 0.0), axis=1, initial=0.0)
+        self.sizes = np.where(largest > 0, largest, 1.0)
 
     def size(self, k: int, side: int | None = None) -> float:
         """That of one g; of what holds a sliding one it is 1."""
@@ -384,18 +384,18 @@ class Leaving:
         """The first time at which switches leave their sides in a piece, and which do so then; (end, ()) if none."""
         if not self._looked_for or piece.end - piece.start <= self._switches.together(piece.end):
             return piece.end, ()
-        found: list[tuple[float, int]] = []
+        leaving: list[tuple[float, int]] = []
         whole = along(self._values, piece, piece.start, piece.end)
         for k in self._looked_for:
             beside = min(float(whole[k][0]), 0.0)  # a step to a switch ends beside it, by its own error
             place = self._left(k, piece, (piece.start, piece.end), whole[k], beside, DEPTH)
             if place is not None:
-                found.append((place, k))
-        if not found:
+                leaving.append((place, k))
+        if not leaving:
             return piece.end, ()
-        first = min(place for place, _ in found)
+        first = min(place for place, _ in leaving)
         together = self._switches.together(first)
-        return first, tuple(k for place, k in found if place <= first + together)
+        return first, tuple(k for place, k in leaving if place <= first + together)
 
     def _left(
         self, k: int, piece: Piece, span: tuple[float, float], values: Any, beside: float, depth: int

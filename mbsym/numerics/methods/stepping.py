@@ -83,17 +83,17 @@ class Stepping(ABC):
     def fill(self, times: Any) -> Any:
         """The states (2n, m) at m increasing times; raises Breakdown with those that there are."""
         at = np.asarray(times)
-        found = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
+        states = np.empty((len(self.state), len(at)), np.asarray(self.state).dtype)
         done = 0
         try:
             while done < len(at):
                 self.far(at[done])
                 last = max(done + 1, int(np.searchsorted(at, self.reached, side="right")))
-                found[:, done:last] = self.states(at[done:last])
+                states[:, done:last] = self.states(at[done:last])
                 done = last
         except Breakdown as trouble:
-            trouble.filled = found[:, :done]
+            trouble.filled = states[:, :done]
             raise
         if done:
-            self.time, self.state = at[-1], found[:, -1].copy()
-        return found
+            self.time, self.state = at[-1], states[:, -1].copy()
+        return states

@@ -270,13 +270,13 @@ class MidpointRun(Stepping):
     def restart(self, time: float, state: Any) -> None:
         """Go on from another state."""
         n = self.n
-        given = np.array(state, self.dtype)
+        values = np.array(state, self.dtype)
         self._rebased(time, self.step_length)
-        self.x[:n], self.x[n:] = given[:n], self._kernels["momenta"](np.concatenate(([self.dtype(time)], given)))
+        self.x[:n], self.x[n:] = values[:n], self._kernels["momenta"](np.concatenate(([self.dtype(time)], values)))
         self.carry[:] = 0
-        self.guess[:n] = self.guess[n:] = given[n:]
+        self.guess[:n] = self.guess[n:] = values[n:]
         self._before: tuple[Any, Any] | None = None
-        self.time, self.state = self.reached, given
+        self.time, self.state = self.reached, values
 
     def _rebased(self, time: Any, length: Any) -> None:
         """Steps of a length are counted from here."""
@@ -285,8 +285,8 @@ class MidpointRun(Stepping):
     @property
     def reached(self) -> Any:
         """The end of the last step."""
-        found = self.clock[START] + self._clock_type(self.count[NUMBER]) * self.clock[STEP]
-        return found if self._clock_type is np.longdouble else float(found)
+        end = self.clock[START] + self._clock_type(self.count[NUMBER]) * self.clock[STEP]
+        return end if self._clock_type is np.longdouble else float(end)
 
     @property
     def end(self) -> Any:
@@ -300,19 +300,19 @@ class MidpointRun(Stepping):
         if self._before is None:
             state = np.array(self.state)
             return lambda times: np.repeat(state[:, None], len(times), axis=1)
-        (start, kept), end = self._before, self.reached
+        (start, stored), end = self._before, self.reached
         times = np.array([start, end])
-        return self._between(times, np.column_stack((kept, np.concatenate((self.x, self.carry)))), [0], [1])
+        return self._between(times, np.column_stack((stored, np.concatenate((self.x, self.carry)))), [0], [1])
 
-    def _between(self, times: Any, kept: Any, begin: Any, end: Any) -> Nested:
-        """Dense output between pairs of ``times`` at which (x, carry) is ``kept``."""
+    def _between(self, times: Any, stored: Any, begin: Any, end: Any) -> Nested:
+        """Dense output between pairs of ``times`` at which (x, carry) is ``stored``."""
         n = self.n
-        shown = self._shown(times, kept[: 2 * n])
+        shown = self._shown(times, stored[: 2 * n])
         with np.errstate(all="ignore"):
             rates = self._kernels["right_hand_side"](np.vstack([times.astype(self.dtype), shown]))
             length = (times[end] - times[begin]).astype(self.dtype)
             change = shown[:, end] - shown[:, begin]
-            change[:n] -= kept[2 * n : 3 * n, end] - kept[2 * n : 3 * n, begin]
+            change[:n] -= stored[2 * n : 3 * n, end] - stored[2 * n : 3 * n, begin]
             terms = hermite(length, change, rates[:, begin], rates[:, end])
         return Nested(times[begin], times[end] - times[begin], times[end], shown[:, begin], shown[:, end], terms)
 
@@ -320,7 +320,7 @@ class MidpointRun(Stepping):
         """A step of the length asked for; a shorter one where it would lead beyond ``until``."""
         now = self.reached
         room = np.inf if until is None else until - now
-        kept = now, np.concatenate((self.x, self.carry))
+        before = now, np.concatenate((self.x, self.carry))
         if room > self.clock[STEP] * (1 + MISSED):
             self._march(int(self.count[NUMBER]) + 1)
         else:
@@ -331,7 +331,7 @@ class MidpointRun(Stepping):
             except Breakdown:
                 self._rebased(now, self.step_length)
                 raise
-        self._before = kept
+        self._before = before
 
     def _number(self, times: Any) -> Any:
         """The steps at whose ends, or in which, times lie."""
@@ -375,34 +375,34 @@ class MidpointRun(Stepping):
         early = int(np.searchsorted(number, self.count[NUMBER], side="right"))  # rows of the step that is made already
         head = self.states(at[:early]) if early else np.empty((2 * self.n, 0), self.dtype)
         if early < len(at):
-            found = np.hstack((head, self._later(at[early:], number[early:], head)))
+            states = np.hstack((head, self._later(at[early:], number[early:], head)))
         else:
-            found = head
-        self.time, self.state = times[-1], found[:, -1].copy()
-        return found
+            states = head
+        self.time, self.state = times[-1], states[:, -1].copy()
+        return states
 
     def _later(self, at: Any, number: Any, head: Any) -> Any:
         """Rows that steps must be made for; raises Breakdown with ``head`` and those that there are."""
         exact = self.clock[START] + number.astype(self._clock_type) * self.clock[STEP] == at
         marks = np.unique(np.concatenate((number, number[~exact] - 1, number[-1:] - 1)))
-        kept = np.empty((len(marks), 4 * self.n), self.dtype)
+        stored = np.empty((len(marks), 4 * self.n), self.dtype)
         moments = self.clock[START] + marks.astype(self._clock_type) * self.clock[STEP]
         trouble = None
         try:
-            self._marked(marks, kept)
-            self._before = moments[-2], kept[-2].copy()
-        except Breakdown as found:
-            trouble = found
+            self._marked(marks, stored)
+            self._before = moments[-2], stored[-2].copy()
+        except Breakdown as reason:
+            trouble = reason
         whole = int(np.searchsorted(number, self.count[NUMBER], side="right"))
-        rows = self._rows(at[:whole], exact[:whole], number[:whole], marks, moments, kept.T)
+        rows = self._rows(at[:whole], exact[:whole], number[:whole], marks, moments, stored.T)
         if trouble is not None:
             trouble.filled = np.hstack((head, rows))
             raise trouble
         return rows
 
-    def _marked(self, marks: Any, kept: Any) -> None:
+    def _marked(self, marks: Any, stored: Any) -> None:
         """Steps to the numbers in ``marks``, at each of which (x, carry) is kept."""
-        pointers = (*self._pointers, address(marks), address(kept))
+        pointers = (*self._pointers, address(marks), address(stored))
         done = 0
         while done < len(marks):
             first = int(self.count[NUMBER])
@@ -417,15 +417,15 @@ class MidpointRun(Stepping):
             if done < last:
                 self._fail(before)
 
-    def _rows(self, at: Any, exact: Any, number: Any, marks: Any, moments: Any, kept: Any) -> Any:
+    def _rows(self, at: Any, exact: Any, number: Any, marks: Any, moments: Any, stored: Any) -> Any:
         """States at times of which ``number`` is the step that they lie in, or end."""
         rows = np.empty((2 * self.n, len(at)), self.dtype)
         ends = np.searchsorted(marks, number)
-        rows[:, exact] = self._shown(moments[ends[exact]], kept[: 2 * self.n, ends[exact]])
+        rows[:, exact] = self._shown(moments[ends[exact]], stored[: 2 * self.n, ends[exact]])
         if not np.all(exact):
             used = slice(0, int(ends[-1]) + 1)
             begins, between = np.searchsorted(marks, number[~exact] - 1), ends[~exact]
-            rows[:, ~exact] = self._between(moments[used], kept[:, used], begins, between)(at[~exact])
+            rows[:, ~exact] = self._between(moments[used], stored[:, used], begins, between)(at[~exact])
         return rows
 
     def _fail(self, before: Any) -> None:
@@ -462,19 +462,19 @@ def _solved(matrices: Any, vectors: Any) -> Any:
     try:
         return np.linalg.solve(matrices, vectors)
     except np.linalg.LinAlgError:
-        found = np.full(vectors.shape, np.nan)
+        solutions = np.full(vectors.shape, np.nan)
         for place, (matrix, vector) in enumerate(zip(matrices, vectors, strict=True)):
             with suppress(np.linalg.LinAlgError):
-                found[place] = np.linalg.solve(matrix, vector)
-        return found
+                solutions[place] = np.linalg.solve(matrix, vector)
+        return solutions
 
 
 def _driver(dynamics: Dynamics, method: Symplectic, scalar: str) -> Library:
     def make() -> Library:
-        found = once(dynamics, "midpoint codes", lambda: codes(dynamics))
+        midpoint_codes = once(dynamics, "midpoint codes", lambda: codes(dynamics))
         chosen = SCALARS[scalar]
         text = midpoint_text(dynamics.size, method.fractions, chosen) + record_text(dynamics.size, chosen)
-        named = {"newton": found.newton, "residual": found.residual, "force": found.force}
+        named = {"newton": midpoint_codes.newton, "residual": midpoint_codes.residual, "force": midpoint_codes.force}
         return compiled(named, scalar, text, many=False)
 
     return once(dynamics, ("midpoint", method.name, scalar), make)

@@ -364,8 +364,8 @@ def aligned(shape: int | tuple[int, ...], dtype: Any) -> Any:
 
 
 def address(array: Any) -> int:
-    found: int = array.ctypes.data
-    return found
+    pointer: int = array.ctypes.data
+    return pointer
 
 
 def initial_state(dynamics: Dynamics, dtype: Any) -> Any:

@@ -68,34 +68,36 @@ def expressions(code: Code, heyoka: Any, dtype: Any, scales: Mapping[str, Any] |
         match instruction.operation, operands:
             case "constant", _:
                 assert isinstance(instruction.payload, Fraction)
-                found = heyoka.expression(exact_number(instruction.payload, dtype))
+                expression = heyoka.expression(exact_number(instruction.payload, dtype))
             case "input", _:
                 name = str(instruction.payload)
                 cell = None if name in code.inputs else place_of(name)
-                found = heyoka.time if name == "t" else heyoka.expression(name) if cell is None else heyoka.par[cell]
-                found = scales[name] * found if scales is not None and name in scales else found
+                expression = (
+                    heyoka.time if name == "t" else heyoka.expression(name) if cell is None else heyoka.par[cell]
+                )
+                expression = scales[name] * expression if scales is not None and name in scales else expression
             case "negative", [a]:
-                found = -a
+                expression = -a
             case "add", [a, b]:
-                found = a + b
+                expression = a + b
             case "subtract", [a, b]:
-                found = a - b
+                expression = a - b
             case "multiply", [a, b]:
-                found = a * b
+                expression = a * b
             case "divide", [a, b]:
-                found = a / b
+                expression = a / b
             case "sign", [a]:  # runs are cut where a changes its sign
                 zero, one = (heyoka.expression(exact_number(Fraction(value), dtype)) for value in (0, 1))
-                found = heyoka.select(heyoka.gt(a, zero), one, heyoka.select(heyoka.lt(a, zero), -one, zero))
+                expression = heyoka.select(heyoka.gt(a, zero), one, heyoka.select(heyoka.lt(a, zero), -one, zero))
             case "abs", [a]:
                 zero = heyoka.expression(exact_number(Fraction(0), dtype))
-                found = heyoka.select(heyoka.lt(a, zero), -a, a)
+                expression = heyoka.select(heyoka.lt(a, zero), -a, a)
             case function, [a]:
                 known: Callable[[Any], Any] | None = getattr(heyoka, function, None)
                 if known is None:
                     raise Unusable(Message("heyoka has no function [[function]]", function=function))
-                found = known(a)
-        values[number] = found
+                expression = known(a)
+        values[number] = expression
     return [values[node.number] for node in code.outputs]
 
 
@@ -199,10 +201,10 @@ class TaylorRun(Stepping):
 
         Where a step was to end at a time whose nearest short float that is, this time itself.
         """
-        found = self._taylor.time
-        if self._until is not None and self._dtype(self._until) == found:
+        end = self._taylor.time
+        if self._until is not None and self._dtype(self._until) == end:
             return self._until
-        return float(found) if isinstance(found, np.float32) else found
+        return float(end) if isinstance(end, np.float32) else end
 
     @property
     def end(self) -> Any:

@@ -149,19 +149,21 @@ def _allowed(
     n, h, r = constraints.size, constraints.holonomic, len(constraints)
     program, outputs = constraints.code.program, constraints.code.outputs
     slopes = jacobian(program, outputs[h : h + r], [program.input(name) for name in names])
-    kept = constraints.kept
-    nodes = [x for i in kept if i < h for x in (*outputs[h + r + i * n : h + r + (i + 1) * n], *[program.zero] * n)]
-    nodes += [x for i in kept for x in slopes[i]]
+    independent = constraints.kept
+    nodes = [
+        x for i in independent if i < h for x in (*outputs[h + r + i * n : h + r + (i + 1) * n], *[program.zero] * n)
+    ]
+    nodes += [x for i in independent for x in slopes[i]]
     code = Code(program, constraints.code.inputs, (*outputs[: h + r], *nodes))
     state = motion_state(dynamics.scenario)
     assert state is not None
 
     def at(time: arb) -> list[arb]:
         places = [ball(x) + ball(rate) * time for x, rate in zip(state[:n], state[n:], strict=True)]
-        found = enclosures(code, (time, *places, *map(ball, state[n:])), BITS)
-        if not all(abs(x) < ball(AT_REST) for x in found[: h + r]):
+        evaluated = enclosures(code, (time, *places, *map(ball, state[n:])), BITS)
+        if not all(abs(x) < ball(AT_REST) for x in evaluated[: h + r]):
             raise NotPeriodic("the unperturbed motion does not satisfy the constraints at these values")
-        return found[h + r :]
+        return evaluated[h + r :]
 
     first, last = at(arb(0)), at(period)
     if not all(abs(x - y) < ball(AT_REST) for x, y in zip(first, last, strict=True)):
@@ -256,28 +258,28 @@ def common_frequency(code: Code) -> Fraction:
         known = frozenset().union(*(frequencies[operand] for operand in operands)) if operands else frozenset()
         match operation:
             case "input" | "constant":
-                found = Fraction(int(payload == "t"))
+                derivative = Fraction(int(payload == "t"))
             case "add":
-                found = slope[0] + slope[1]
+                derivative = slope[0] + slope[1]
             case "subtract":
-                found = slope[0] - slope[1]
+                derivative = slope[0] - slope[1]
             case "negative":
-                found = -slope[0]
+                derivative = -slope[0]
             case "multiply":
-                found = _product_slope(program.instructions, operands, slope)
+                derivative = _product_slope(program.instructions, operands, slope)
             case "sin" | "cos":
-                found = Fraction(0)
+                derivative = Fraction(0)
                 known = known | ({abs(slope[0])} if slope[0] else set())
             case _:
-                found = Fraction(0)
+                derivative = Fraction(0)
                 _require_no_time(any(slope))
-        slopes[number], frequencies[number] = found, known
+        slopes[number], frequencies[number] = derivative, known
     _require_no_time(any(slopes[node.number] for node in code.outputs))
     all_of_them = frozenset().union(*(frequencies[node.number] for node in code.outputs))
     if not all_of_them:
         raise ConstantCoefficients("its coefficients are constant: problem 6 judges it (mbsym run)")
-    bottom = lcm(*(one.denominator for one in all_of_them))
-    return Fraction(gcd(*(int(one * bottom) for one in all_of_them)), bottom)
+    bottom = lcm(*(frequency.denominator for frequency in all_of_them))
+    return Fraction(gcd(*(int(frequency * bottom) for frequency in all_of_them)), bottom)
 
 
 def _product_slope(instructions: Any, operands: Sequence[int], slope: Sequence[Fraction]) -> Fraction:
@@ -376,21 +378,21 @@ def _steps(code: Code, period: arb, size: int) -> int:
     """So many that |J| h is small on each of them."""
     parts, largest = 8, arb(0)
     for part in range(parts):
-        (found,) = _matrices(code, (period * part / parts).union(period * (part + 1) / parts), size, 1)
-        largest = arb.max(largest, _norm(found).upper())
+        (matrix,) = _matrices(code, (period * part / parts).union(period * (part + 1) / parts), size, 1)
+        largest = arb.max(largest, _norm(matrix).upper())
     if not largest.is_finite():
         largest = arb(64)
     fastest = max((abs(frequency) for frequency in _frequencies(code)), default=Fraction(0))
-    wanted = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
-    if wanted > MOST_STEPS:
+    count = ceil(float((period * arb.max(largest, ball(fastest)) / ball(REACH)).upper()))
+    if count > MOST_STEPS:
         raise NotPeriodic(
             Message(
                 "steps that a period would take: [[count]], at most [[most]]: frequencies far apart, or a long period",
-                count=wanted,
+                count=count,
                 most=MOST_STEPS,
             )
         )
-    return max(wanted, 8)
+    return max(count, 8)
 
 
 def _frequencies(code: Code) -> list[Fraction]:
@@ -419,9 +421,9 @@ def _norm(matrix: arb_mat) -> arb:
 
 def _one_step(code: Code, start: arb, step: arb, size: int, order: int) -> arb_mat:
     """Phi(start + step, start): the series about the start, and its remainder."""
-    one = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
-    terms = _coefficients(_matrices(code, start, size, order + 1), one, order)
-    total, power = one, arb(1)
+    identity = arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
+    terms = _coefficients(_matrices(code, start, size, order + 1), identity, order)
+    total, power = identity, arb(1)
     for term in terms[1:]:
         power = power * step
         total = total + term * power
@@ -436,19 +438,19 @@ def remainder(code: Code, start: arb, step: arb, size: int, order: int) -> arb_m
     around = arb(0, growth)
     reached = _reached(jets[0])
     near = [arb(int(i == j)) + (around if reached[i, j] else 0) for i in range(size) for j in range(size)]
-    found = _coefficients(jets, arb_mat(size, size, near), order + 1)[-1]
-    if not all(entry.is_finite() for row in found.tolist() for entry in row):
+    enclosure = _coefficients(jets, arb_mat(size, size, near), order + 1)[-1]
+    if not all(entry.is_finite() for row in enclosure.tolist() for entry in row):
         raise NotPeriodic("the equations may be singular on the unperturbed motion: no bound over a step was found")
-    return found
+    return enclosure
 
 
 def _reached(slopes: arb_mat) -> np.ndarray:
     """Where Phi has entries that may differ from those of 1: i, j with a chain of entries of J from j to i."""
     rows = np.array([[not x.is_zero() for x in row] for row in slopes.tolist()])
-    found, longer = rows, rows @ rows | rows
-    while (longer != found).any():
-        found, longer = longer, longer @ longer | longer
-    return found
+    reachable, longer = rows, rows @ rows | rows
+    while (longer != reachable).any():
+        reachable, longer = longer, longer @ longer | longer
+    return reachable
 
 
 def _coefficients(jets: Sequence[arb_mat], first: arb_mat, count: int) -> list[arb_mat]:
@@ -471,7 +473,7 @@ def _multipliers(
     """The multipliers, and whether those of each part that nothing couples with others are simple."""
     parts = _parts(monodromy, "weak")
     balls = [[ball for block in _diagonal_blocks(monodromy, part) for ball in _eigenvalues(block)] for part in parts]
-    simple = not any(one.overlaps(other) for own in balls for one, other in combinations(own, 2))
+    simple = not any(first.overlaps(other) for own in balls for first, other in combinations(own, 2))
     every = [ball for own in balls for ball in own]
     multipliers: list[Multiplier] = []
     for part, own in zip(parts, balls, strict=True):
@@ -480,7 +482,7 @@ def _multipliers(
             size, alone = abs(root), mirrored and _alone(own, place)
             on_circle = size == 1 or alone or (lagrangian and _alone(every, len(multipliers)))
             multipliers.append(Multiplier(root, float(size.lower()), float(size.upper()), on_circle))
-    return tuple(sorted(multipliers, key=lambda one: -one.greatest)), simple
+    return tuple(sorted(multipliers, key=lambda multiplier: -multiplier.greatest)), simple
 
 
 def _parts(matrix: arb_mat, connection: str) -> list[list[int]]:
@@ -497,7 +499,7 @@ def _diagonal_blocks(matrix: arb_mat, part: Sequence[int]) -> list[acb_mat]:
     precision takes apart; as blocks of one row they are exact.
     """
     rows = matrix.tolist()
-    members = [one for one in _parts(matrix, "strong") if one[0] in part]
+    members = [group for group in _parts(matrix, "strong") if group[0] in part]
     return [acb_mat([[acb(rows[i][j]) for j in member] for i in member]) for member in members]
 
 
@@ -516,8 +518,10 @@ def _eigenvalues(block: acb_mat) -> list[acb]:
 
 def _alone(balls: Sequence[acb], place: int) -> bool:
     """Whether a multiplier is a simple one, and its mirror image 1/conj(mu) can be no other than itself."""
-    one = balls[place]
-    if one.contains(0):
+    multiplier = balls[place]
+    if multiplier.contains(0):
         return False
-    mirrored = 1 / one.conjugate()
-    return not any(one.overlaps(other) or mirrored.overlaps(other) for k, other in enumerate(balls) if k != place)
+    mirrored = 1 / multiplier.conjugate()
+    return not any(
+        multiplier.overlaps(other) or mirrored.overlaps(other) for k, other in enumerate(balls) if k != place
+    )

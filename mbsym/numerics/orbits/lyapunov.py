@@ -131,8 +131,8 @@ def exponents(
             growth.append(np.log(np.abs(np.diag(triangle))))
             divergences.append((before, float(start), float(end)))
             watch(float(end))
-    except Breakdown as found:
-        ended = found
+    except Breakdown as breakdown:
+        ended = breakdown
     except KeyboardInterrupt:
         ended = Breakdown("interrupted", "stopped by the user", float(ends[len(growth)]), state)
     rates, times = np.array(growth).reshape(len(growth), flow.columns), ends[1 : len(growth) + 1]

@@ -320,8 +320,8 @@ class _Search:
 def _least_squares(matrix: Any, right: Any, damping: float) -> Any:
     """The shortest solution, damped as by Levenberg and Marquardt."""
     u, s, v = np.linalg.svd(matrix, full_matrices=False)
-    kept = s > RANK * s[0]
-    weights = np.where(kept, s / (s**2 + (damping * s[0]) ** 2 + np.where(kept, 0.0, 1.0)), 0.0)
+    significant = s > RANK * s[0]
+    weights = np.where(significant, s / (s**2 + (damping * s[0]) ** 2 + np.where(significant, 0.0, 1.0)), 0.0)
     return v.T @ (weights * (u.T @ right))
 
 
@@ -362,9 +362,9 @@ def _differences(function: Callable[[Any], Any], state: Any, scale: Any) -> Any:
 
 
 def _orbit(
-    dynamics: Dynamics, flow: Flow, found: _Place, turns: Any, steps: int, free: bool, rates: Any, energy: _Energy
+    dynamics: Dynamics, flow: Flow, place: _Place, turns: Any, steps: int, free: bool, rates: Any, energy: _Energy
 ) -> Orbit:
-    state, period = found.state, found.period
+    state, period = place.state, place.period
     scale = energy.scale(state)
     path = period * rates(np.concatenate(([0.0], state))) / scale
     if free and float(np.max(np.abs(path))) < RESTING:
@@ -375,7 +375,9 @@ def _orbit(
     _, other = Flow(dynamics, 1e-10).passage(state, 0.0, period)
     basis = flow.tangent(state)
     basis = np.eye(len(state)) if basis is None else np.linalg.qr(basis / scale[:, None])[0]
-    phi, other = (basis.T @ (one * scale / scale[:, None]) @ basis for one in (phi, other))  # in parts of the sizes
+    phi, other = (
+        basis.T @ (matrix * scale / scale[:, None]) @ basis for matrix in (phi, other)
+    )  # in parts of the sizes
     multipliers = _sorted(np.linalg.eigvals(phi))
     uncertainty = _distance(multipliers, _sorted(np.linalg.eigvals(other)))
     reasons, count = _trivial(dynamics, state, phi, path if free else None, basis, energy)
@@ -387,7 +389,7 @@ def _orbit(
         state,
         period,
         turns,
-        found.size,
+        place.size,
         verified,
         verifier,
         steps,
@@ -410,9 +412,9 @@ def _distance(a: Any, b: Any) -> float:
     """The largest distance of a multiplier from its partner, partners chosen one after the other, nearest first."""
     left = list(b)
     worst = 0.0
-    for one in a:
-        near = min(left, key=lambda other: abs(other - one))
-        worst = max(worst, abs(near - one))
+    for multiplier in a:
+        near = min(left, key=lambda other: abs(other - multiplier))
+        worst = max(worst, abs(near - multiplier))
         left.remove(near)
     return float(worst)
 

@@ -119,13 +119,13 @@ class Variational(Dynamics):
         if len(tangents) > 1:
             matrix = jacobian(program, rhs.outputs, inputs)
             choices.append([_applied(program, matrix, tangent) for tangent in tangents])
-        found = []
+        candidates = []
         for columns in choices:
             nodes = list(rhs.outputs)
             for column, offset in zip(columns, offsets, strict=True):
                 nodes += [a + b for a, b in zip(column, offset, strict=True)]
-            found.append(nodes)
-        cheapest = min(found, key=program.operations)
+            candidates.append(nodes)
+        cheapest = min(candidates, key=program.operations)
         return Code(self._specialised, self.inputs, tuple(substituted(program, cheapest, self._specialised)))
 
     def _offset(self, program: Program, outputs: Sequence[Node], direction: Direction) -> Sequence[Node]:
@@ -165,11 +165,11 @@ def _unit(name: str, names: Sequence[str]) -> Direction:
 
 def sensitive(
     scenario: Scenario,
-    wanted: Sequence[str],
+    quantities: Sequence[str],
     overrides: Mapping[str, Expression] | None = None,
     fixed: Sequence[str] = (),
 ) -> Variational:
-    """The motion with its derivatives by ``wanted`` names: of parameters, of coordinates and velocities at t = 0.
+    """The motion with its derivatives by ``quantities`` names: of parameters, of coordinates and velocities at t = 0.
 
     What follows from a parameter (relations, prescribed motions, an initial state made of it) is part of its
     derivative; and where there are constraints, what initial values have to follow, with those ``fixed`` that are.  Of
@@ -180,18 +180,18 @@ def sensitive(
     system = scenario.system
     plain = described(system)
     states = (*system.coordinates, *system.velocities)
-    given = {*states, *plain.coordinates, *plain.velocities, *plain.variables}
+    variables = {*states, *plain.coordinates, *plain.velocities, *plain.variables}
     following = {relation.name for relation in system.relations}
-    for name in wanted:
-        if name not in given and name not in system.parameter_names:
+    for name in quantities:
+        if name not in variables and name not in system.parameter_names:
             raise ValueError(f"there is nothing called {name} to differentiate by")
         if name in following:
             raise ValueError(f"{name} follows from other parameters: differentiate by those")
-    free = tuple(name for name in wanted if name not in given)
+    free = tuple(name for name in quantities if name not in variables)
     base = parametrised(scenario, free, overrides, fixed)
     fitted = system.constraints or base.in_states
     directions = []
-    for name in wanted:
+    for name in quantities:
         if fitted:
             directions.append(Direction(name, base.column(name), name if name in free else None))
         elif name in states:
@@ -219,8 +219,8 @@ def start_column(base: Parametrised, name: str) -> tuple[Fraction, ...]:
 
 def split(states: Any, size: int) -> tuple[Any, Any]:
     """(x, y) of a variational state: arrays of shapes (2n, ...) and (k, 2n, ...); ``size`` is 2n."""
-    found = np.asarray(states)
-    return found[:size], found[size:].reshape(-1, size, *found.shape[1:])
+    values = np.asarray(states)
+    return values[:size], values[size:].reshape(-1, size, *values.shape[1:])
 
 
 # The flow of a system and its derivative: x(t), Phi(t) with Phi' = J Phi, from any state, over and over.
@@ -276,8 +276,8 @@ class Flow:
         if tangents is None:
             tangents = np.eye(self.size, self.columns)
         self.run.restart(start, np.concatenate([np.asarray(state), np.asarray(tangents).T.reshape(-1)]))
-        found = np.array(self.run.advance(end)) if end > start else np.array(self.run.state)
-        state, columns = found[: self.size], found[self.size :].reshape(self.columns, self.size).T
+        values = np.array(self.run.advance(end)) if end > start else np.array(self.run.state)
+        state, columns = values[: self.size], values[self.size :].reshape(self.columns, self.size).T
         if self._lead is not None and self.constraints is not None:
             state = self._lead(end, state)
             basis = self.constraints.tangent(end, state)
@@ -400,5 +400,5 @@ def _functional(base: Parametrised, functional: Expression, end: Any) -> tuple[f
     names = (*base.system.coordinates, *base.system.velocities, *base.free)
     slopes = gradient(program, output, [program.input(name) for name in names])
     values = np.concatenate([end, [float(base.scenario.parameters[name]) for name in base.free]])
-    found = arrays.kernel(Code(program, names, (output, *slopes)))(values)
-    return float(found[0]), found[1:]
+    outputs = arrays.kernel(Code(program, names, (output, *slopes)))(values)
+    return float(outputs[0]), outputs[1:]

@@ -97,10 +97,10 @@ def _at_first(dynamics: Dynamics, tolerance: float, time_: float, scalar: str) -
     best, least = explicit, _predicted(dynamics, explicit, setting, time_, steps)
     first = least
     for name in IMPLICIT[: 2 if dynamics.correction is not None else None]:
-        found = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
-        if found is not None and found < least:
-            best, least = METHODS[name], found
-        if found is not None and METHODS[name].traits.compiled:
+        trial_cost = _trial(dynamics, METHODS[name], setting, time_) if name in METHODS else None
+        if trial_cost is not None and trial_cost < least:
+            best, least = METHODS[name], trial_cost
+        if trial_cost is not None and METHODS[name].traits.compiled:
             break  # what is not compiled costs more, its trial, too
     if best is explicit:
         text = "motions die out at rates up to [[rate]], yet explicit steps cost less here, by counted work"
@@ -138,8 +138,8 @@ def _trial(dynamics: Dynamics, method: Method, setting: Setting, time_: float) -
             reached = min(2 * reached, time_)
     except Unusable:
         return None
-    except Breakdown as found:
-        if found.kind != Cause.STEP_LIMIT or found.time <= 0:
+    except Breakdown as breakdown:
+        if breakdown.kind != Cause.STEP_LIMIT or breakdown.time <= 0:
             return None
-        reached = found.time
+        reached = breakdown.time
     return cost(dynamics, method.traits.name, FLOAT64, run.work) * time_ / reached

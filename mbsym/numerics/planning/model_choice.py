@@ -262,9 +262,9 @@ class Scene:
 
 def richest(scenario: Scenario) -> tuple[Model, Dynamics, str]:
     """The most faithful model that has a program, and why it is not the exact one, if so."""
-    wanted = faithful(scenario)
+    full_model = faithful(scenario)
     reason = ""
-    for order in (wanted.gravity, *reversed(orders(scenario))):
+    for order in (full_model.gravity, *reversed(orders(scenario))):
         model = Model(order)
         try:
             dynamics = modelled(scenario, model)
@@ -296,10 +296,10 @@ def model_chosen(scene: Scene, watch: Callable[[str], None] = lambda text: None)
     taken, dynamics, tried = whole, scene.rich, [whole]
     for model in _candidates(scene):
         watch(model.label)
-        found = _judged(scene, model)
-        if found is None:
+        candidate = _judged(scene, model)
+        if candidate is None:
             continue
-        item, own = found
+        item, own = candidate
         tried.append(item)
         if item.ratio <= PART and item.operations < SAVES * taken.operations:
             taken, dynamics = item, own
@@ -361,8 +361,8 @@ def _estimated(scene: Scene, model: Model, dynamics: Dynamics) -> Tried:
         errors = np.full(len(scene.targets), inf)
         return Tried(model, operations, inf, errors, Certainty.ESTIMATED, estimate.trouble, estimate)
     errors = np.append(estimate.by_quantity, _energy_error(scene, dynamics, estimate))
-    asked = np.isfinite(scene.targets)
-    ratio = float(np.max(errors[asked] / scene.targets[asked]))
+    targeted = np.isfinite(scene.targets)
+    ratio = float(np.max(errors[targeted] / scene.targets[targeted]))
     return Tried(model, operations, ratio if not why else inf, errors, how, why, estimate)
 
 
@@ -386,11 +386,11 @@ def _integrated(scene: Scene, residual: Any) -> float:
     velocity = _running(residual, steps)
     moved = np.vstack([_running(velocity, steps), velocity])
     errors = np.max(np.abs(moved), axis=1) / scene.scale[:-1]
-    asked = np.isfinite(scene.targets[:-1])
-    if not np.any(asked):
+    targeted = np.isfinite(scene.targets[:-1])
+    if not np.any(targeted):
         return 0.0
-    found = float(np.max(errors[asked] / scene.targets[:-1][asked]))
-    return found if isfinite(found) else inf
+    ratio = float(np.max(errors[targeted] / scene.targets[:-1][targeted]))
+    return ratio if isfinite(ratio) else inf
 
 
 def _running(values: Any, steps: Any) -> Any:
@@ -399,13 +399,15 @@ def _running(values: Any, steps: Any) -> Any:
     return np.hstack([np.zeros((len(values), 1)), np.cumsum(pieces, axis=1)])
 
 
-def _energy_error(scene: Scene, simple: Dynamics, found: ModelEstimate) -> float:
+def _energy_error(scene: Scene, simple: Dynamics, estimate: ModelEstimate) -> float:
     """The largest error of h(t) - h(0) over the energy's scale; 0 where nobody asked."""
     if not isfinite(scene.targets[-1]):
         return 0.0
     with np.errstate(all="ignore"):
-        true = compiled_kernel(scene.rich, "relative_energy")(np.vstack([scene.times, found.states + found.difference]))
-        own = compiled_kernel(simple, "relative_energy")(np.vstack([scene.times, found.states]))
+        true = compiled_kernel(scene.rich, "relative_energy")(
+            np.vstack([scene.times, estimate.states + estimate.difference])
+        )
+        own = compiled_kernel(simple, "relative_energy")(np.vstack([scene.times, estimate.states]))
         apart = (true[0] - true[0, 0]) - (own[0] - own[0, 0])
     worst = float(np.max(np.abs(apart))) / float(scene.scale[-1])
     return worst if isfinite(worst) else inf
@@ -423,14 +425,14 @@ def _without(scene: Scene, base: Model, watch: Callable[[str], None]) -> tuple[T
         model = replace(base, without=tuple(names))
         watch(model.label)
         try:
-            found = _held_against(scene, model)
+            candidate = _held_against(scene, model)
         except Failure:  # a mass that nothing else replaces, a divisor: it stays, and the others are looked at
             able = names if looked_at else [name for name in names if _has_program(scene, base, name)]
             looked_at = True
             names = able if able != names else names[:-1]
             continue
-        if found is None or found[0].ratio <= PART:
-            return found
+        if candidate is None or candidate[0].ratio <= PART:
+            return candidate
         names.pop()
     return None
 
@@ -465,9 +467,9 @@ def _felt(scene: Scene, base: Model) -> Sequence[tuple[str, float]]:
     points = np.vstack([fewer.times, fewer.states, np.tile(values, (1, len(few)))])
     with np.errstate(all="ignore"):
         usual = accelerations(points)
-        found = []
+        ratios = []
         for place, name in enumerate(names):
             less = points.copy()
             less[1 + len(scene.states) + place] = 0.0
-            found.append((name, _integrated(fewer, (usual - accelerations(less))[program.size :])))
-    return sorted(found, key=lambda item: item[1])
+            ratios.append((name, _integrated(fewer, (usual - accelerations(less))[program.size :])))
+    return sorted(ratios, key=lambda item: item[1])

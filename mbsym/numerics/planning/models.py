@@ -114,16 +114,16 @@ class Model:
 
 def scenario_of(scenario: Scenario, model: Model) -> Scenario:
     """The scenario with the field of a model's order and zero for the parameters that it leaves out."""
-    found = changed(scenario, **dict.fromkeys(model.without, Fraction(0))) if model.without else scenario
+    simplified = changed(scenario, **dict.fromkeys(model.without, Fraction(0))) if model.without else scenario
     if model.gravity is None or all(load.order == model.gravity for load in scenario.system.newtonian_fields):
-        return found
-    return replace(found, system=scenario.system.with_field_order(model.gravity))
+        return simplified
+    return replace(simplified, system=scenario.system.with_field_order(model.gravity))
 
 
 def modelled(scenario: Scenario, model: Model) -> Dynamics:
     """The equations of a model.  Raises Failure where there is no program for them, as ``Dynamics`` does."""
-    found = scenario if model == Model() else scenario_of(scenario, model)
-    return LinearisedDynamics(found) if model.linear else dynamics_of(found)
+    simplified = scenario if model == Model() else scenario_of(scenario, model)
+    return LinearisedDynamics(simplified) if model.linear else dynamics_of(simplified)
 
 
 def described(scenario: Scenario) -> Model:
@@ -171,19 +171,19 @@ def droppable(system: System) -> tuple[str, ...]:
 def emptied(scenario: Scenario, without: Collection[str]) -> dict[str, tuple[str, ...]]:
     """Bodies whose mass and inertia all become zero with the parameters ``without``, and which of these they hold."""
     less = {**scenario.parameters, **dict.fromkeys(without, Fraction(0))}
-    found: dict[str, tuple[str, ...]] = {}
+    parameters_by_body: dict[str, tuple[str, ...]] = {}
     for body in scenario.system.bodies:
         rows = () if body.inertia is None else body.inertia.tensor
         values = (body.mass, *(x for row in rows for x in row))
         held = set[str]().union(*(names(x) for x in values)) & set(without)
         if held and all(exact(x, less) == 0 for x in values):
-            found[body.name] = tuple(name for name in scenario.system.parameter_names if name in held)
-    return found
+            parameters_by_body[body.name] = tuple(name for name in scenario.system.parameter_names if name in held)
+    return parameters_by_body
 
 
 def parted(scenario: Scenario, model: Model) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What a model takes as zero: bodies that have no mass and no inertia left, and parameters that are none of
     theirs."""
     empty = emptied(scenario, model.without)
-    held = {name for found in empty.values() for name in found}
+    held = {name for parameters in empty.values() for name in parameters}
     return tuple(empty), tuple(name for name in model.without if name not in held)

@@ -35,12 +35,12 @@ def places(method: Method, dynamics: Dynamics, setting: Setting, end: float) -> 
     Raises Breakdown where the run does not come to the end.
     """
     run = method.start(dynamics, setting)
-    found = [np.zeros(1)]
+    step_times = [np.zeros(1)]
     with np.errstate(all="ignore"):
         while run.time < end:
             piece = run.step(end)
-            found.append(piece.start + SHARES * (piece.end - piece.start))
-    times = np.unique(np.append(np.concatenate(found), end))
+            step_times.append(piece.start + SHARES * (piece.end - piece.start))
+    times = np.unique(np.append(np.concatenate(step_times), end))
     times = times[times <= end]
     every = -(-len(times) // MOST)
     return times if every == 1 else np.union1d(times[::every], [end])
@@ -96,13 +96,13 @@ class Bench:
             setting = replace(setting, longest=min(setting.longest or self.longest, self.longest))
         # Steps of one length end at every row: between rows there is nothing to compare.
         times = self._rows if method.traits.fixed else self.times
-        found = trial_of(complete, self.dynamics, setting, times, scalar).whole()
+        trajectory = trial_of(complete, self.dynamics, setting, times, scalar).whole()
         # Priced are the rows that are asked for, and no others.
-        priced = trial_of(complete, self.dynamics, setting, self.shown, scalar).whole() if often else found
+        priced = trial_of(complete, self.dynamics, setting, self.shown, scalar).whole() if often else trajectory
         name, (numbers, count) = method.traits.name, priced.states.shape
         whole = cost(self.dynamics, name, scalar, priced.work) + cost_of_rows(name, priced.work, count, numbers)
-        quantities = self.quantities(found.states, times)
-        trial = replace(found, method=method, cost=whole, seconds=priced.seconds, states=quantities)
+        quantities = self.quantities(trajectory.states, times)
+        trial = replace(trajectory, method=method, cost=whole, seconds=priced.seconds, states=quantities)
         if self.stick is None:
             return trial
         error, errors = self.compared(quantities, self.stick.trial.states)
@@ -123,16 +123,16 @@ class Bench:
             energy = compiled_kernel(self.dynamics, "relative_energy", kind)(np.vstack([times, states]))[:1]
         return np.vstack([states, energy])
 
-    def compared(self, one: Any, other: Any) -> tuple[float, Any]:
+    def compared(self, quantities: Any, other: Any) -> tuple[float, Any]:
         """(rho, errors relative to the scales) of the difference of two runs; at the rows, where one has no more."""
-        if one.shape[1] != other.shape[1]:
+        if quantities.shape[1] != other.shape[1]:
             at = np.searchsorted(self.times, self._rows)
-            one, other = (x if x.shape[1] == len(at) else x[:, at] for x in (one, other))
+            quantities, other = (x if x.shape[1] == len(at) else x[:, at] for x in (quantities, other))
         with np.errstate(all="ignore"):
-            errors = np.max(np.abs(one - other), axis=1).astype(float) / self.scale
+            errors = np.max(np.abs(quantities - other), axis=1).astype(float) / self.scale
         errors = np.where(np.isfinite(errors), errors, inf)
-        asked = np.isfinite(self.targets)
-        return float(np.max(errors[asked] / self.targets[asked])), errors
+        targeted = np.isfinite(self.targets)
+        return float(np.max(errors[targeted] / self.targets[targeted])), errors
 
 
 def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: float, limit: float) -> Trial | None:
@@ -140,25 +140,25 @@ def searched(bench: Bench, method: Method, scalar: str, start: Setting, goal: fl
 
     ``limit`` is a cost; a method that is dearer before it is good enough is given up.
     """
-    setting, found, last = start, None, None
+    setting, preferred, last = start, None, None
     slope = usual_slope(method, start)
     for _ in range(TRIES):
         trial = _tried(bench, method, scalar, setting)
         if trial is None:
-            return found
-        if trial.error <= goal and (found is None or _preferred(trial, found)):
-            found = trial
+            return preferred
+        if trial.error <= goal and (preferred is None or _preferred(trial, preferred)):
+            preferred = trial
         if trial.error <= goal and trial.error >= WASTEFUL * goal:
-            return found
+            return preferred
         if trial.error > goal and trial.cost > limit:
-            return found
+            return preferred
         slope = _slope(last, trial, slope)
         last = trial
         after = following(trial, goal, slope, bench.spacing)
         if after is None or after == setting:
-            return found
+            return preferred
         setting = after
-    return found
+    return preferred
 
 
 def usual_slope(method: Method, setting: Setting) -> float:

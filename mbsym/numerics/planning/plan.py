@@ -187,7 +187,7 @@ class Plan:
     @property
     def bound(self) -> Bound:
         """The one that has least room."""
-        return max(self.bounds, key=lambda one: one.total / one.target)
+        return max(self.bounds, key=lambda candidate: candidate.total / candidate.target)
 
     @property
     def reached(self) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any
@@ -62,10 +62,10 @@ def worth_of(scene: Scene, taken: Tried) -> tuple[Any, float, str]:
     fine enough.
     """
     errors = RAISED * taken.errors
-    asked = np.isfinite(scene.targets)
-    beyond = asked & ~(errors < 0.9 * scene.targets)
+    targeted = np.isfinite(scene.targets)
+    beyond = targeted & ~(errors < 0.9 * scene.targets)
     if not np.any(beyond):
-        room = 1 - float(np.max(errors[asked] / scene.targets[asked], initial=0.0))
+        room = 1 - float(np.max(errors[targeted] / scene.targets[targeted], initial=0.0))
         return scene.targets, GOAL * room, ""
     known = np.where(np.isfinite(errors), errors, 1.0)
     worth = np.where(beyond, np.maximum(scene.targets, 0.1 * known), scene.targets)
@@ -79,22 +79,22 @@ def fits(trial: Trial, known: float, room: float) -> bool:
     return DOUBLED * (trial.error - known) + known <= room
 
 
-def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
+def shares_of(bench: Bench, trial: Trial, stick: Yardstick, model: ModelChoice) -> Shares:
     """(name, errors (2n + 1,), how) of model, integration, arithmetic."""
     how = Certainty.PROVED if not np.any(model.taken.errors) else model.taken.how
-    asked = np.isfinite(bench.targets)
-    known = np.where(asked, stick.known * np.where(asked, bench.targets, 1.0), 0.0)
-    measured = DOUBLED * found.errors + known
+    targeted = np.isfinite(bench.targets)
+    known = np.where(targeted, stick.known * np.where(targeted, bench.targets, 1.0), 0.0)
+    measured = DOUBLED * trial.errors + known
     arithmetic, way = np.zeros_like(measured), None  # a part of the integration's share
-    other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(found.scalar)
-    cheap = found.cost < CHEAP and other is not None
-    if cheap and other in found.method.traits.scalars and available(str(other)):
+    other = {FLOAT64: EXTENDED, FLOAT32: FLOAT64}.get(trial.scalar)
+    cheap = trial.cost < CHEAP and other is not None
+    if cheap and other in trial.method.traits.scalars and available(str(other)):
         try:
-            twin = bench.run(found.method, str(other), found.setting)
-            _, apart = bench.compared(_again(bench, found), twin.states)
+            twin = bench.run(trial.method, str(other), trial.setting)
+            _, apart = bench.compared(_again(bench, trial), twin.states)
             # Where stability rules the steps of two runs, these go their own ways, and so do their errors: runs that
             # differ by about what either of them errs by tell nothing of rounding.
-            if not np.any(asked & (apart > twin.errors / 2) & (twin.errors > found.errors / 2)):
+            if not np.any(targeted & (apart > twin.errors / 2) & (twin.errors > trial.errors / 2)):
                 # What was measured has both in it, and they may cancel: it is shared out as each alone counts.
                 both = apart + twin.errors
                 counted = (both > 0) & np.isfinite(both)
@@ -109,11 +109,11 @@ def shares_of(bench: Bench, found: Trial, stick: Yardstick, model: ModelChoice) 
     )
 
 
-def _again(bench: Bench, found: Trial) -> Any:
+def _again(bench: Bench, trial: Trial) -> Any:
     """The quantities of a setting that was tried: runs are repeatable."""
-    if found.states is not None:
-        return found.states
-    return bench.run(found.method, found.scalar, found.setting).states
+    if trial.states is not None:
+        return trial.states
+    return bench.run(trial.method, trial.scalar, trial.setting).states
 
 
 def bounds_of(scene: Scene, accuracy: Accuracy, shares: Shares) -> tuple[Bound, ...]:
@@ -154,7 +154,7 @@ class Settled:
     parts: tuple[Part, ...]
     bench: Bench
     stick: Yardstick
-    found: Trial
+    trial: Trial
     pinned: frozenset[str]
     enough: bool
     room: float
@@ -181,19 +181,21 @@ def items_of(settled: Settled) -> tuple[Item, ...]:
 def _models(settled: Settled) -> Iterator[Item]:
     scene, model = settled.scene, settled.model
     taken = model.taken
-    given = described(scene.scenario)
+    described_model = described(scene.scenario)
     why = Message("as asked for") if Kind.GRAVITY in settled.pinned else _why_model(model)
-    if given.gravity is not None:
-        refused = tuple(_refused(settled, one) for one in model.tried if _other_order(one.model, taken.model))
+    if described_model.gravity is not None:
+        refused = tuple(
+            _refused(settled, candidate) for candidate in model.tried if _other_order(candidate.model, taken.model)
+        )
         richer = taken.model.gravity is not None and GRAVITY_ORDERS.index(taken.model.gravity) > GRAVITY_ORDERS.index(
-            given.gravity
+            described_model.gravity
         )
         if richer:
-            why = Message("[[why]]; richer than described (order [[order]])", why=why, order=given.gravity)
+            why = Message("[[why]]; richer than described (order [[order]])", why=why, order=described_model.gravity)
         alone = not (taken.model.linear or taken.model.without)
         error = _worst(settled, taken) if alone else None
         yield Item(Kind.GRAVITY, (), str(taken.model.gravity), why, error, taken.how, taken.operations, refused=refused)
-    lines = [one for one in model.tried if one.model.linear]
+    lines = [candidate for candidate in model.tried if candidate.model.linear]
     if lines or taken.model.linear:
         chosen = Message("linear" if taken.model.linear else "nonlinear")
         refused = tuple(_refused(settled, line) for line in lines if line.model != taken.model)
@@ -215,7 +217,11 @@ def _models(settled: Settled) -> Iterator[Item]:
 def _why_model(model: ModelChoice) -> str:
     if model.taken.model == model.faithful:
         return Message("nothing simpler is good enough" if len(model.tried) > 1 else "nothing simpler is known")
-    able = [one.operations for one in model.tried if one.ratio <= PART and one.how is not Certainty.UNDECIDED]
+    able = [
+        candidate.operations
+        for candidate in model.tried
+        if candidate.ratio <= PART and candidate.how is not Certainty.UNDECIDED
+    ]
     fewest = model.taken.operations <= min(able, default=0)
     return Message(
         "good enough, with the fewest operations of those tried" if fewest else "good enough, with fewer operations"
@@ -226,9 +232,9 @@ def _other_order(model: Model, taken: Model) -> bool:
     return model.gravity != taken.gravity and not model.linear and not model.without
 
 
-def _refused(settled: Settled, one: Tried) -> Refused:
-    word = "linear" if one.model.linear else one.model.label
-    return Refused(word, _told(settled, one), one.operations, one.why)
+def _refused(settled: Settled, candidate: Tried) -> Refused:
+    word = "linear" if candidate.model.linear else candidate.model.label
+    return Refused(word, _told(settled, candidate), candidate.operations, candidate.why)
 
 
 def _resting(settled: Settled) -> Iterator[Item]:
@@ -240,22 +246,22 @@ def _resting(settled: Settled) -> Iterator[Item]:
 
 
 def _parts(settled: Settled) -> Iterator[Item]:
-    if settled.parts and not settled.found.method.traits.fixed:
+    if settled.parts and not settled.trial.method.traits.fixed:
         names = tuple(" ".join(part.names) for part in settled.parts)
         why = Message("nothing links them in these equations")
         yield Item(Kind.PARTS, names, Message("each by itself"), why, 0.0, Certainty.PROVED)
 
 
 def _welded(settled: Settled) -> Iterator[Item]:
-    found = lumped(settled.scene.scenario.system)
-    if found and Kind.WELDED not in settled.pinned and not settled.model.taken.model.linear:
-        carried = Message("one with [[bodies]]", bodies=", ".join(dict.fromkeys(found.values())))
+    carriers = lumped(settled.scene.scenario.system)
+    if carriers and Kind.WELDED not in settled.pinned and not settled.model.taken.model.linear:
+        carried = Message("one with [[bodies]]", bodies=", ".join(dict.fromkeys(carriers.values())))
         why = Message("no coordinate moves them against it")
-        yield Item(Kind.WELDED, tuple(found), carried, why, 0.0, Certainty.PROVED)
+        yield Item(Kind.WELDED, tuple(carriers), carried, why, 0.0, Certainty.PROVED)
 
 
 def _settings(settled: Settled) -> Iterator[Item]:
-    trial, pinned = settled.found, settled.pinned
+    trial, pinned = settled.trial, settled.pinned
     name = trial.method.traits.name
     others = _cheapest_others(settled)
     chosen = _why_method(settled, bool(others)) if settled.enough else _closest(settled)
@@ -286,21 +292,21 @@ def _why_method(settled: Settled, others: bool) -> str:
     if not others:
         return Message("[[enough]]; no other method came to the end here", enough=enough)
     least = min((trial.cost for trial in settled.fitting), default=0.0)
-    if settled.found.cost > ALIKE * least:
+    if settled.trial.cost > ALIKE * least:
         return enough
     text = "by counted work [[cheapest]] whose measured error, doubled, is small enough"
-    return Message(text, cheapest=_cheapest(settled.found, least))
+    return Message(text, cheapest=_cheapest(settled.trial, least))
 
 
-def _cheapest(found: Trial, least: float) -> str:
-    return Message("the cheapest tried here" if found.cost <= least else "within a tenth of the cheapest tried here")
+def _cheapest(trial: Trial, least: float) -> str:
+    return Message("the cheapest tried here" if trial.cost <= least else "within a tenth of the cheapest tried here")
 
 
 def _closest(settled: Settled) -> str:
     """Of a plan that is not accurate enough."""
-    trial, none = settled.found, _none(settled)
-    least = min((one.error for one in settled.bench.trials), default=inf)
-    near = min((one.cost for one in settled.bench.trials if one.error <= 2 * least), default=0.0)
+    trial, none = settled.trial, _none(settled)
+    least = min((other.error for other in settled.bench.trials), default=inf)
+    near = min((other.cost for other in settled.bench.trials if other.error <= 2 * least), default=0.0)
     if trial.error > 2 * least or trial.cost > ALIKE * near:
         return none
     text = "[[none]]: by counted work [[cheapest]] within twice the least error"
@@ -317,9 +323,9 @@ def _none(settled: Settled) -> str:
 def _why_fineness(settled: Settled) -> str:
     if not settled.enough:
         return _none(settled)
-    trial = settled.found
-    same = [one for one in settled.fitting if (one.method, one.scalar) == (trial.method, trial.scalar)]
-    coarser = [one.cost for one in same if one.fineness > trial.fineness]
+    trial = settled.trial
+    same = [other for other in settled.fitting if (other.method, other.scalar) == (trial.method, trial.scalar)]
+    coarser = [other.cost for other in same if other.fineness > trial.fineness]
     if not coarser:
         return Message("the coarsest tried that is good enough")
     return Message(
@@ -327,16 +333,16 @@ def _why_fineness(settled: Settled) -> str:
     )
 
 
-def _fitting(found: Trial) -> str:
-    if found.error > 1:
+def _fitting(trial: Trial) -> str:
+    if trial.error > 1:
         return Message("as asked for, too coarse for this accuracy")
-    return Message("as asked for, finer than this accuracy needs" if found.error < WASTEFUL else "as asked for")
+    return Message("as asked for, finer than this accuracy needs" if trial.error < WASTEFUL else "as asked for")
 
 
 def _why_scalar(settled: Settled) -> str:
     """By what was measured: the share of rounding, what fewer digits reached, and what more digits cost."""
-    trial, fitting = settled.found, settled.fitting
-    usual = min((one.cost for one in fitting if one.scalar == FLOAT64), default=None)
+    trial, fitting = settled.trial, settled.fitting
+    usual = min((other.cost for other in fitting if other.scalar == FLOAT64), default=None)
     if trial.scalar == EXTENDED and usual is None:
         return Message("in float64 every error that was measured, doubled, is too large")
     if not settled.enough:
@@ -361,50 +367,46 @@ def _rounding(bound: Bound) -> str:
 
 def _cheapest_others(settled: Settled) -> tuple[Refused, ...]:
     """The best of every other method: what it cost where it was good enough, else how wrong it was."""
-    best: dict[str, Trial] = {}
-    for trial in settled.bench.trials:
-        name = trial.method.traits.name
-        known = best.get(name)
-        if trial.scalar == FLOAT64 and (known is None or _rank(trial) < _rank(known)):
-            best[name] = trial
-    own = settled.found.method.traits.name
-    return tuple(
-        Refused(trial.label, _told(settled, trial), _priced(settled, trial))
-        for name, trial in best.items()
-        if name != own
-    )
+    own = settled.trial.method.traits.name
+    others = [trial for trial in settled.bench.trials if trial.scalar == FLOAT64 and trial.method.traits.name != own]
+    return tuple(_best(settled, others, lambda trial: trial.method.traits.name, lambda trial: trial.label))
+
+
+def _best(
+    settled: Settled, trials: Sequence[Trial], kind: Callable[[Trial], str], label: Callable[[Trial], str]
+) -> Iterator[Refused]:
+    """The best trial of each kind, in the order in which the kinds were tried."""
+    for name in dict.fromkeys(map(kind, trials)):
+        trial = min((one for one in trials if kind(one) == name), key=_rank)
+        yield Refused(label(trial), _told(settled, trial), _priced(settled, trial))
 
 
 def _priced(settled: Settled, trial: Trial) -> float:
     """Seconds of a trial: those of what was taken, as many times as its counted work is more."""
-    return settled.found.seconds * trial.cost / settled.found.cost
+    return settled.trial.seconds * trial.cost / settled.trial.cost
 
 
 def _rank(trial: Trial) -> tuple[bool, float]:
     return (trial.error > 1, trial.cost if trial.error <= 1 else trial.error)
 
 
-def _worst(settled: Settled, one: Trial | Tried) -> float:
+def _worst(settled: Settled, candidate: Trial | Tried) -> float:
     """The error of that quantity which is farthest from what was asked of it; of others nothing was asked.
 
     With one target for every coordinate and velocity it is the largest of their errors.
     """
     targets = settled.bench.targets
-    asked = np.flatnonzero(np.isfinite(targets))
-    return float(one.errors[asked[np.argmax(one.errors[asked] / targets[asked])]])
+    targeted = np.flatnonzero(np.isfinite(targets))
+    return float(candidate.errors[targeted[np.argmax(candidate.errors[targeted] / targets[targeted])]])
 
 
-def _told(settled: Settled, one: Trial | Tried) -> float | None:
-    worst = _worst(settled, one)
+def _told(settled: Settled, candidate: Trial | Tried) -> float | None:
+    worst = _worst(settled, candidate)
     return worst if isfinite(worst) else None
 
 
 def _other_scalars(settled: Settled) -> Iterator[Refused]:
-    best: dict[str, Trial] = {}
-    for trial in settled.bench.trials:
-        known = best.get(trial.scalar)
-        coarser = DIGITS.index(trial.scalar) < DIGITS.index(settled.found.scalar)
-        if coarser and (known is None or _rank(trial) < _rank(known)):
-            best[trial.scalar] = trial
-    for scalar, trial in best.items():
-        yield Refused(scalar, _told(settled, trial), _priced(settled, trial))
+    """The best in arithmetic of fewer digits."""
+    fewer = DIGITS[: DIGITS.index(settled.trial.scalar)]
+    trials = [trial for trial in settled.bench.trials if trial.scalar in fewer]
+    return _best(settled, trials, lambda trial: trial.scalar, lambda trial: trial.scalar)

@@ -121,36 +121,39 @@ def first_setting(contender: Contender, tolerance: float, best: Trial | None, en
 
 
 def alternatives(
-    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
+    bench: Bench, chosen: Trial, tried: Sequence[Tried], taken: Tried, accuracy: Accuracy, goal: float
 ) -> tuple[Alternative, Alternative]:
     """(one digit more, one digit less), each measured as the plan was, on its model."""
-    more, less = (_other(bench, found, tried, taken, accuracy.finest, goal, factor) for factor in (0.1, 10.0))
+    more, less = (_other(bench, chosen, tried, taken, accuracy.finest, goal, factor) for factor in (0.1, 10.0))
     return more, less
 
 
 def _other(
-    bench: Bench, found: Trial, tried: Sequence[Tried], taken: Tried, target: float, goal: float, factor: float
+    bench: Bench, chosen: Trial, tried: Sequence[Tried], taken: Tried, target: float, goal: float, factor: float
 ) -> Alternative:
-    wanted = goal * factor
+    target_ratio = goal * factor
     model = _model_of(tried, factor)
     name = "" if model.model == taken.model else model.model.label
-    start = following(found, wanted, usual_slope(found.method, found.setting), bench.spacing)
+    start = following(chosen, target_ratio, usual_slope(chosen.method, chosen.setting), bench.spacing)
     if start is not None:
-        _searched(bench, found.method, found.scalar, start, wanted, inf)
-    able = [trial for trial in bench.trials if trial.error <= wanted]
+        _searched(bench, chosen.method, chosen.scalar, start, target_ratio, inf)
+    able = [trial for trial in bench.trials if trial.error <= target_ratio]
     if not able:
-        needed = found.scalar == FLOAT64 and EXTENDED in found.method.traits.scalars
+        needed = chosen.scalar == FLOAT64 and EXTENDED in chosen.method.traits.scalars
         text = "[[scalar]] has no finer tolerance; extended arithmetic is needed"
-        why = Message(text if needed else "[[scalar]] has no finer tolerance", scalar=found.scalar)
+        why = Message(text if needed else "[[scalar]] has no finer tolerance", scalar=chosen.scalar)
         return Alternative(target * factor, why=why, model=name)
     least = min(able, key=lambda trial: trial.cost)
-    times = least.cost / found.cost * model.operations / max(1, taken.operations)
-    return Alternative(target * factor, least.label, found.seconds * times, name, times=times)
+    times = least.cost / chosen.cost * model.operations / max(1, taken.operations)
+    return Alternative(target * factor, least.label, chosen.seconds * times, name, times=times)
 
 
 def _model_of(tried: Sequence[Tried], factor: float) -> Tried:
     """The cheapest model that would be good enough; the faithful one has no error."""
-    return min((one for one in tried if one.ratio <= PART * factor), key=lambda one: one.operations)
+    return min(
+        (candidate for candidate in tried if candidate.ratio <= PART * factor),
+        key=lambda candidate: candidate.operations,
+    )
 
 
 #: Methods whose steps end at every row are judged where there are so many rows at least.
@@ -185,10 +188,10 @@ class Pins:
     def kinds(self) -> frozenset[str]:
         """The kinds of items that it settles."""
         fineness = None if self.setting is None else self.setting
-        given = {Kind.METHOD: self.method, Kind.FINENESS: fineness, Kind.SCALAR: self.scalar, Kind.GRAVITY: self.model}
-        given |= {Kind.LINEARITY: self.model, Kind.LEFT_OUT: self.model}
+        pinned = {Kind.METHOD: self.method, Kind.FINENESS: fineness, Kind.SCALAR: self.scalar, Kind.GRAVITY: self.model}
+        pinned |= {Kind.LINEARITY: self.model, Kind.LEFT_OUT: self.model}
         together = (Kind.RESTING, Kind.PARTS, Kind.WELDED) if self.whole else ()
-        return frozenset((*(kind for kind, value in given.items() if value is not None), *together))
+        return frozenset((*(kind for kind, value in pinned.items() if value is not None), *together))
 
     @property
     def setting(self) -> Setting | None:
@@ -234,12 +237,12 @@ def planned(
             break
         goal *= 0.7 / over
     if pins.setting is None:
-        for one in _cheaper(bench, trial, stick.known, room, pins):
-            others = bounds_of(scene, accuracy, shares_of(bench, one, stick, model))
+        for cheaper in _cheaper(bench, trial, stick.known, room, pins):
+            others = bounds_of(scene, accuracy, shares_of(bench, cheaper, stick, model))
             if _over(others) <= 1 or too_simple:
-                trial, bounds = one, others
+                trial, bounds = cheaper, others
                 break
-    worst = max(bounds, key=lambda one: one.total / one.target)
+    worst = max(bounds, key=lambda bound: bound.total / bound.target)
     enough = fits(trial, stick.known, room) and (_over(bounds) <= 1 or bool(too_simple))
     settled = Settled(scene, model, choice, resting, parts, bench, stick, trial, pins.kinds, enough, room, worst)
     items, measured_to = items_of(settled), settled.measured_to
@@ -267,15 +270,15 @@ def _over(bounds: Sequence[Bound]) -> float:
     return max(bound.total / bound.target for bound in bounds)
 
 
-def _cheaper(bench: Bench, found: Trial, known: float, room: float, pins: Pins) -> list[Trial]:
-    """What the search passed by, aiming at less than is tolerable: good enough, and clearly cheaper than ``found``.
+def _cheaper(bench: Bench, chosen: Trial, known: float, room: float, pins: Pins) -> list[Trial]:
+    """What the search passed by, aiming at less than is tolerable: good enough, and clearly cheaper than ``chosen``.
 
-    A few, the cheapest first; where ``found`` is not good enough, whatever is.
+    A few, the cheapest first; where ``chosen`` is not good enough, whatever is.
     """
-    least = found.cost / ALIKE if fits(found, known, room) else inf
+    least = chosen.cost / ALIKE if fits(chosen, known, room) else inf
     able = [trial for trial in bench.trials if trial.cost < least and fits(trial, known, room)]
     allowed = [trial for trial in able if pins.scalar in (None, trial.scalar)]
-    return sorted(allowed, key=lambda one: one.cost)[:REPEATS]
+    return sorted(allowed, key=lambda affordable: affordable.cost)[:REPEATS]
 
 
 # --- the scene ---
@@ -316,8 +319,8 @@ def _model(scene: Scene, pins: Pins, watch: Callable[[str], None]) -> ModelChoic
 
 
 def _resting(dynamics: Dynamics) -> Reduced | None:
-    found = reduced(dynamics)
-    return found if found is not None and found.proved else None
+    reduction = reduced(dynamics)
+    return reduction if reduction is not None and reduction.proved else None
 
 
 def _completing(
@@ -352,16 +355,16 @@ def _measured_by(bench: Bench, choice: Choice, first: float, goal: float) -> Yar
     Implicit methods compute in float64, and their tolerances end where rounding begins: an error that is theirs is
     not to be held against the others.
     """
-    found = yardstick(bench, _base(choice), first, goal)
-    if not choice.stiff or found.known <= KNOWN * goal:
-        return found
+    stick = yardstick(bench, _base(choice), first, goal)
+    if not choice.stiff or stick.known <= KNOWN * goal:
+        return stick
     most = int(MOST_TO_MEASURE / cost(bench.dynamics, EXPLICIT, EXTENDED, Work(evaluations=DOP853_STAGES, steps=1)))
     if not choice.turned and choice.decay * float(bench.times[-1]) / STABLE > most:
-        return found
+        return stick
     try:
-        return min(found, yardstick(bench, METHODS[EXPLICIT], first, goal, most), key=lambda one: one.known)
+        return min(stick, yardstick(bench, METHODS[EXPLICIT], first, goal, most), key=lambda candidate: candidate.known)
     except (Breakdown, Unusable):
-        return found
+        return stick
 
 
 # --- the setting ---
@@ -386,32 +389,32 @@ def _settled(
     if pins.setting is not None:
         name = pins.method or choice.method.traits.name
         return bench.run(METHODS[name], pins.scalar or FLOAT64, pins.setting, often=True)
-    found: Trial | None = None
+    best: Trial | None = None
     begun = len(bench.trials)
     stiff = choice.stiff
     for method, scalar in _allowed(bench, model, pins, stiff, many):
         spent = sum(trial.cost for trial in bench.trials[begun:])
-        if found is not None and spent > max(EFFORT, TIMES_BEST * found.cost):
+        if best is not None and spent > max(EFFORT, TIMES_BEST * best.cost):
             break
         watch(f"{method.traits.name}, {scalar}")
-        if found is None and scalar == FLOAT32:
+        if best is None and scalar == FLOAT32:
             break  # what float64 does not reach, fewer digits will not
-        limit = stick.trial.cost if found is None else found.cost
-        setting = first_setting((method, scalar), stick.start, found, float(bench.times[-1]), bench.spacing)
+        limit = stick.trial.cost if best is None else best.cost
+        setting = first_setting((method, scalar), stick.start, best, float(bench.times[-1]), bench.spacing)
         trial = _searched(bench, method, scalar, setting, goal, limit)
-        if trial is not None and (found is None or trial.cost < found.cost):
-            found = trial
-    if found is None and pins.scalar is None:
+        if trial is not None and (best is None or trial.cost < best.cost):
+            best = trial
+    if best is None and pins.scalar is None:
         for method, scalar in in_more_digits():
             if pins.method in (None, method.traits.name):
                 watch(f"{method.traits.name}, {scalar}")
-                found = found or _searched(bench, method, scalar, Setting(stick.start), goal, inf)
-    if found is None:
+                best = best or _searched(bench, method, scalar, Setting(stick.start), goal, inf)
+    if best is None:
         if not bench.trials:
             raise Unusable("no method comes to the end of this motion")
         least = min(trial.error for trial in bench.trials)
-        found = min((trial for trial in bench.trials if trial.error <= 2 * least), key=lambda trial: trial.cost)
-    return found
+        best = min((trial for trial in bench.trials if trial.error <= 2 * least), key=lambda trial: trial.cost)
+    return best
 
 
 def _allowed(bench: Bench, model: Model, pins: Pins, stiff: bool, many: bool) -> list[Contender]:
@@ -421,8 +424,8 @@ def _allowed(bench: Bench, model: Model, pins: Pins, stiff: bool, many: bool) ->
         return [(method, scalar) for scalar in scalars if scalar in method.traits.scalars]
     if pins.scalar == EXTENDED:
         return list(in_more_digits())
-    found = contenders(bench.dynamics, model, bench.finest_target, stiff, many)
-    return [(method, scalar) for method, scalar in found if pins.scalar in (None, scalar)]
+    candidates = contenders(bench.dynamics, model, bench.finest_target, stiff, many)
+    return [(method, scalar) for method, scalar in candidates if pins.scalar in (None, scalar)]
 
 
 def _searched(bench: Bench, method: Method, scalar: str, setting: Setting, goal: float, limit: float) -> Trial | None:

@@ -74,12 +74,12 @@ def resting(scenario: Scenario, among: Collection[str] | None = None) -> Reducti
     if not candidates or len(system.coordinates) < 2:
         return None
     try:
-        found = programs(system, ring_of(system))
+        equations = programs(system, ring_of(system))
     except Failure:
         return None
     how = Certainty.PROVED
     while candidates:
-        pushed, how = _pushed(scenario, found, candidates)
+        pushed, how = _pushed(scenario, equations, candidates)
         if not pushed:
             break
         candidates = {name: value for name, value in candidates.items() if name not in pushed}
@@ -127,7 +127,9 @@ class _Held(Specialised):
         return total + self.number(form.turns) * self.input("pi") if form.turns else total
 
 
-def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expression]) -> tuple[set[str], Certainty]:
+def _pushed(
+    scenario: Scenario, equations: Programs, candidates: Mapping[str, Expression]
+) -> tuple[set[str], Certainty]:
     """The candidates whose forcing or coupling does not vanish, and how zero was decided."""
     system = scenario.system
     forms = {name: form for name, value in candidates.items() if (form := linear_form(value)) is not None}
@@ -139,14 +141,14 @@ def _pushed(scenario: Scenario, found: Programs, candidates: Mapping[str, Expres
     nodes: list[Node] = []
     for i, name in enumerate(system.coordinates):
         if name in forms:
-            coupling = [found.mass_matrix[i][j] for j, other in enumerate(system.coordinates) if other not in forms]
-            for node in (found.forcing[i], *coupling):
+            coupling = [equations.mass_matrix[i][j] for j, other in enumerate(system.coordinates) if other not in forms]
+            for node in (equations.forcing[i], *coupling):
                 owners.append(name)
                 nodes.append(node)
     pushed = set(candidates) - forms.keys()
     left = [
         (name, node)
-        for name, node in zip(owners, substituted(found.program, nodes, fresh), strict=True)
+        for name, node in zip(owners, substituted(equations.program, nodes, fresh), strict=True)
         if not fresh.vanishes(node)
     ]
     if not left:
@@ -180,12 +182,12 @@ def _moved_somewhere(
 
 def without(scenario: Scenario, values: Mapping[str, Expression]) -> Scenario:
     """The scenario of the system in which the coordinates are held."""
-    kept = [place for place, name in enumerate(scenario.system.coordinates) if name not in values]
+    remaining = [place for place, name in enumerate(scenario.system.coordinates) if name not in values]
     return replace(
         scenario,
         system=held(scenario.system, values),
-        positions=tuple(scenario.positions[place] for place in kept),
-        velocities=tuple(scenario.velocities[place] for place in kept),
+        positions=tuple(scenario.positions[place] for place in remaining),
+        velocities=tuple(scenario.velocities[place] for place in remaining),
     )
 
 
@@ -200,8 +202,8 @@ def held(system: System, values: Mapping[str, Expression]) -> System:
         images |= {name: value, velocity_name(name): ZERO, acceleration_name(name): ZERO}
     bodies = []
     for body in system.bodies:
-        kept = tuple(name for name in body.coordinates if name not in values)
-        bodies.append(replace(put(body, images), coordinates=kept))
+        remaining = tuple(name for name in body.coordinates if name not in values)
+        bodies.append(replace(put(body, images), coordinates=remaining))
     loads = [put(left, images) for load in system.loads if (left := load.without(values)) is not None]
     changes: dict[str, Any] = {
         "bodies": tuple(bodies),

@@ -182,7 +182,7 @@ def usual_sizes(dynamics: Dynamics, times: Any, states: Any, kinetic: float) -> 
     for place, k in pairs:
         usual[place] = speeds[k] * shortest
     for body in described(dynamics.system).bodies if dynamics.in_states else ():
-        for name in (name for one in body.orientation for name in one.components):
+        for name in (name for attitude in body.orientation for name in attitude.components):
             usual[dynamics.system.coordinates.index(name)] = 1.0
     return np.where(np.isfinite(usual), usual, 0.0)
 
@@ -198,11 +198,11 @@ def sizes_of_scene(dynamics: Dynamics, times: Any, states: Any) -> Any:
         return np.zeros(len(states))
 
 
-def kinetic_between(dynamics: Dynamics, found: Trajectory, completed: Callable[[Method], Method]) -> float:
+def kinetic_between(dynamics: Dynamics, trajectory: Trajectory, completed: Callable[[Method], Method]) -> float:
     """The largest kinetic energy of the motion where the samples are too few to show it, by a coarse run; else 0."""
-    if len(found.times) >= MANY or len(found.times) < 2:
+    if len(trajectory.times) >= MANY or len(trajectory.times) < 2:
         return 0.0
-    return _seen(dynamics, float(found.times[-1]), completed(METHODS["dop853"]))[2]
+    return _seen(dynamics, float(trajectory.times[-1]), completed(METHODS["dop853"]))[2]
 
 
 def _seen(dynamics: Dynamics, end: float, method: Method) -> tuple[Any, Any, float]:

@@ -158,8 +158,8 @@ def compared(
     followed = True
     places = _places(first, second, end, rows, most)
     for block in _blocks(places):
-        times, one, other = _evaluated(block)
-        seen.add(times, rows.instead(times, one), other)
+        times, first_states, second_states = _evaluated(block)
+        seen.add(times, rows.instead(times, first_states), second_states)
         followed = followed and block[-1][3]
         watch(float(times[-1]))
     return seen.comparison(names, usual, followed)
@@ -180,14 +180,14 @@ def filled(solution: Run, times: Any, looks: int = 1, reached: Callable[[float],
 
 def compared_at(
     times: Any,
-    one: Any,
+    first_states: Any,
     other: Any,
     names: Sequence[str],
     usual: Callable[[Any, Any], Any] = lambda times, states: np.zeros(len(states)),
 ) -> Comparison:
     """The differences of states (2n, m) at increasing times that begin with 0, scaled by ``other``."""
-    seen = _Seen(one[:, 0], other[:, 0])
-    seen.add(times[1:], one[:, 1:], other[:, 1:])
+    seen = _Seen(first_states[:, 0], other[:, 0])
+    seen.add(times[1:], first_states[:, 1:], other[:, 1:])
     return seen.comparison(names, usual, followed=False)
 
 
@@ -259,12 +259,12 @@ _Place = tuple[Any, Any, Any, bool]
 
 def _evaluated(block: Sequence[_Place]) -> tuple[Any, Any, Any]:
     """(times, states of the first, of the second) of all places of a block, those on steps in one go."""
-    steps, found = [place for place in block if place[3]], [place[:3] for place in block if not place[3]]
+    steps, groups = [place for place in block if place[3]], [place[:3] for place in block if not place[3]]
     if steps:
         own, first, second, _ = zip(*steps, strict=True)
-        found.insert(0, (np.concatenate(own), states_on(first, own), states_on(second, own)))
-    times, one, other = (np.concatenate(parts, axis=-1) for parts in zip(*found, strict=True))
-    return times, one, other
+        groups.insert(0, (np.concatenate(own), states_on(first, own), states_on(second, own)))
+    times, first_states, second_states = (np.concatenate(parts, axis=-1) for parts in zip(*groups, strict=True))
+    return times, first_states, second_states
 
 
 def _blocks(places: Iterator[_Place]) -> Iterator[list[_Place]]:
@@ -282,8 +282,8 @@ def _blocks(places: Iterator[_Place]) -> Iterator[list[_Place]]:
 def _step(solution: Solution, second: bool) -> Piecewise:
     try:
         return solution.step()
-    except Breakdown as found:
-        raise Ended(second, found) from None
+    except Breakdown as breakdown:
+        raise Ended(second, breakdown) from None
 
 
 def _at(solution: Solution, piece: Piecewise, times: Any, second: bool) -> Any:
@@ -292,8 +292,8 @@ def _at(solution: Solution, piece: Piecewise, times: Any, second: bool) -> Any:
         return piece(times)
     try:
         return solution.fill(times)
-    except Breakdown as found:
-        raise Ended(second, found) from None
+    except Breakdown as breakdown:
+        raise Ended(second, breakdown) from None
 
 
 class _Seen:
@@ -309,21 +309,21 @@ class _Seen:
         self._worst: list[Any] = [self.largest.copy()]
         self._states: list[Any] = [start]
 
-    def add(self, times: Any, one: Any, other: Any) -> None:
-        differences = _distance(one, other)
+    def add(self, times: Any, first_states: Any, second_states: Any) -> None:
+        differences = _distance(first_states, second_states)
         places = np.argmax(differences, axis=1)
         worst = differences[np.arange(len(places)), places]
         more = worst > self.largest
         self.largest = np.where(more, worst, self.largest)
         self.when = np.where(more, times[places], self.when)
         self.final = differences[:, -1]
-        self.size = np.maximum(self.size, np.max(np.abs(np.asarray(other, dtype=float)), axis=1))
+        self.size = np.maximum(self.size, np.max(np.abs(np.asarray(second_states, dtype=float)), axis=1))
         self.points += len(times)
         for start in range(0, len(times), TOGETHER):
             chosen = slice(start, start + TOGETHER)
             self._ends.append(float(times[chosen][-1]))
             self._worst.append(np.max(differences[:, chosen], axis=1))
-            self._states.append(np.asarray(other[:, chosen][:, -1], dtype=float))
+            self._states.append(np.asarray(second_states[:, chosen][:, -1], dtype=float))
         while len(self._ends) > 2 * STRETCHES:
             self._thin()
 
@@ -337,8 +337,8 @@ class _Seen:
 
     def comparison(self, names: Sequence[str], usual: Callable[[Any, Any], Any], followed: bool) -> Comparison:
         """What it comes to."""
-        kept = self.kept()
-        usually = np.asarray(usual(*kept), dtype=float)
+        samples = self.kept()
+        usually = np.asarray(usual(*samples), dtype=float)
         scales = scaled(self.size, usually, self.largest)
         quantities = tuple(
             Difference(name, *map(float, values))
@@ -346,7 +346,7 @@ class _Seen:
                 names, self.final, self.largest, self.when, self.size, scales, RESTS * usually, strict=True
             )
         )
-        return Comparison(quantities, self._ends[-1], self.points, followed, self.parted(PARTED * scales), *kept)
+        return Comparison(quantities, self._ends[-1], self.points, followed, self.parted(PARTED * scales), *samples)
 
     def kept(self) -> tuple[Any, Any]:
         """(times, states) of the second solution, some of them along the whole interval."""
@@ -360,8 +360,8 @@ class _Seen:
         return None
 
 
-def _distance(one: Any, other: Any) -> Any:
+def _distance(first_states: Any, other: Any) -> Any:
     """|x - y|; infinite where one of them is no number."""
     with np.errstate(all="ignore"):
-        found = np.abs(np.asarray(one) - np.asarray(other)).astype(float)
-    return np.where(np.isfinite(found), found, np.inf)
+        differences = np.abs(np.asarray(first_states) - np.asarray(other)).astype(float)
+    return np.where(np.isfinite(differences), differences, np.inf)

@@ -104,10 +104,10 @@ def quantities(
 
     Accelerations and pivots are those of ``solved`` where constraints are in them; mass matrix and forcing the tree's.
     """
-    found = programs(system, ring, open_tree=solved is not None)
+    equations = programs(system, ring, open_tree=solved is not None)
     names = input_names(system)
-    made = [("mass matrix", found.program, [x for row in found.mass_matrix for x in row])]
-    made.append(("forcing", found.program, list(found.forcing)))
+    made = [("mass matrix", equations.program, [x for row in equations.mass_matrix for x in row])]
+    made.append(("forcing", equations.program, list(equations.forcing)))
     answer: ConstrainedDynamics | ForwardDynamics = solved or forward_dynamics(system, ring)
     made.append(("accelerations", answer.program, list(answer.accelerations)))
     made.append(("pivots", answer.program, list(answer.pivots)))
@@ -198,8 +198,8 @@ class Truth:
             whole = max((abs(x.mid()) for x in base), default=arb(0))
             pairs = zip(sums, sizes or [whole] * len(sums), strict=True)
             parts = [float((s / tiny / size).mid()) if size > 0 else inf for s, size in pairs if not s.is_zero()]
-        found = max(parts, default=1.0)
-        return found if isfinite(found) else inf
+        condition_number = max(parts, default=1.0)
+        return condition_number if isfinite(condition_number) else inf
 
 
 def tight(balls: Sequence[arb]) -> bool:
@@ -217,7 +217,7 @@ class Arithmetic:
     """
 
     def __init__(self, scenario: Scenario, found: Sequence[Quantity], compiled: bool = True) -> None:
-        self.found, self.scenario = tuple(found), scenario
+        self.quantities, self.scenario = tuple(found), scenario
         self.compiled = compiled
         self.slopes_of: Sequence[Node] | None = None
         fresh = bound(scenario)
@@ -272,16 +272,16 @@ def measured(
     norm = max((abs(float(x.mid())) for x in exact), default=0.0)
     inputs = np.array([float(x) for x in (time, *state)])
     sizes = truth.scales(name, exact, scenario, time, state)
-    kept, worst = {}, {}
+    digits, worst = {}, {}
     for scalar, full in FULL.items():
-        kept[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full, sizes)
+        digits[scalar], worst[scalar] = compared(arithmetic.values(name, scalar, inputs), exact, full, sizes)
     rounded = [Fraction(x) for x in inputs]
     there, known = truth.value(name, scenario, rounded[0], rounded[1:])
     formula = 0.0
     if known:
         own = truth.scales(name, there, scenario, rounded[0], rounded[1:])
         formula = compared(arithmetic.values(name, FLOAT64, inputs), there, FULL[FLOAT64], own)[0]
-    return Digits(kept, worst, formula, truth.condition(name, scenario, time, state, sizes), bits, norm)
+    return Digits(digits, worst, formula, truth.condition(name, scenario, time, state, sizes), bits, norm)
 
 
 def compared(values: Any, exact: Sequence[arb], full: float, sizes: Sequence[arb] = ()) -> tuple[float, float]:

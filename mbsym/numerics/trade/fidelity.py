@@ -22,15 +22,15 @@ import numpy as np
 
 from mbsym.algebra.failures import Defect, Failure
 from mbsym.expressions.message import Message
-from mbsym.model.loads import EXACT, GRAVITY_ORDERS, NewtonianGravity
+from mbsym.model.loads import EXACT, GRAVITY_ORDERS
 from mbsym.model.states import InStates
 from mbsym.numerics.dynamics import Dynamics
 from mbsym.numerics.kernels.interface import FLOAT64
-from mbsym.numerics.ledger.described import relative_size
 from mbsym.numerics.methods.interface import Method, Setting, Unusable, Work
-from mbsym.numerics.planning.models import LinearisedDynamics
-from mbsym.numerics.planning.reduced import Reduction, resting
+from mbsym.numerics.planning.models import Model, modelled, orders
+from mbsym.numerics.planning.reduced import Reduced, resting
 from mbsym.numerics.scenario import Scenario
+from mbsym.numerics.separable import completing
 from mbsym.numerics.states import dynamics_of
 from mbsym.numerics.trade.trial import Trial, trial_of
 
@@ -48,14 +48,14 @@ REPEATS, MOST = 5, 2.0
 class Variant:
     """A model: ``rank`` orders models of one family by faithfulness (the largest is the most faithful).
 
-    ``free`` says where its states stand among those of the whole system (None: it has them all).
+    ``taken``: what rests, where that is taken out of the equations.
     """
 
     label: str
     neglected: str
     dynamics: Dynamics
     rank: int
-    free: tuple[int, ...] | None = None
+    taken: Reduced | None = None
 
 
 @dataclass(frozen=True)
@@ -78,36 +78,25 @@ def variants(scenario: Scenario) -> Iterator[Variant]:
     fields = system.newtonian_fields
     faithful = min((GRAVITY_ORDERS.index(load.order) + 1 for load in fields), default=0)
     yield Variant(DESCRIBED, Message("nothing that the description has"), dynamics_of(scenario), faithful)
-    for rank, order in enumerate(GRAVITY_ORDERS if fields else (), start=1):
-        if all(load.order == order for load in fields) or (order != EXACT and not _expandable(scenario, fields)):
+    for order in orders(scenario) if fields else ():
+        if all(load.order == order for load in fields):
             continue
-        dropped, name = Message("nothing of the field"), Message("exact gravity")
+        dropped = Message("nothing of the field")
         if order != EXACT:
             dropped = Message("terms of the field above order [[order]] in size/R", order=order)
-            name = Message("gravity of order [[order]]", order=order)
-        yield Variant(name, dropped, dynamics_of(replace(scenario, system=system.with_field_order(order))), rank)
+        model = Model(order)
+        yield Variant(model.label, dropped, modelled(scenario, model), GRAVITY_ORDERS.index(order) + 1)
     if system.constraints or isinstance(system, InStates):
         return
     if system.motion:
-        label = Message("linearised")
-        yield Variant(label, Message("all that is not linear in the deviation"), LinearisedDynamics(scenario), -1)
+        model, dropped = Model(linear=True), Message("all that is not linear in the deviation")
+        yield Variant(model.label, dropped, modelled(scenario, model), -1)
     reduction = resting(scenario)
     if reduction is not None:
-        yield _reduced(scenario, reduction)
-
-
-def _expandable(scenario: Scenario, fields: Sequence[NewtonianGravity]) -> bool:
-    """Whether fields that the description has exactly can be expanded at all: the bodies are nearer to O1 than it is
-    to the centre."""
-    sizes = [relative_size(scenario, load) for load in fields if load.order == EXACT]
-    return all(size is not None and size < 1 for size in sizes)
-
-
-def _reduced(scenario: Scenario, found: Reduction) -> Variant:
-    names = ", ".join(found.values)
-    free, _ = found.expanded(scenario)
-    what = Message("[[names]], which rest ([[how]])", names=names, how=found.how)
-    return Variant(Message("without [[names]]", names=names), what, Dynamics(found.scenario), 0, free)
+        names = ", ".join(reduction.values)
+        dropped = Message("[[names]], which rest ([[how]])", names=names, how=reduction.how)
+        taken = Reduced(dynamics_of(scenario), reduction, Dynamics(reduction.scenario))
+        yield Variant(Message("without [[names]]", names=names), dropped, taken.dynamics, 0, taken)
 
 
 def measured(
@@ -126,7 +115,7 @@ def measured(
     for variant in variants(scenario):
         watch(variant.label)
         try:
-            trial = _run(scenario, variant, method, times)
+            trial = _run(variant, method, times)
         except Exception as raised:  # whatever goes wrong with one model is told of that one
             reason = raised if isinstance(raised, (Failure, Unusable)) else Defect.of(raised)
             trial = Trial(method, FLOAT64, Setting(TIGHT), Work(), trouble=str(reason))
@@ -163,16 +152,11 @@ def model_advice(models: Sequence[ModelError], target: float) -> str:
     return Message("[[what]], which adds to the error.", what=text)
 
 
-def _run(scenario: Scenario, variant: Variant, method: Method, times: Sequence[float]) -> Trial:
+def _run(variant: Variant, method: Method, times: Sequence[float]) -> Trial:
     """A run of a variant with the states of the whole system, and the median of the seconds of several."""
-    runs: list[Trial] = []
-    while not runs or len(runs) < min(REPEATS, MOST / runs[-1].cost):
-        runs.append(trial_of(method, variant.dynamics, Setting(TIGHT), times))
-        if runs[-1].trouble:
-            return runs[-1]
-    states = runs[-1].states
-    if variant.free is not None:
-        whole = np.tile(np.array([float(x) for x in scenario.state])[:, np.newaxis], (1, len(times)))
-        whole[list(variant.free)] = states
-        states = whole
-    return replace(runs[-1], states=states, seconds=statistics.median(run.seconds for run in runs))
+    taken, dynamics, inner, runs = variant.taken, variant.dynamics, method, list[Trial]()
+    if taken is not None:
+        inner, dynamics = completing(taken, method), taken.whole
+    while not runs or (not runs[-1].trouble and len(runs) < min(REPEATS, MOST / runs[-1].cost)):
+        runs.append(trial_of(inner, dynamics, Setting(TIGHT), times))
+    return replace(runs[-1], method=method, seconds=statistics.median(run.seconds for run in runs))

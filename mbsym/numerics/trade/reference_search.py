@@ -235,7 +235,7 @@ def whole_reference(
             continue  # its steps do not land at switches: it would end at the first and call that a blow-up
         search = _Search(dynamics, end, share * left, watch)
         try:
-            found = way(search)
+            reference = way(search)
         except Breakdown as reason:
             if way is _extrapolated and reason.kind != Cause.STEP_LIMIT:
                 if dynamics.constraints is None:
@@ -247,7 +247,7 @@ def whole_reference(
         except Exception as error:
             failed = failed or Breakdown(BROKEN, str(Defect.of(error)), 0.0)
         else:
-            return replace(found, seconds=time.perf_counter() - started, cost=spent + search.spent)
+            return replace(reference, seconds=time.perf_counter() - started, cost=spent + search.spent)
         finally:
             spent += search.spent
     raise failed or Breakdown(Cause.STEP_LIMIT, TOO_DEAR, 0.0)
@@ -360,12 +360,12 @@ def _between(search: _Search, times: Any, knots: Any) -> tuple[Any, Any, Any]:
     places, states, missed = [times[:1]], [knots[:, :1]], np.zeros(len(knots))
     for k in range(len(times) - 1):
         run.restart(float(times[k]), knots[:, k].astype(np.longdouble if scalar == EXTENDED else float))
-        wanted = np.append(uneven(times[k], times[k + 1], inside), times[k + 1])
-        found = run.fill(wanted)
+        instants = np.append(uneven(times[k], times[k + 1], inside), times[k + 1])
+        found = run.fill(instants)
         with np.errstate(all="ignore"):
             missed = np.maximum(missed, np.abs(found[:, -1] - knots[:, k + 1]).astype(float))
         found[:, -1] = knots[:, k + 1]
-        places.append(wanted)
+        places.append(instants)
         states.append(found)
         search.reached(float(times[k + 1]))
     return np.concatenate(places), np.hstack(states), np.where(np.isfinite(missed), missed, np.inf)

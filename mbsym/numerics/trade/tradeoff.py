@@ -130,13 +130,13 @@ def tradeoff(
     An exception that nobody foresaw costs its row and the rest of its ladder (``Defect``), and nothing else.
     """
     judge = _Judge(dynamics, reference)
-    found: dict[tuple[str, str], list[Measured]] = {}
+    rows_by_method: dict[tuple[str, str], list[Measured]] = {}
     unusable = []
     pairs = [(method, scalar) for method in methods for scalar in method.traits.scalars if available(scalar)]
     likely = _likely(dynamics, reference) if len(pairs) > 1 else None
     interrupted = False
     for place, (method, scalar) in enumerate(sorted(pairs, key=lambda pair: _name(*pair) != likely)):
-        left, own = max(budget - judge.spent, 0.0), found.setdefault(_name(method, scalar), [])
+        left, own = max(budget - judge.spent, 0.0), rows_by_method.setdefault(_name(method, scalar), [])
         share = FIRST * left if _name(method, scalar) == likely else left / (len(pairs) - place)
         try:
             for row in _ladder(judge, method, scalar, share, watch):
@@ -146,7 +146,7 @@ def tradeoff(
         except KeyboardInterrupt:
             interrupted = True
             break
-    rows = [row for pair in pairs for row in found.get(_name(*pair), ())]
+    rows = [row for pair in pairs for row in rows_by_method.get(_name(*pair), ())]
     orders = tuple(_orders(rows))
     return Tradeoff(_with_front(rows), reference, orders, tuple(dict.fromkeys(unusable)), interrupted, judge.spent)
 
@@ -323,23 +323,23 @@ def advice(found: Tradeoff, target: float) -> Message:
 
     Nothing is said to be reached but what was measured, with the reference's own error added.
     """
-    known, least, wanted = found.reference.error, f"{found.smallest_judged:.0e}", f"{target:.0e}"
+    known, least, printed_target = found.reference.error, f"{found.smallest_judged:.0e}", f"{target:.0e}"
     if target < found.smallest_judged:
         text = (
             "The reference itself is known to [[known]] only: an error of [[target]] cannot be judged here; choose a "
             "target of at least [[least]]."
         )
-        return Message(text, known=f"{known:.1e}", target=wanted, least=least)
+        return Message(text, known=f"{known:.1e}", target=printed_target, least=least)
     best = found.cheapest(target)
     if best is None:
         nearest = min(found.rows, key=lambda row: row.error)
         if nearest.error == inf:
-            return Message("Nothing tried reaches [[target]]: no run came to the end.", target=wanted)
+            return Message("Nothing tried reaches [[target]]: no run came to the end.", target=printed_target)
         text = (
             "Nothing tried reaches [[target]]; the most accurate is [[setting]] with an error of [[error]] in [[time]]."
         )
         error, time = f"{nearest.error:.1e}", duration(nearest.seconds)
-        return Message(text, target=wanted, setting=nearest.label, error=error, time=time)
+        return Message(text, target=printed_target, setting=nearest.label, error=error, time=time)
     judged = best.error > found.smallest_judged
     text = (
         "[[setting]] reaches [[target]] in the least time measured here: error [[error]] over the whole interval (the "
@@ -348,7 +348,7 @@ def advice(found: Tradeoff, target: float) -> Message:
     return Message(
         text,
         setting=best.label,
-        target=wanted,
+        target=printed_target,
         error=f"{best.error:.1e}" if judged else Message("below [[bound]]", bound=least),
         known=f"{known:.1e}",
         time=duration(best.seconds),

@@ -105,10 +105,10 @@ class _Second:
         """q (q F_0 + p F_1) with p/q where the minors of order two are greatest."""
         ring = self.ring
         for i, j in combinations(range(len(first)), 2):
-            two = ring.times(second[i][i], second[j][j]) - ring.times(second[i][j], second[i][j])
-            one = ring.times(first[i][i], second[j][j]) + ring.times(second[i][i], first[j][j])
-            one = ring.reduce(one - ring.times(first[i][j], second[i][j]) * 2)
-            q, p = ring.reduce(two * 2), -one
+            quadratic = ring.times(second[i][i], second[j][j]) - ring.times(second[i][j], second[i][j])
+            linear = ring.times(first[i][i], second[j][j]) + ring.times(second[i][i], first[j][j])
+            linear = ring.reduce(linear - ring.times(first[i][j], second[i][j]) * 2)
+            q, p = ring.reduce(quadratic * 2), -linear
             if q.is_zero() or self._sign(q) not in _NOT_ZERO:
                 continue
             yield [

@@ -147,7 +147,7 @@ def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], trie
     if identical and not (tried and derived.system.assumptions):
         return Outcome.EXACT
     source = random.Random(SEED)
-    finite, narrow, found = 0, True, 0
+    finite, narrow, allowed_points = 0, True, 0
     with ctx.workprec(PRECISION):
         for _ in range(POINTS * ATTEMPTS):
             values = _point(ring, signs, source)
@@ -155,7 +155,7 @@ def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], trie
                 continue
             if identical:
                 return Outcome.EXACT
-            found += 1
+            allowed_points += 1
             value = ring.evaluate(opened, values)
             if not value.is_finite():
                 continue
@@ -164,7 +164,7 @@ def _decided_for(derived: Derived, x: Polynomial, known: Mapping[int, int], trie
             finite, narrow = finite + 1, narrow and value.rad() < ROUNDING
             if finite == POINTS:
                 return Outcome.NUMERICAL if narrow else Outcome.UNDECIDED
-    return Outcome.UNDECIDED if found else None
+    return Outcome.UNDECIDED if allowed_points else None
 
 
 def _point(ring: Ring, signs: Mapping[int, int], source: random.Random) -> dict[str, Any]:
@@ -356,9 +356,9 @@ def _parts(derived: Derived, claim: Claim, symbols: Symbols, difference: Polynom
 def _values(derived: Derived, symbols: Symbols, expressions: list[Expression]) -> dict[str, Polynomial]:
     """The abbreviations that occur, as polynomials in declared parameters."""
     scene = scene_of_claims(derived)
-    wanted = symbols.occurring(expressions)
+    occurring = symbols.occurring(expressions)
     lower = symbols.in_scene(scene)
-    return {name: in_parameters(derived, lower(Name(name))) for name in symbols.values if name in wanted}
+    return {name: in_parameters(derived, lower(Name(name))) for name in symbols.values if name in occurring}
 
 
 def _same_as(coefficient: Polynomial, values: Mapping[str, Polynomial]) -> str:
@@ -396,15 +396,15 @@ def _repairs(
 
     Where some of them are made of the parameters of the difference, the others are not named.
     """
-    found, likely = [], []
+    repairs, likely = [], []
     needed = _parameters(ring, coefficient)
     for name, slope in slopes.items():
         ratio = rational_ratio(combined, slope)
         if ratio is not None:
-            found.append((name, Formula(ring, ring.reduce(-coefficient * ratio))))
+            repairs.append((name, Formula(ring, ring.reduce(-coefficient * ratio))))
             if needed <= _parameters(ring, values[name]):
-                likely.append(found[-1])
-    return tuple(likely or found)
+                likely.append(repairs[-1])
+    return tuple(likely or repairs)
 
 
 def _parameters(ring: Ring, x: Polynomial) -> set[int]:
@@ -531,7 +531,7 @@ def constant_factor(derived: Derived, claimed: Polynomial, truth: Polynomial) ->
     first, second = dict(split_off(ring, above, constant)), dict(split_off(ring, below, constant))
     if first.keys() != second.keys():
         return None
-    key = min(second, key=lambda one: len(first[one]) + len(second[one]))
+    key = min(second, key=lambda monomial: len(first[monomial]) + len(second[monomial]))
     top, bottom = ring.lowest_terms(first[key], second[key])
     if len(top) > 1 or len(bottom) > 1:
         return None

@@ -90,16 +90,16 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
     verdict = derived.stability.verdict
     never = verdict.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS)
     needs = [] if never else [_need(region, claim) for region in regions]
-    for one in needs:
-        if one.everywhere:
-            drifts = (said(Said.DRIFTS_WITH_EQUALITY),) if one.drifts else ()
-            return _told(result, Outcome.EXACT, one.because, said(Said.UNSTABLE_WITHOUT), *drifts)
+    for condition in needs:
+        if condition.everywhere:
+            drifts = (said(Said.DRIFTS_WITH_EQUALITY),) if condition.drifts else ()
+            return _told(result, Outcome.EXACT, condition.because, said(Said.UNSTABLE_WITHOUT), *drifts)
     tried = _refuting(derived, claim)
-    example = tried.found
-    exponential = next((one for one in needs if one.exponential is not None), None)
+    example = tried.counterexample
+    exponential = next((condition for condition in needs if condition.exponential is not None), None)
     for_exponential = () if exponential is None else (_for_exponential(derived, exponential),)
     # On a border with equality alone nothing is contradicted that is said of all other parameters.
-    need = next((one for one in needs if one.beyond), None)
+    need = next((condition for condition in needs if condition.beyond), None)
     if need is not None and (example is None or (example.at_equality and example.at_border)):
         return _but_for_equality(derived, claim, result, need, example, for_exponential)
     if example is not None:
@@ -114,7 +114,7 @@ def _necessary(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimResu
         )
     if claim.relation == "!=":
         return _apart(derived, regions, claim, result, tried, for_exponential)
-    partly = next((one for one in needs if one.but_borders), exponential)
+    partly = next((condition for condition in needs if condition.but_borders), exponential)
     if partly is not None:
         return _told(result, Outcome.BORDERS, partly.because, said(Said.UNSTABLE_INSIDE), *for_exponential)
     return _told(
@@ -165,7 +165,9 @@ def _closed(inequality: Inequality) -> Inequality:
 
 def _unstable_without(region: Region, rows: Sequence[Sequence[Inequality]], bodies: bool) -> Word:
     """What the motion is where nothing of one of these rows holds, if it is unstable."""
-    open_ones = [row for row in rows if len(rows) == 1 or not any(is_certain(region.signs, one) for one in row)]
+    open_ones = [
+        row for row in rows if len(rows) == 1 or not any(is_certain(region.signs, condition) for condition in row)
+    ]
     words = [
         region.without(row[0], bodies).word
         if len(row) == 1
@@ -227,7 +229,7 @@ def _apart(
 
 
 def _tried(tried: Tried, code: Said) -> Remark:
-    return said(code, tried.asked) if tried.asked else said(Said.NOT_TRIED)
+    return said(code, tried.points) if tried.points else said(Said.NOT_TRIED)
 
 
 def forms(derived: Derived, claim: Claim) -> Iterator[Region]:
@@ -304,12 +306,12 @@ def one_of_problem_6(region: Region, claim: Claim, result: ClaimResult) -> Claim
     )
 
 
-def _found_among(region: Region, wanted: Inequality, left_out: Sequence[str]) -> tuple[Remark | None, bool]:
+def _found_among(region: Region, condition: Inequality, left_out: Sequence[str]) -> tuple[Remark | None, bool]:
     """Which condition it is, and whether it differs in the case of equality; None where it is none of them."""
     for same in (_proportional, partial(_same_condition, region.signs)):
         for what, inequality in region.conditions(left_out):
-            if (wanted.relation == "!=") == (inequality.relation == "!=") and same(wanted, inequality):
-                return what, wanted.relation != inequality.relation
+            if (condition.relation == "!=") == (inequality.relation == "!=") and same(condition, inequality):
+                return what, condition.relation != inequality.relation
     return None, False
 
 
@@ -321,10 +323,12 @@ def _proportional(first: Inequality, second: Inequality) -> bool:
 def _same_condition(signs: Signs, first: Inequality, second: Inequality) -> bool:
     """Whether two polynomials are positive together (nonzero together) for all parameters."""
     decide = signs.nonzero_condition if first.relation == "!=" else signs.condition
-    one, other = decide(first.polynomial), decide(second.polynomial)
-    if one.kind != other.kind or one.kind not in ("inequality", "nonzero"):
+    first_condition, second_condition = decide(first.polynomial), decide(second.polynomial)
+    if first_condition.kind != second_condition.kind or first_condition.kind not in ("inequality", "nonzero"):
         return False
-    return one.polynomial == other.polynomial and sorted(map(str, one.nonzero)) == sorted(map(str, other.nonzero))
+    return first_condition.polynomial == second_condition.polynomial and sorted(
+        map(str, first_condition.nonzero)
+    ) == sorted(map(str, second_condition.nonzero))
 
 
 # --- sufficient conditions ---
@@ -336,20 +340,24 @@ def _sufficient(derived: Derived, claim: Claim, result: ClaimResult) -> ClaimRes
     always = derived.stability.verdict
     if always.stable:  # nothing can refute it, and where other angles were judged nothing could be tried
         each = (trivial(region, wanted_of(region, claim), result) for region in forms(derived, claim))
-        never = next((one for one in each if one is not None and one.outcome == Outcome.FAILS), None)
+        never = next(
+            (candidate for candidate in each if candidate is not None and candidate.outcome == Outcome.FAILS), None
+        )
         return never or _told(
             result, Outcome.EXACT, said(Said.WITH_IT, number, "", with_theorem(always.word, always.theorems))
         )
     tried = _refuting(derived, claim)
-    if tried.found is not None:
-        return _told(result, Outcome.FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.found)
+    if tried.counterexample is not None:
+        return _told(result, Outcome.FAILS, said(Said.NOT_SUFFICIENT, number), example=tried.counterexample)
     open_words: tuple[Remark, ...] = ()
     for region in forms(derived, claim):
-        conditions = [piece for one in together for piece in pieces_of(region, one)]
+        conditions = [piece for companion in together for piece in pieces_of(region, companion)]
         known = trivial(region, wanted_of(region, claim), result)
         if known is not None and known.outcome == Outcome.FAILS:
             return known
-        strict = [replace(one, relation=">") if one.relation == ">=" else one for one in conditions]
+        strict = [
+            replace(condition, relation=">") if condition.relation == ">=" else condition for condition in conditions
+        ]
         for bodies in (False, True):
             if bodies and region.signs_of_bodies is region.signs:
                 continue
@@ -417,7 +425,7 @@ def _by_integrals(derived: Derived, claim: Claim, together: Sequence[Claim]) -> 
 
     try:
         region = Region(derived, claim, own=False)
-        facts = [wanted_of(region, one) for one in together]
+        facts = [wanted_of(region, companion) for companion in together]
         known = region.signs.assuming((x.polynomial, x.relation) for x in facts if not x.polynomial.is_constant())
         return by_integrals.verdict_with(derived, known)
     except (ContradictionError, NoClosedForm):
@@ -429,7 +437,9 @@ def _of_its_place(derived: Derived, claim: Claim) -> list[Claim]:
     if claim.role != SUFFICIENT or not claim.place:
         return [claim]
     shared = (claim.kind, claim.role, claim.place)
-    return [one for one in derived.system.claims if (one.kind, one.role, one.place) == shared]
+    return [
+        companion for companion in derived.system.claims if (companion.kind, companion.role, companion.place) == shared
+    ]
 
 
 # --- parameters that refute ---
@@ -466,18 +476,18 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
     sufficient = claim.role == SUFFICIENT
 
     sides = []
-    for one in together:
-        assert one.right is not None
-        about = text(subtract(one.equals, one.right))
-        both = [one.equals, one.right]
-        sides.append((about, [symbols.opened(side) for side in both], symbols.occurring(both), one.relation))
+    for companion in together:
+        assert companion.right is not None
+        about = text(subtract(companion.equals, companion.right))
+        both = [companion.equals, companion.right]
+        sides.append((about, [symbols.opened(side) for side in both], symbols.occurring(both), companion.relation))
 
     def claimed(numbers: Any, values: Mapping[str, Any]) -> list[tuple[str, Any, str]]:
-        found = []
+        differences = []
         for about, (left, right), occurring, relation in sides:
             lower = symbols.lowering(numbers, values, occurring)
-            found.append((about, lower(left) - lower(right), relation))
-        return found
+            differences.append((about, lower(left) - lower(right), relation))
+        return differences
 
     verdicts = (Word.UNSTABLE,) if sufficient else _stable_words(derived)
     usual = Tried(None, 0)
@@ -486,7 +496,7 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
         region = Region(derived, claim, own=False)
         find = partial(derived.trials.counterexample, claimed, sufficient, verdicts, on_border=region.is_border)
         usual = find(among=derived.trials)
-        if usual.found is not None and not any(_weight(usual.found)):
+        if usual.counterexample is not None and not any(_weight(usual.counterexample)):
             return usual
         border = wanted_of(region, claim).polynomial
         others = (x.polynomial for _, x in region.conditions())
@@ -494,10 +504,12 @@ def _counterexample(derived: Derived, claim: Claim, together: Sequence[Claim]) -
         special = find(among=among)
     except NoClosedForm:
         return usual
-    asked = usual.asked + special.asked
-    better = special.found is not None and (usual.found is None or _weight(special.found) < _weight(usual.found))
-    return Tried(special.found if better else usual.found, asked)
+    judged = usual.points + special.points
+    better = special.counterexample is not None and (
+        usual.counterexample is None or _weight(special.counterexample) < _weight(usual.counterexample)
+    )
+    return Tried(special.counterexample if better else usual.counterexample, judged)
 
 
-def _weight(found: Counterexample) -> tuple[bool, bool, bool]:
-    return found.at_border, found.at_equality, found.word in IN_FIRST
+def _weight(example: Counterexample) -> tuple[bool, bool, bool]:
+    return example.at_border, example.at_equality, example.word in IN_FIRST

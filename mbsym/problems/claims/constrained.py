@@ -100,7 +100,7 @@ def _integral(derived: Derived, result: ClaimResult) -> ClaimResult:
         remark = "with the velocities that the constraints allow it contains none"
         return replace(result, outcome=Outcome.FAILS, remark=remark)
     known = [item.formula.polynomial for item in _integrals(derived) if item.status is Certainty.PROVED]
-    if any(along.vanishes(claimed - one) for one in known):
+    if any(along.vanishes(claimed - integral) for integral in known):
         return result
     return _vanishing(derived, along, result, form.rate(claimed), "dI/dt")
 
@@ -137,8 +137,8 @@ def _polynomial(derived: Derived, result: ClaimResult) -> Polynomial:
 def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Polynomial, what: str) -> ClaimResult:
     """Whether x = 0 along every motion: proved, verified at states, or refuted by one."""
     ring = derived.ring
-    found = along.values(x)
-    wrong = next(((on_manifold, value) for on_manifold, value in found if is_certain(value)), None)
+    values = along.values(x)
+    wrong = next(((on_manifold, value) for on_manifold, value in values if is_certain(value)), None)
     if wrong is not None and not derived.system.relations:
         with ctx.workprec(PRECISION):
             return replace(result, outcome=Outcome.FAILS, counterexample=_example(derived, *wrong, what))
@@ -148,7 +148,7 @@ def _vanishing(derived: Derived, along: AlongMotion, result: ClaimResult, x: Pol
     if wrong is not None:
         remark = "it does not vanish for all parameters; whether it does on their relations is not decided here"
         return replace(result, outcome=Outcome.UNDECIDED, remark=remark)
-    if len(found) < STATES or ring.kinked:
+    if len(values) < STATES or ring.kinked:
         return replace(result, outcome=Outcome.UNDECIDED, remark=TOO_FEW_STATES)
     return replace(result, outcome=Outcome.NUMERICAL, remark="at exact states on the constraints")
 
@@ -161,20 +161,20 @@ def _example(derived: Derived, on_manifold: OnManifold, value: Any, what: str) -
     return Counterexample(tuple(at), ((what, shown(arb(value), DIGITS_SHOWN)),))
 
 
-def _on_constraints(derived: Derived, found: ClaimResult, difference: Polynomial) -> ClaimResult:
+def _on_constraints(derived: Derived, result: ClaimResult, difference: Polynomial) -> ClaimResult:
     """What differs in general may be equal wherever the constraints hold."""
     tied = derived.equations.constraints
     if tied is None or tied.solved is None:
-        return found
+        return result
     along = _along(derived)
     left = along.restricted(difference)
     if derived.form.vanishes(left) is True:
-        return ClaimResult(found.claim, found.title, Outcome.EXACT, found.derived, remark=ON_CONSTRAINTS)
+        return ClaimResult(result.claim, result.title, Outcome.EXACT, result.derived, remark=ON_CONSTRAINTS)
     if along.vanishes_at_states(left) and not derived.ring.kinked:
         return ClaimResult(
-            found.claim, found.title, Outcome.NUMERICAL, found.derived, remark="at states on the constraints"
+            result.claim, result.title, Outcome.NUMERICAL, result.derived, remark="at states on the constraints"
         )
-    return found
+    return result
 
 
 # --- numbers ---

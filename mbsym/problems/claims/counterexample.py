@@ -89,10 +89,10 @@ def parameter_samples(system: System, solved: Sequence[str] = ()) -> Iterator[di
     for number in range(SAMPLES):
         values = {}
         for parameter in free:
-            given = rational(parameter.value)
+            stated = rational(parameter.value)
             value = Fraction(source.randint(1, 12), source.choice((1, 1, 2, 3, 4)))
-            if given is not None and (number == 0 or (given and number % 2 == 0)):
-                values[parameter.name] = given if number == 0 else given * Fraction(source.randint(10, 40), 20)
+            if stated is not None and (number == 0 or (stated and number % 2 == 0)):
+                values[parameter.name] = stated if number == 0 else stated * Fraction(source.randint(10, 40), 20)
             else:
                 flipped = parameter.sign in ("negative", "nonpositive")
                 either = parameter.sign not in ("positive", "nonnegative") and source.randrange(3) == 0
@@ -167,10 +167,10 @@ class Trial:
 
 @dataclass(frozen=True)
 class Tried:
-    """Parameters that refute, if some were ``found``, and at how many they were looked for (``asked``)."""
+    """Parameters that refute, if some were ``counterexample``, and at how many they were looked for (``points``)."""
 
-    found: Counterexample | None
-    asked: int
+    counterexample: Counterexample | None
+    points: int
 
 
 #: Verdicts of what is stable in first approximation, and left open beyond.
@@ -252,9 +252,9 @@ class Trials:
         where one of them fails, sufficient ones where all hold.  Of what contradicts, points are preferred that are not
         ``on_border`` of a condition of problem 6, then those at which no two sides are equal.
         """
-        asked, looked, best = 0, 0, None
+        judged, looked, best = 0, 0, None
         for trial in among:
-            if asked == VERDICTS:
+            if judged == VERDICTS:
                 break
             try:
                 gaps = claimed(self.numbers, trial.values)
@@ -265,7 +265,7 @@ class Trials:
             self.ring.spend(WORK_OF_A_TRIAL * len(gaps))
             if all(holds(gap, relation) for _, gap, relation in gaps) is not sufficient:
                 continue
-            asked += 1
+            judged += 1
             verdict = self.verdict(trial)
             if verdict.word.open and looked < LOOKED_INTO and (trial.special or verdict.counted not in words):
                 looked += 1
@@ -279,7 +279,7 @@ class Trials:
                 best = rank, trial, gaps
             if not any(best[0]):
                 break
-        return Tried(None if best is None else self._shown(best[1], best[2], best[0][0]), asked)
+        return Tried(None if best is None else self._shown(best[1], best[2], best[0][0]), judged)
 
     def _shown(self, trial: Trial, gaps: Sequence[tuple[str, Any, str]], border: bool) -> Counterexample:
         verdict = self.looked_into(trial)

@@ -84,16 +84,16 @@ class Dynamics:
 
     def solved(self, i: int) -> tuple[Polynomial, Polynomial]:
         """(top, bottom) of a_i = top/bottom, in lowest terms."""
-        (found,) = self._solutions({i})
-        return found[1], found[2]
+        (solution,) = self._solutions({i})
+        return solution[1], solution[2]
 
     def put_in(self, x: Polynomial) -> Polynomial:
         """x, a polynomial in a, times a power of det M with a = M^-1 f put in."""
         ring = self.ring
         degrees = x.degrees()
-        wanted = {i for i, k in enumerate(self.places) if degrees[k] > 0}
+        indices = {i for i, k in enumerate(self.places) if degrees[k] > 0}
         total = x
-        for i, top, bottom in self._solutions(wanted):
+        for i, top, bottom in self._solutions(indices):
             k = self.places[i]
             parts = coefficients_in(total, k)
             degree, total = len(parts) - 1, ring.zero
@@ -105,26 +105,26 @@ class Dynamics:
             total = ring.reduce(total)
         return total
 
-    def _solutions(self, wanted: set[int]) -> list[tuple[int, Polynomial, Polynomial]]:
+    def _solutions(self, indices: set[int]) -> list[tuple[int, Polynomial, Polynomial]]:
         ring, solutions = self.ring, []
         still = dict.fromkeys(self.places, ring.zero)
-        for block, mass, whole in self._blocks(wanted):
+        for block, mass, whole in self._blocks(indices):
             right = [-ring.substitute(self.rows[i], still) for i in block]
             for column, i in enumerate(block):
-                if i in wanted:
+                if i in indices:
                     replaced = [
                         [y if c == column else x for c, x in enumerate(row)] for row, y in zip(mass, right, strict=True)
                     ]
                     solutions.append((i, *ring.lowest_terms(determinant(ring, replaced), whole)))
         return solutions
 
-    def _blocks(self, wanted: set[int]) -> list[tuple[list[int], list[list[Polynomial]], Polynomial]]:
+    def _blocks(self, indices: set[int]) -> list[tuple[list[int], list[list[Polynomial]], Polynomial]]:
         """(indices, block of M, its determinant) of those blocks that hold a wanted index."""
         ring = self.ring
         mass = [[row.derivative(k) for k in self.places] for row in self.rows]
         blocks = []
         for block in components(len(mass), lambda i, j: not ring.vanishes(mass[i][j]) or not ring.vanishes(mass[j][i])):
-            if wanted.isdisjoint(block):
+            if indices.isdisjoint(block):
                 continue
             if len(block) > MOST_COUPLED:
                 raise NoClosedForm("[[count]] equations are coupled", count=len(block))
@@ -147,18 +147,18 @@ class Combination:
     def words(self, dynamics: Dynamics, derived: Derived, own: str) -> str:
         """``it is 1 times the equation of x plus -cos(theta)/l times the equation of theta``."""
         ring = dynamics.ring
-        told: list[str] = []
+        terms: list[str] = []
         for name, top, bottom in self.coefficients:
             factor = str(Formula(ring, ring.ratio(top, bottom)))
             if len(factor) > LONGEST:
                 names = ", ".join(name for name, *_ in self.coefficients)
-                told = [Message("a combination of the equations of [[names]]", names=names)]
+                terms = [Message("a combination of the equations of [[names]]", names=names)]
                 break
             factor = f"({factor})" if " " in factor else factor
-            told.append(Message("[[factor]] times the equation of [[name]]", factor=factor, name=name))
-        what = told[0]
-        for one in told[1:]:
-            what = Message("[[first]] plus [[second]]", first=what, second=one)
+            terms.append(Message("[[factor]] times the equation of [[name]]", factor=factor, name=name))
+        what = terms[0]
+        for term in terms[1:]:
+            what = Message("[[first]] plus [[second]]", first=what, second=term)
         said = Message("it is [[what]]", what=what)
         if not any(name == own for name, *_ in self.coefficients):
             said = Message("it is [[what]]; that of [[own]] has no part in it", what=what, own=own)
@@ -209,23 +209,23 @@ def _under(ring: Ring, x: Polynomial, place: int) -> bool:
 # --- claims of trees ---
 
 
-def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, claimed: Polynomial) -> ClaimResult:
-    """``found`` is what the comparison with the own equation alone gives: if that does not hold, a combination may."""
-    ring, claim = derived.ring, found.claim
+def examined_equation(derived: Derived, own_result: ClaimResult, symbols: Symbols, claimed: Polynomial) -> ClaimResult:
+    """``own_result``: what the comparison with the own equation alone gives; where that does not hold, a sum may."""
+    ring, claim = derived.ring, own_result.claim
     x = in_parameters(derived, claimed)
     if ring.is_zero(x) or ring.is_zero(on_relations(derived, claim, x)):
-        return ClaimResult(claim, found.title, Outcome.UNDECIDED, found.derived, remark=NOTHING)
+        return ClaimResult(claim, own_result.title, Outcome.UNDECIDED, own_result.derived, remark=NOTHING)
     if (
-        found.outcome == Outcome.FACTOR
-        and found.factor is not None
-        and _has_accelerations(derived, found.factor.polynomial)
+        own_result.outcome == Outcome.FACTOR
+        and own_result.factor is not None
+        and _has_accelerations(derived, own_result.factor.polynomial)
     ):
-        found = replace(found, outcome=Outcome.DIFFERS)
-    if found.holds and found.outcome != Outcome.NUMERICAL:
-        return found
+        own_result = replace(own_result, outcome=Outcome.DIFFERS)
+    if own_result.holds and own_result.outcome != Outcome.NUMERICAL:
+        return own_result
     refuted = _refuted_at_states(derived, x)
     if refuted and power_of(ring, x, _places(derived)) > 1:
-        return found if found.refuted else replace(found, outcome=Outcome.DIFFERS)
+        return own_result if own_result.refuted else replace(own_result, outcome=Outcome.DIFFERS)
 
     def verdict(left: Polynomial) -> tuple[str, str]:
         return decided(derived, on_relations(derived, claim, left))
@@ -235,7 +235,7 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
         (outcome, where), made = along_motion(dynamics, x, verdict)
     except Failure:
         outcome, where = (Outcome.DIFFERS if refuted else Outcome.NUMERICAL), ""
-    plain = replace(found, factor=None, difference=None, parts=(), remark="", where=where)
+    plain = replace(own_result, factor=None, difference=None, parts=(), remark="", where=where)
     if outcome in (Outcome.EXACT, Outcome.NUMERICAL) and not refuted:
         remark = NOT_LINEAR
         if made is not None:
@@ -245,9 +245,9 @@ def examined_equation(derived: Derived, found: ClaimResult, symbols: Symbols, cl
         return replace(plain, outcome=Outcome.ALONG if outcome == Outcome.EXACT else Outcome.NUMERICAL, remark=remark)
     if outcome == Outcome.UNDECIDED and not refuted:
         return replace(plain, outcome=Outcome.UNDECIDED, remark="whether it vanishes on every motion is not decided")
-    if not found.refuted:  # undecided as a multiple; refuted as what it is
-        found = replace(found, outcome=Outcome.DIFFERS)
-    return _closest(derived, found, symbols, x, dynamics, made)
+    if not own_result.refuted:  # undecided as a multiple; refuted as what it is
+        own_result = replace(own_result, outcome=Outcome.DIFFERS)
+    return _closest(derived, own_result, symbols, x, dynamics, made)
 
 
 def _places(derived: Derived) -> list[int]:
@@ -265,16 +265,21 @@ def _refuted_at_states(derived: Derived, x: Polynomial) -> bool:
 
 
 def _closest(
-    derived: Derived, found: ClaimResult, symbols: Symbols, x: Polynomial, dynamics: Dynamics, made: Combination | None
+    derived: Derived,
+    own_result: ClaimResult,
+    symbols: Symbols,
+    x: Polynomial,
+    dynamics: Dynamics,
+    made: Combination | None,
 ) -> ClaimResult:
     """The difference in fewest places: from a multiple of the own equation, from the solved one, from c^T L."""
-    ring, claim = derived.ring, found.claim
+    ring, claim = derived.ring, own_result.claim
 
     def places(y: Polynomial) -> int:
         return len(list(by_place(ring, claim, y)))
 
-    best, cost = found, places(found.difference.polynomial) if found.difference is not None else 10**6
-    plain = replace(found, factor=None, parts=(), remark="", where="")
+    best, cost = own_result, places(own_result.difference.polynomial) if own_result.difference is not None else 10**6
+    plain = replace(own_result, factor=None, parts=(), remark="", where="")
     try:
         top, bottom = dynamics.solved(dynamics.names.index(claim.of))
         own = dynamics.places[dynamics.names.index(claim.of)]

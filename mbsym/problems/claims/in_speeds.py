@@ -63,7 +63,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     return _along(derived, form, result, claimed) if claim.kind == "equation of motion" else result
 
 
-def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polynomial) -> ClaimResult:
+def _along(derived: Derived, form: SpeedForm, own_result: ClaimResult, claimed: Polynomial) -> ClaimResult:
     """A claimed equation that is no multiple of the own one: a combination of all, or what it differs by from one."""
     ring, images = form.ring, relations(derived.parameters_scene)
     dynamics = Dynamics.of(derived)
@@ -76,20 +76,20 @@ def _along(derived: Derived, form: SpeedForm, found: ClaimResult, claimed: Polyn
         (outcome, _), made = along_motion(dynamics, claimed, verdict)
     except Failure:
         remark = "whether it vanishes on every motion is not decided: the equations are too long"
-        return replace(found, outcome=Outcome.UNDECIDED, difference=None, remark=remark)
-    plain = replace(found, outcome=outcome, difference=None)
+        return replace(own_result, outcome=Outcome.UNDECIDED, difference=None, remark=remark)
+    plain = replace(own_result, outcome=outcome, difference=None)
     if outcome == Outcome.EXACT:
-        remark = NOT_LINEAR if made is None else made.words(dynamics, derived, without_velocity(found.claim.of))
+        remark = NOT_LINEAR if made is None else made.words(dynamics, derived, without_velocity(own_result.claim.of))
         return replace(plain, outcome=Outcome.ALONG, remark=remark)
     if outcome == Outcome.UNDECIDED:
         return replace(plain, remark="whether it vanishes on every motion is not decided")
-    if made is not None and made.coefficients and found.difference is not None:
+    if made is not None and made.coefficients and own_result.difference is not None:
         whole = made.equation(dynamics)
         rest = form.shortened(ring.reduce(claimed - whole))
-        if not ring.vanishes(rest) and len(rest) < len(found.difference.polynomial):
-            result = replace(found, derived=Formula(ring, whole), difference=Formula(ring, rest))
+        if not ring.vanishes(rest) and len(rest) < len(own_result.difference.polynomial):
+            result = replace(own_result, derived=Formula(ring, whole), difference=Formula(ring, rest))
             return replace(result, outcome=Outcome.DIFFERS, remark=SAME_ACCELERATIONS)
-    return replace(found, outcome=Outcome.DIFFERS)
+    return replace(own_result, outcome=Outcome.DIFFERS)
 
 
 def _derived(derived: Derived, form: SpeedForm, claim: Claim) -> Polynomial:

@@ -61,9 +61,9 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
                 return replace(result, outcome=Outcome.FAILS, remark=message)
             if is_proved(scene, equations, claimed):
                 return replace(result, outcome=outcome)
-            found, where = _conserved_where(derived, equations, claimed)
-            if found != Outcome.DIFFERS:
-                return replace(result, outcome=outcome if found == Outcome.EXACT else found, where=where)
+            decision, where = _conserved_where(derived, equations, claimed)
+            if decision != Outcome.DIFFERS:
+                return replace(result, outcome=outcome if decision == Outcome.EXACT else decision, where=where)
     rate = total_rate(scene, claimed)
     difference = _rate_of(derived, equations, claimed)
     if difference is None:
@@ -87,9 +87,9 @@ def examined_integral(derived: Derived, claim: Claim, about: str, claimed: Polyn
 def _conserved_where(derived: Derived, equations: Equations, claimed: Polynomial) -> tuple[str, str]:
     """What became of dI/dt = 0 for the signs that are not declared: EXACT, NUMERICAL or DIFFERS, and where."""
     scene, ring = derived.scene, derived.ring
-    found = rate_on_motion(scene, equations, claimed)
-    if found is not None:
-        outcome, where = decided(derived, found[0])
+    fraction = rate_on_motion(scene, equations, claimed)
+    if fraction is not None:
+        outcome, where = decided(derived, fraction[0])
         if outcome != Outcome.UNDECIDED:
             return outcome, where
     rate = total_rate(scene, claimed)
@@ -112,10 +112,10 @@ def _constant_where(derived: Derived, claimed: Polynomial) -> str | None:
     """
     ring = derived.ring
     slopes = [ring.velocity_derivative(claimed, name) for name in derived.system.coordinates]
-    found = [decided(derived, slope) for slope in slopes]
-    if any(outcome not in (Outcome.EXACT, Outcome.NUMERICAL) for outcome, _ in found):
+    decisions = [decided(derived, slope) for slope in slopes]
+    if any(outcome not in (Outcome.EXACT, Outcome.NUMERICAL) for outcome, _ in decisions):
         return None
-    where = next((where for _, where in found if where), "")
+    where = next((where for _, where in decisions if where), "")
     return Message("for [[positive]]", positive=where.gaps["positive"]) if isinstance(where, Message) else ""
 
 
@@ -123,10 +123,10 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
     """dI/dt on the equations of motion in lowest terms; None where that is too long."""
     ring = derived.ring
     try:
-        found = rate_on_motion(derived.scene, equations, claimed)
-        if found is None:
+        fraction = rate_on_motion(derived.scene, equations, claimed)
+        if fraction is None:
             return None
-        return Formula(ring, ring.ratio(*ring.lowest_terms(*found)))
+        return Formula(ring, ring.ratio(*ring.lowest_terms(*fraction)))
     except Failure:
         return None
 
@@ -134,18 +134,18 @@ def _rate_of(derived: Derived, equations: Equations, claimed: Polynomial) -> For
 def _names_in(derived: Derived, values: Iterable[Polynomial]) -> set[str]:
     """Coordinates, velocities, inputs and parameters in the values, those that relations are made of included."""
     ring, system = derived.ring, derived.system
-    wanted = [*system.coordinates, *system.velocities, *system.input_names]
-    found: set[str] = set()
+    variables = [*system.coordinates, *system.velocities, *system.input_names]
+    occurring: set[str] = set()
     for x in values:
-        found |= set(ring.dependencies(x, wanted))
-        found |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
+        occurring |= set(ring.dependencies(x, variables))
+        occurring |= {g.name for k, g in enumerate(ring.generators) if g.kind == "parameter" and _holds(ring, x, k)}
     made_of = {item.name: names(item.value) for item in system.relations}
-    pending = list(found)
+    pending = list(occurring)
     while pending:
-        new = made_of.get(pending.pop(), set()) - found
-        found |= new
+        new = made_of.get(pending.pop(), set()) - occurring
+        occurring |= new
         pending += new
-    return found
+    return occurring
 
 
 def _holds(ring: Ring, x: Polynomial, index: int) -> bool:

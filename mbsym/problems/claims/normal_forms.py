@@ -40,12 +40,12 @@ _MEETS = {">": lambda x: x > 0, ">=": lambda x: x >= 0, "!=": lambda x: x != 0}
 def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     """One claim of these kinds.  Raises NoClosedForm where problem 11 has no such formula."""
     ring, forms = derived.ring, derived.normal_forms
-    found = forms.in_symbols
-    if isinstance(found, InSymbols) and claim.kind == DETERMINANT:
-        truth, positive = found.determinant, [found.trace, found.product, found.discriminant]
-        nonzero = [*positive, *(formula for _, formula in found.resonances)]
-    elif isinstance(found, Focus) and claim.kind == COEFFICIENT:
-        truth, positive = found.coefficient, [found.square]
+    symbolic = forms.in_symbols
+    if isinstance(symbolic, InSymbols) and claim.kind == DETERMINANT:
+        truth, positive = symbolic.determinant, [symbolic.trace, symbolic.product, symbolic.discriminant]
+        nonzero = [*positive, *(formula for _, formula in symbolic.resonances)]
+    elif isinstance(symbolic, Focus) and claim.kind == COEFFICIENT:
+        truth, positive = symbolic.coefficient, [symbolic.square]
         nonzero = positive
     else:
         raise NoClosedForm(
@@ -146,16 +146,16 @@ def _values(
     ring, system = derived.ring, derived.system
     product = quotient.product
     conditions = [(p, relation) for p, relation in derived.signs.assumptions]
-    conditions += [(_times(ring, one), ">") for one in positive]
+    conditions += [(_times(ring, fraction), ">") for fraction in positive]
     values = _start(system)
     for name in values:
         others = {other: x for other, x in values.items() if other != name}
         if product.degrees()[ring.index("parameter", name)] <= 0:
             continue
         along = [_along(ring, p, name, others) for p in (product, *(p for p, _ in conditions))]
-        if any(one is None for one in along):
+        if any(polynomial is None for polynomial in along):
             continue
-        whole, *tests = (one for one in along if one is not None)
+        whole, *tests = (polynomial for polynomial in along if polynomial is not None)
         sign = next((parameter.sign for parameter in system.parameters if parameter.name == name), "real")
         tests.append(fmpq_poly([0, -1 if sign in ("negative", "nonpositive") else 1] if sign != "real" else [1]))
         ends = [*(relation for _, relation in conditions), "!=" if sign == "nonzero" else ">"]
@@ -170,13 +170,13 @@ def _values(
 
 def _start(system: System) -> dict[str, fmpq]:
     """A value for every parameter: its own if that is rational, else the sign's."""
-    found = {}
+    values = {}
     for parameter in system.parameters:
         value = None if parameter.value is None else rational(parameter.value)
         plain = Fraction(-1 if parameter.sign in ("negative", "nonpositive") else 1)
         value = plain if value is None else value
-        found[parameter.name] = rationals.exact(value)
-    return found
+        values[parameter.name] = rationals.exact(value)
+    return values
 
 
 def _times(ring: Ring, fraction: tuple[Polynomial, Any]) -> Polynomial:
@@ -192,7 +192,7 @@ def _along(ring: Ring, p: Polynomial, name: str, others: Mapping[str, fmpq]) -> 
     """A polynomial in one parameter; None where it holds anything but parameters."""
     place = ring.index("parameter", name)
     known = {ring.index("parameter", other): x for other, x in others.items()}
-    found: dict[int, fmpq] = {}
+    coefficients: dict[int, fmpq] = {}
     for monomial, c in p.terms():
         term = fmpq(c)
         for k, exponent in enumerate(monomial):
@@ -200,8 +200,8 @@ def _along(ring: Ring, p: Polynomial, name: str, others: Mapping[str, fmpq]) -> 
                 if k not in known:
                     return None
                 term *= known[k] ** int(exponent)
-        found[int(monomial[place])] = found.get(int(monomial[place]), fmpq(0)) + term
-    return fmpq_poly([found.get(k, fmpq(0)) for k in range(max(found, default=0) + 1)])
+        coefficients[int(monomial[place])] = coefficients.get(int(monomial[place]), fmpq(0)) + term
+    return fmpq_poly([coefficients.get(k, fmpq(0)) for k in range(max(coefficients, default=0) + 1)])
 
 
 def _between(polynomials: Sequence[fmpq_poly]) -> Iterator[fmpq]:
@@ -227,7 +227,7 @@ def _simple(low: fmpq, high: fmpq) -> fmpq:
     middle = (low + high) / 2
     digits = fmpq(1)
     while True:
-        found = fmpq((middle * digits + fmpq(1, 2)).floor()) / digits
-        if low < found < high:
-            return found
+        rounded = fmpq((middle * digits + fmpq(1, 2)).floor()) / digits
+        if low < rounded < high:
+            return rounded
         digits *= 10

@@ -168,10 +168,10 @@ def _rounding_of_doubles(derived: Derived, claim: Claim, value: Any) -> Any:
                 largest = max(largest, arb(abs(number).mid()), key=float)
                 changed[name] = number * (1 + UNIT_OF_DOUBLES * fmpq(source.randint(-8, 8), 16))
             try:
-                found = _derived_number(derived, claim, State(Balls(changed), changed)).mid()
+                recomputed = _derived_number(derived, claim, State(Balls(changed), changed)).mid()
             except NOT_THERE:
                 return arb(0)
-        worst = max(worst, abs(arb(found) - value).upper(), key=float)
+        worst = max(worst, abs(arb(recomputed) - value).upper(), key=float)
     unit = largest if value.contains(0) else abs(value)
     return OTHER_WAYS * worst + unit * UNIT_OF_DOUBLES
 
@@ -211,14 +211,14 @@ def _state(system: System, claim: Claim) -> State:
 
 
 def _number(symbols: Symbols, state: State, expression: Expression) -> Any:
-    wanted = symbols.occurring([expression])
-    return symbols.lowering(state.numbers, state.values, wanted)(symbols.opened(expression))
+    occurring = symbols.occurring([expression])
+    return symbols.lowering(state.numbers, state.values, occurring)(symbols.opened(expression))
 
 
 def _value(derived: Derived, symbols: Symbols, state: State, expression: Expression) -> Any:
     """An expression at the state, its accelerations from the equations of motion."""
-    wanted = symbols.occurring([expression])
-    if any(acceleration_name(name) in wanted for name in derived.system.coordinates):
+    occurring = symbols.occurring([expression])
+    if any(acceleration_name(name) in occurring for name in derived.system.coordinates):
         state = _accelerated(derived, state)
     return _number(symbols, state, expression)
 

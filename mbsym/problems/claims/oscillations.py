@@ -54,18 +54,20 @@ PRIME = (1 << 61) - 1
 _POINTS, _TRIALS = 2, 400
 
 
-def explained(found: Oscillation, series: Sequence[Harmonics], order: int, claimed: Harmonics) -> bool:
+def explained(oscillation: Oscillation, series: Sequence[Harmonics], order: int, claimed: Harmonics) -> bool:
     """Whether other symbols may make ``claimed`` of series[order]; true where that cannot be excluded."""
     if same_size(series[order], claimed) and any(claimed.waves):
         return True
     try:
-        shifts = list(_shifts(found, series, order))
+        shifts = list(_shifts(oscillation, series, order))
     except Failure:
         return True
     variants = _VARIANTS if any(any(harmonics.waves) for harmonics in series[: order + 1]) else _VARIANTS[:1]
     for variant in variants:
         difference = claimed - _varied(series[order], *variant)
-        if difference.is_zero or _in_span(found.tower, [_varied(shift, *variant) for shift in shifts], difference):
+        if difference.is_zero or _in_span(
+            oscillation.tower, [_varied(shift, *variant) for shift in shifts], difference
+        ):
             return True
     return False
 
@@ -96,19 +98,19 @@ def _varied(x: Harmonics, quarter: int, sense: int) -> Harmonics:
     return Harmonics(x.tower, waves)
 
 
-def _shifts(found: Oscillation, series: Sequence[Harmonics], order: int) -> Iterator[Harmonics]:
+def _shifts(oscillation: Oscillation, series: Sequence[Harmonics], order: int) -> Iterator[Harmonics]:
     """d^m x_j / da^m with j + |m| <= order."""
-    symbols: list[str | None] = [AMPLITUDE] if found.kind is Amplitude.FREE else []
-    symbols += [f"#{name}" for name, _ in found.constants]
+    symbols: list[str | None] = [AMPLITUDE] if oscillation.kind is Amplitude.FREE else []
+    symbols += [f"#{name}" for name, _ in oscillation.constants]
     symbols.append(None)  # the phase
     for j in range(order):
         for size in range(1, order - j + 1):
             for chosen in combinations_with_replacement(symbols, size):
-                one = series[j]
+                shift = series[j]
                 for symbol in chosen:
-                    one = one.slope() if symbol is None else one.mapped(lambda x, by=symbol: _derivative(x, by))
-                if not one.is_zero:
-                    yield one
+                    shift = shift.slope() if symbol is None else shift.mapped(lambda x, by=symbol: _derivative(x, by))
+                if not shift.is_zero:
+                    yield shift
 
 
 def _derivative(x: Element, name: str) -> Element:
@@ -130,7 +132,7 @@ def _derivative(x: Element, name: str) -> Element:
 
 def _in_span(tower: Tower, span: Sequence[Harmonics], x: Harmonics) -> bool:
     """Whether x = sum c_i span_i with c_i free of the phase; true where no point shows the contrary."""
-    places = sorted({(k, side) for one in (*span, x) for k in one.waves for side in (0, 1)})
+    places = sorted({(k, side) for summand in (*span, x) for k in summand.waves for side in (0, 1)})
     if not span:
         return x.is_zero
     for values in _points(tower):
@@ -193,7 +195,7 @@ class SolutionInRing(Protocol):
     """A solution with the ring in which it is told; ``symbols``: their names there by those in the solution."""
 
     @property
-    def found(self) -> Oscillation: ...
+    def oscillation(self) -> Oscillation: ...
     @property
     def phase(self) -> str: ...
     @property
@@ -224,7 +226,7 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
         claimed = formulas(claim.equals)
     except SingularPoint:
         raise NoClosedForm("the claimed formula divides by zero") from None
-    series = _frequencies(ring.found) if claim.kind == FREQUENCY else _series(ring, formulas, claim.of_expression)
+    series = _frequencies(ring.oscillation) if claim.kind == FREQUENCY else _series(ring, formulas, claim.of_expression)
     truth = series[claim.order]
     result = ClaimResult(claim, about, Outcome.EXACT, ring.wave(truth))
     difference = claimed - truth
@@ -234,9 +236,9 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     result = replace(result, difference=shown if shown.terms <= MOST_SHOWN else None)
     if not _surely_nonzero(difference):
         return replace(result, outcome=Outcome.UNDECIDED, remark=_NOT_SURE)
-    if explained(ring.found, series, claim.order, claimed):
+    if explained(ring.oscillation, series, claim.order, claimed):
         return replace(result, outcome=Outcome.UNDECIDED, remark=_OTHER_SYMBOLS)
-    factor = _factor(ring.found.tower, claimed, truth)
+    factor = _factor(ring.oscillation.tower, claimed, truth)
     if factor is not None:
         return replace(result, outcome=Outcome.SCALED, factor=ring.formula(factor), difference=None)
     return replace(result, outcome=Outcome.DIFFERS, remark=_where(difference, ring.phase, shown.terms))
@@ -244,52 +246,52 @@ def examined(derived: Derived, claim: Claim, about: str) -> ClaimResult:
 
 def _where(difference: Harmonics, phase: str, terms: int) -> str:
     """The harmonics that differ: a difference of very many terms tells less."""
-    found = []
+    differing = []
     for k, pair in sorted(difference.waves.items()):
         angle = phase if k == 1 else f"{k}*{phase}"
-        found += [
+        differing += [
             f"{wave}({angle})" if k else "1" for wave, c in zip(("cos", "sin"), pair, strict=True) if not c.is_zero()
         ]
     if not any(difference.waves):
         return Message("by [[terms]] terms", terms=terms) if terms > MOST_SHOWN else ""
-    names = ", ".join(found)
+    names = ", ".join(differing)
     if terms > MOST_SHOWN:
         return Message("in what stands before [[names]]: [[terms]] terms", names=names, terms=terms)
     return Message("in what stands before [[names]]", names=names)
 
 
-def _formulas(system: System, told: SolutionInRing) -> WaveFormulas:
-    tower = told.found.tower
+def _formulas(system: System, solution: SolutionInRing) -> WaveFormulas:
+    tower = solution.oscillation.tower
     known = {name: tower.parameter(name) for name in system.parameter_names if name in tower.parameters}
-    constants = {f"#{name}": value for name, value in told.found.constants}
-    for internal, shown in told.symbols.items():
-        known[shown] = constants.get(internal, told.found.amplitude)
+    constants = {f"#{name}": value for name, value in solution.oscillation.constants}
+    for internal, shown in solution.symbols.items():
+        known[shown] = constants.get(internal, solution.oscillation.amplitude)
     defined: dict[str, Expression] = {relation.name: relation.value for relation in system.relations}
     defined |= {notation.name: notation.value for notation in system.notation}
     defined |= {abbreviation.name: abbreviation.value for abbreviation in system.abbreviations}
     signs = {parameter.name: parameter.sign for parameter in system.parameters} | {AMPLITUDE: "positive"}
-    return WaveFormulas(tower, told.phase, known, defined, signs)
+    return WaveFormulas(tower, solution.phase, known, defined, signs)
 
 
-def _frequencies(found: Oscillation) -> list[Harmonics]:
+def _frequencies(oscillation: Oscillation) -> list[Harmonics]:
     """w_n of the rate of the phase."""
-    values = [found.frequency, *(found.frequency * x for x in found.corrections)]
-    return [Harmonics.constant(found.tower, x) for x in values]
+    values = [oscillation.frequency, *(oscillation.frequency * x for x in oscillation.corrections)]
+    return [Harmonics.constant(oscillation.tower, x) for x in values]
 
 
-def _series(told: SolutionInRing, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
+def _series(solution: SolutionInRing, formulas: WaveFormulas, of: Expression | None) -> Sequence[Harmonics]:
     """The coefficients of powers of eps of an expression in variables."""
     assert of is not None
-    return _InVariables(told, formulas).series(of)[1]
+    return _InVariables(solution, formulas).series(of)[1]
 
 
-def series_of(system: System, told: SolutionInRing, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
+def series_of(system: System, solution: SolutionInRing, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
     """(m, c) with  expression = eps^m sum_n eps^n c[n],  n <= order, of an expression in variables and parameters.
 
     Divisors and what stands under roots have to be constant and not zero where eps = 0; the root of the square of the
     amplitude is the amplitude.  Raises NoClosedForm where there is no such series.
     """
-    return _InVariables(told, _formulas(system, told), mixed=True).series(expression)
+    return _InVariables(solution, _formulas(system, solution), mixed=True).series(expression)
 
 
 class _InVariables:
@@ -300,13 +302,13 @@ class _InVariables:
     """
 
     def __init__(self, told: SolutionInRing, formulas: WaveFormulas, mixed: bool = False) -> None:
-        oscillation = told.found
-        self.found, self.formulas, self.mixed = oscillation, formulas, mixed
+        oscillation = told.oscillation
+        self.oscillation, self.formulas, self.mixed = oscillation, formulas, mixed
         self.powers = dict(oscillation.powers)
         self.waves = dict(zip(oscillation.names, oscillation.series, strict=True))
 
     def series(self, expression: Expression) -> tuple[int, Sequence[Harmonics]]:
-        oscillation = self.found
+        oscillation = self.oscillation
         match expression:
             case Name(name) if name in self.waves:
                 return self.powers.get(name, 0), self.waves[name]
@@ -316,14 +318,14 @@ class _InVariables:
                 power, inner = self.series(operand)
                 return power, [harmonics.scaled(-oscillation.tower.one) for harmonics in inner]
             case Operation("+" | "-" as operator, left, right):
-                (power, one), (other, two) = self.series(left), self.series(right)
+                (power, first), (other, second) = self.series(left), self.series(right)
                 least, zero = min(power, other), Harmonics(oscillation.tower, {})
                 if power != other and not self.mixed:
                     raise NoClosedForm(
                         "terms with different powers of [[small]] in one sum: not compared", small=oscillation.small
                     )
-                one, two = ([*[zero] * (m - least), *x][: len(x)] for m, x in ((power, one), (other, two)))
-                return least, [x + y if operator == "+" else x - y for x, y in zip(one, two, strict=True)]
+                first, second = ([*[zero] * (m - least), *x][: len(x)] for m, x in ((power, first), (other, second)))
+                return least, [x + y if operator == "+" else x - y for x, y in zip(first, second, strict=True)]
             case Operation("*", left, right):
                 return self._product(self.series(left), self.series(right))
             case Operation("**", base, Number(exponent)) if exponent.denominator == 1 and 0 < exponent < 10:
@@ -341,42 +343,46 @@ class _InVariables:
         raise NoClosedForm("an expression that is not compared with expansions")
 
     def _product(
-        self, one: tuple[int, Sequence[Harmonics]], other: tuple[int, Sequence[Harmonics]]
+        self, left: tuple[int, Sequence[Harmonics]], right: tuple[int, Sequence[Harmonics]]
     ) -> tuple[int, Sequence[Harmonics]]:
-        found = [Harmonics(self.found.tower, {})] * (self.found.order + 1)
-        for i, x in enumerate(one[1]):
-            for j, y in enumerate(other[1][: len(found) - i]):
-                found[i + j] = found[i + j] + x * y
-        return one[0] + other[0], found
+        product = [Harmonics(self.oscillation.tower, {})] * (self.oscillation.order + 1)
+        for i, x in enumerate(left[1]):
+            for j, y in enumerate(right[1][: len(product) - i]):
+                product[i + j] = product[i + j] + x * y
+        return left[0] + right[0], product
 
     def _quotient(
-        self, one: tuple[int, Sequence[Harmonics]], other: tuple[int, Sequence[Harmonics]]
+        self, numerator: tuple[int, Sequence[Harmonics]], denominator: tuple[int, Sequence[Harmonics]]
     ) -> tuple[int, Sequence[Harmonics]]:
         """q with  d_0 q_n = c_n - sum_(k>0) d_k q_(n-k)."""
-        inverse = self.found.tower.reciprocal(self._first(other[1]))
-        found: list[Harmonics] = []
-        for n, x in enumerate(one[1]):
+        inverse = self.oscillation.tower.reciprocal(self._first(denominator[1]))
+        quotient: list[Harmonics] = []
+        for n, x in enumerate(numerator[1]):
             for k in range(1, n + 1):
-                x = x - other[1][k] * found[n - k]
-            found.append(x.scaled(inverse))
-        return one[0] - other[0], found
+                x = x - denominator[1][k] * quotient[n - k]
+            quotient.append(x.scaled(inverse))
+        return numerator[0] - denominator[0], quotient
 
-    def _root(self, one: tuple[int, Sequence[Harmonics]]) -> tuple[int, Sequence[Harmonics]]:
+    def _root(self, radicand: tuple[int, Sequence[Harmonics]]) -> tuple[int, Sequence[Harmonics]]:
         """s with  2 s_0 s_n = c_n - sum_(0<k<n) s_k s_(n-k),  s_0^2 = c_0, rather the amplitude than less it."""
-        power, series = one
-        tower = self.found.tower
+        power, series = radicand
+        tower = self.oscillation.tower
         if power % 2:
-            raise NoClosedForm("a root of an odd power of [[small]]", small=self.found.small)
+            raise NoClosedForm("a root of an odd power of [[small]]", small=self.oscillation.small)
         first = self._first(series)
-        root = self.found.amplitude if (first - self.found.amplitude * self.found.amplitude).is_zero() else None
-        found = [Harmonics.constant(tower, self.formulas.square_root(first) if root is None else root)]
-        inverse = tower.reciprocal(found[0].mean + found[0].mean)
+        root = (
+            self.oscillation.amplitude
+            if (first - self.oscillation.amplitude * self.oscillation.amplitude).is_zero()
+            else None
+        )
+        coefficients = [Harmonics.constant(tower, self.formulas.square_root(first) if root is None else root)]
+        inverse = tower.reciprocal(coefficients[0].mean + coefficients[0].mean)
         for n in range(1, len(series)):
             x = series[n]
             for k in range(1, n):
-                x = x - found[k] * found[n - k]
-            found.append(x.scaled(inverse))
-        return power // 2, found
+                x = x - coefficients[k] * coefficients[n - k]
+            coefficients.append(x.scaled(inverse))
+        return power // 2, coefficients
 
     def _first(self, series: Sequence[Harmonics]) -> Element:
         """The value where eps = 0 of what is divided by, or stands under a root."""
@@ -384,7 +390,7 @@ class _InVariables:
             raise NoClosedForm("division by, or a root of, what changes with the phase: not compared")
         if series[0].is_zero:
             raise NoClosedForm(
-                "what is divided by, or stands under a root, is 0 where [[small]] = 0", small=self.found.small
+                "what is divided by, or stands under a root, is 0 where [[small]] = 0", small=self.oscillation.small
             )
         return series[0].mean
 
@@ -434,12 +440,12 @@ def _on_manifold(derived: Derived, claim: Claim, about: str) -> ClaimResult:
     names, series = (manifold.fast, manifold.functions) if claim.of in manifold.fast else (manifold.slow, manifold.flow)
     if claim.of not in names:
         raise NoClosedForm("[[of]] is neither fast nor slow there", of=claim.of)
-    one = series[names.index(claim.of)]
-    if one.known is not None and claim.order >= one.known:
+    expansion = series[names.index(claim.of)]
+    if expansion.known is not None and claim.order >= expansion.known:
         raise NoClosedForm(
             "the coefficient of [[small]]^[[order]] is not known", small=manifold.field.small, order=claim.order
         )
-    coefficient = one.coefficients.get(claim.order)
+    coefficient = expansion.coefficients.get(claim.order)
     ring = told_manifold.transfer.ring
     truth = ring.zero if coefficient is None else told_manifold.formula(coefficient).polynomial
     claimed = in_parameters(derived, Symbols.of(derived).polynomial(derived.parameters_scene, claim))

@@ -133,9 +133,9 @@ def _in_inertial_axes(scene: Scene, kind: str, body: str) -> tuple[Polynomial, P
 
 def _coefficient(ring: Ring, x: Polynomial, product: Polynomial) -> Polynomial:
     """What stands before exactly this product of velocities and accelerations."""
-    wanted = tuple(int(e) for e in product.monomial(0))
+    target_exponents = tuple(int(e) for e in product.monomial(0))
     for exponents, coefficient in by_motion(ring, x):
-        if exponents == wanted:
+        if exponents == target_exponents:
             return coefficient
     return ring.zero
 

@@ -181,11 +181,11 @@ class Region:
             sufficient = () if "sufficient" in left_out else part.sufficient
             # Of a motion that is proved to be stable no condition is listed.
             listed = () if part.theory.verdict.stable else part.conditions
-            for found, note in (
+            for group, note in (
                 ((*part.conditions, *part.unreduced, *sufficient), ""),
                 (part.guaranteed, Message(": it holds, the kinetic energy is positive definite")),
             ):
-                for label, formula, relation in found:
+                for label, formula, relation in group:
                     seen = (label, formula, relation) in listed or len(f"{formula} {relation} 0") > _LONGEST
                     of = whose if seen else Message(_OF, whose=whose, formula=formula, relation=relation)
                     yield said(Said.IS, letter(label), of, note), Inequality(self.cleared(formula.polynomial), relation)
@@ -193,10 +193,12 @@ class Region:
     def labels(self, of: Sequence[str] = ()) -> str | tuple[Remark, ...]:
         """The conditions that an implication rests on, those of one part where its coordinates are given."""
         parts = [part for part in self.parts if not of or part.coordinates == of]
-        found = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
-        if not 0 < sum(len(labels) for labels, _ in found) <= _MOST_LABELS:
+        labelled = [(_needed(part.theory.requirements), part.coordinates) for part in parts]
+        if not 0 < sum(len(labels) for labels, _ in labelled) <= _MOST_LABELS:
             return Message("the conditions of problem 6")
-        return tuple(said(Said.LABELS, tuple(map(letter, labels)), named(names)) for labels, names in found if labels)
+        return tuple(
+            said(Said.LABELS, tuple(map(letter, labels)), named(names)) for labels, names in labelled if labels
+        )
 
     # --- sets ---
 
@@ -284,9 +286,9 @@ class Region:
         theory = part.theory
         if theory.verdict.word is not Word.DEPENDS:
             return everywhere(theory.verdict)
-        told = {r.label for case in theory.cases if case.verdict.word is Word.UNSTABLE for r in case.any_of}
+        unstable_labels = {r.label for case in theory.cases if case.verdict.word is Word.UNSTABLE for r in case.any_of}
         plain = Signs(part.ring.context, ("real",) * part.ring.context.nvars())
-        further = tuple(r for r in against(theory.requirements, plain) if r.label not in told)
+        further = tuple(r for r in against(theory.requirements, plain) if r.label not in unstable_labels)
         cases = [case for case in theory.cases if not case.never]
         cases += [Case((), further, concluded({Fact.ROOT_RIGHT}))] if further else []
         return cells_of(cases, lift) or everywhere(theory.verdict)

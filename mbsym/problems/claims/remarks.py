@@ -66,9 +66,9 @@ def letter(label: str) -> str | Name:
     return Name(str(label)) if re.fullmatch(r"[av]\d+", label) else label
 
 
-def _several(one: str, more: str) -> Callable[..., str]:
+def _several(singular: str, plural: str) -> Callable[..., str]:
     """By how many conditions of a place there are."""
-    return lambda number, *_: one if number == 1 else more
+    return lambda number, *_: singular if number == 1 else plural
 
 
 #: Sentences with gaps for the data, or what finds one by the data.
@@ -141,14 +141,14 @@ _SENTENCES: dict[Said, str | Callable[..., str]] = {
 
 def text(remark: Remark) -> str:
     """Its sentence, with gaps ``[[1]]``, ... for its data."""
-    found = _SENTENCES[remark.code]
-    return found if isinstance(found, str) else found(*remark.data)
+    template = _SENTENCES[remark.code]
+    return template if isinstance(template, str) else template(*remark.data)
 
 
 def sentence(remark: Remark) -> Message:
     """Its sentence."""
-    found = text(remark)
-    return Message(found, **{str(k): _told(x) for k, x in enumerate(remark.data, start=1) if f"[[{k}]]" in found})
+    template = text(remark)
+    return Message(template, **{str(k): _told(x) for k, x in enumerate(remark.data, start=1) if f"[[{k}]]" in template})
 
 
 def _told(value: object) -> str | Expression:

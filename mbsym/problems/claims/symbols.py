@@ -77,20 +77,20 @@ class Symbols:
 
     def occurring(self, expressions: Iterable[Expression]) -> set[str]:
         """The names that occur, those in abbreviations included."""
-        found: set[str] = set()
+        occurring_names: set[str] = set()
         pending = [name for expression in expressions for name in names(expression)]
         while pending:
             name = pending.pop()
-            if name not in found:
-                found.add(name)
+            if name not in occurring_names:
+                occurring_names.add(name)
                 pending += names(self.values[name]) if name in self.values else ()
-        return found
+        return occurring_names
 
-    def lowering(self, algebra: Any, environment: Mapping[str, Any], wanted: set[str]) -> Lowering:
+    def lowering(self, algebra: Any, environment: Mapping[str, Any], required: set[str]) -> Lowering:
         """Values for expressions, in an algebra, with those of the wanted abbreviations."""
         known = dict(environment)
         for name, value in self.values.items():
-            if name in wanted:
+            if name in required:
                 known[name] = Lowering(algebra, known)(self.opened(value))
         return Lowering(algebra, known)
 
@@ -136,8 +136,8 @@ class _Values(dict[str, Any]):
         self._symbols = symbols
 
     def __missing__(self, name: str) -> Any:
-        self[name] = found = self.lower(self._symbols.opened(self._symbols.values[name]))
-        return found
+        self[name] = value = self.lower(self._symbols.opened(self._symbols.values[name]))
+        return value
 
 
 def _written(form: LinearForm) -> Expression:

@@ -93,7 +93,7 @@ class _Points:
 
     def __init__(self, ring: Ring, found: ConstrainedPrograms, states: Sequence[OnManifold]) -> None:
         self.ring = ring
-        self.found = found
+        self.programs = found
         self.states = states
         self.carriers = [Carrier(ring, state.state.numbers, state.state.values) for state in states]
 
@@ -102,17 +102,17 @@ class _Points:
         return all(state.exact for state in self.states)
 
     def jacobians(self) -> list[list[list[Any]]]:
-        nodes = [x for row in self.found.jacobian for x in row]
-        n = len(self.found.jacobian[0]) if self.found.jacobian else 0
-        found = []
+        nodes = [x for row in self.programs.jacobian for x in row]
+        n = len(self.programs.jacobian[0]) if self.programs.jacobian else 0
+        matrices = []
         for state in self.states:
-            values = self.found.tree.program.evaluate(nodes, state.state.values, state.state.numbers)
-            found.append([values[i : i + n] for i in range(0, len(values), n)])
-        return found
+            values = self.programs.tree.program.evaluate(nodes, state.state.values, state.state.numbers)
+            matrices.append([values[i : i + n] for i in range(0, len(values), n)])
+        return matrices
 
     def at(self, places: Sequence[int]) -> _Points:
         """Some of them."""
-        return _Points(self.ring, self.found, [self.states[k] for k in places])
+        return _Points(self.ring, self.programs, [self.states[k] for k in places])
 
     @cached_property
     def _first(self) -> list[list[Any]]:
@@ -167,10 +167,10 @@ class _Analysis:
         if not points.states:
             raise Constrained("no regular configuration that keeps all constraints was found")
         ranked = [self._ranked(jacobian) for jacobian in points.jacobians()]
-        rank = max(one.rank for one in ranked)
+        rank = max(elimination.rank for elimination in ranked)
         # Where it is lower a point is singular, or on another branch.
-        points = points.at([k for k, one in enumerate(ranked) if one.rank == rank])
-        independent = [i for i, _ in next(one for one in ranked if one.rank == rank).pivots]
+        points = points.at([k for k, elimination in enumerate(ranked) if elimination.rank == rank])
+        independent = [i for i, _ in next(elimination for elimination in ranked if elimination.rank == rank).pivots]
         self._check_velocities(points, independent)
         self._check_freedom(independent)
         jacobian = [row.partials for row in self.rows]
@@ -266,7 +266,7 @@ class _Analysis:
 
     def _integrability(
         self,
-        found: Embedding | None,
+        embedding: Embedding | None,
         pivots: Pivots,
         shifts: Sequence[Polynomial],
         holonomic: int,
@@ -276,9 +276,9 @@ class _Analysis:
         if imposed <= 0:
             return None
         rheonomic = self._is_rheonomic(shifts)
-        if found is not None:
+        if embedding is not None:
             with suppress(Failure):
-                return integrability(self.scene, found, rheonomic, holonomic, points.rank)
+                return integrability(self.scene, embedding, rheonomic, holonomic, points.rank)
         if not rheonomic:
             with suppress(Failure, ZeroDivisionError):
                 states = [state.state for state in points.states]
@@ -296,9 +296,9 @@ class _Analysis:
 
     def _columns(self, rank: int) -> tuple[list[int], list[int]]:
         """All coordinates, those preferred as dependent ones last, and those that the description wants dependent."""
-        names, wanted = self.system.coordinates, self.system.dependent
-        if len(wanted) > rank:
-            gaps = {"all": len(names), "count": len(wanted)}
+        names, dependent = self.system.coordinates, self.system.dependent
+        if len(dependent) > rank:
+            gaps = {"all": len(names), "count": len(dependent)}
             message = Message("1 of [[all]] velocities depends on the others, and 'dependent' names [[count]]", **gaps)
             if rank != 1:
                 message = Message(
@@ -309,7 +309,7 @@ class _Analysis:
             raise Unsound([Fault("dependent-set", message, hint="leave 'dependent' out to have them found")])
         plain = [k for k, name in enumerate(names) if name not in self.ring.angles]
         columns = [k for k in range(len(names)) if k not in plain] + plain
-        return columns, [names.index(name) for name in wanted]
+        return columns, [names.index(name) for name in dependent]
 
     def _check_velocities(self, points: _Points, independent: Sequence[int]) -> None:
         """J q' + j = 0 must have a solution: at a point of the manifold what is left of a dependent row is zero."""
@@ -333,22 +333,22 @@ class _Analysis:
         i: int,
         independent: Sequence[int],
         sides: Sequence[tuple[Polynomial, Polynomial]],
-        found: Embedding | None,
+        embedding: Embedding | None,
         points: _Points,
     ) -> Redundant:
         """What a row follows from, and how that is known: J (Y u + y0) + j = 0 in the ring, or at the points only."""
-        proved = found is not None and self._follows(self.rows[i].partials, sides[i][0], found)
+        proved = embedding is not None and self._follows(self.rows[i].partials, sides[i][0], embedding)
         return Redundant(
             self.rows[i].name,
             tuple(self.rows[k].name for k in points.combined(independent, i)),
             Certainty.PROVED if proved else Certainty.VERIFIED,
         )
 
-    def _follows(self, row: Sequence[Polynomial], side: Polynomial, found: Embedding) -> bool:
+    def _follows(self, row: Sequence[Polynomial], side: Polynomial, embedding: Embedding) -> bool:
         ring = self.ring
         try:
-            left = [ring.dot(row, basis_vector(ring, found, place)) for place in range(len(found.free))]
-            moved = (ring.times(row[k], x) for k, x in zip(found.dependent, found.shift, strict=True))
+            left = [ring.dot(row, basis_vector(ring, embedding, place)) for place in range(len(embedding.free))]
+            moved = (ring.times(row[k], x) for k, x in zip(embedding.dependent, embedding.shift, strict=True))
             left.append(ring.reduce(sum(moved, side)))
             return all(ring.is_zero(x) is True for x in left)
         except NoClosedForm:
@@ -411,13 +411,13 @@ def contradiction(ring: Ring, rows: Sequence[Row]) -> tuple[RowName, ...]:
     """The rows of which a combination with rational coefficients says 1 = 0; none where there is no such."""
     held = [row for row in rows if row.position is not None]
     dicts = [row.position.to_dict() for row in held if row.position is not None]
-    monomials = sorted({monomial for one in dicts for monomial in one}, reverse=True)
+    monomials = sorted({monomial for coefficients in dicts for monomial in coefficients}, reverse=True)
     if not monomials or any(monomials[-1]):  # the constant comes last
         return ()
     width, m = len(monomials), len(held)
     entries = [
-        [*(one.get(monomial, 0) for monomial in monomials), *(int(i == k) for k in range(m))]
-        for i, one in enumerate(dicts)
+        [*(coefficients.get(monomial, 0) for monomial in monomials), *(int(i == k) for k in range(m))]
+        for i, coefficients in enumerate(dicts)
     ]
     reduced, rank = fmpq_mat(m, width + m, [x for row in entries for x in row]).rref()
     for i in range(rank):

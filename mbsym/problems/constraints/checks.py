@@ -41,7 +41,7 @@ STATES = 3
 At = Callable[[OnManifold], list[Pair]]
 
 
-def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedPrograms) -> Check:
+def check_rows(form: SpeedForm, constraints: Constraints, programs: ConstrainedPrograms) -> Check:
     """f, g, dg/dt and J of every row, closed and as a program in coordinates, against places in inertial axes; J Y = 0.
 
     At states that keep the constraints; in speeds of their own J du/dq' is that of the coordinates.
@@ -58,21 +58,21 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
         second = [state.values[acceleration_name(name)] for name in system.coordinates]
         values = programs.tree.program.evaluate(nodes, on_manifold.state.values, on_manifold.state.numbers)
         compared: list[Pair] = []
-        for i, name in enumerate(found.names):
-            row, position = truth[name.constraint][max(name.component - 1, 0)], found.position[i]
+        for i, name in enumerate(constraints.names):
+            row, position = truth[name.constraint][max(name.component - 1, 0)], constraints.position[i]
             if row.position is not None and position is not None:
                 compared.append((name.label, carry(position.polynomial), row.position))
-            own = [carry(x) for x in found.jacobian.polynomials[i]]
+            own = [carry(x) for x in constraints.jacobian.polynomials[i]]
             slopes = [sum((x * y[k] for x, y in zip(own, columns, strict=True)), zero) for k in range(n)]
             bent = sum((x * state.values[rate] for x, rate in zip(own, rates, strict=True)), zero)
             coded = values[i * n : (i + 1) * n]
             turned = sum((x * y for x, y in zip(coded, second, strict=True)), zero)
             label, in_code = name.label, Message("program of [[label]]", label=name.label)
             compared += [
-                (Message("rate of [[label]]", label=label), carry(found.velocity[i].polynomial), row.velocity),
+                (Message("rate of [[label]]", label=label), carry(constraints.velocity[i].polynomial), row.velocity),
                 (
                     Message("second rate of [[label]]", label=label),
-                    bent + carry(found.acceleration[i].polynomial),
+                    bent + carry(constraints.acceleration[i].polynomial),
                     row.acceleration,
                 ),
                 *(
@@ -80,11 +80,11 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
                     for other, x, y in zip(system.coordinates, slopes, row.partials, strict=True)
                 ),
                 *((in_code, x, y) for x, y in zip(coded, row.partials, strict=True)),
-                (in_code, turned + values[len(found.names) * n + i], row.acceleration),
+                (in_code, turned + values[len(constraints.names) * n + i], row.acceleration),
             ]
-            for place, free in enumerate(found.free if found.solved is not None else ()):
-                assert found.solved is not None
-                work = dot(own, [carry(x[place]) for x in found.solved.transformation.polynomials])
+            for place, free in enumerate(constraints.free if constraints.solved is not None else ()):
+                assert constraints.solved is not None
+                work = dot(own, [carry(x[place]) for x in constraints.solved.transformation.polynomials])
                 compared.append((Message("[[label]] along [[free]]", label=label, free=free), work, zero))
         return compared
 
@@ -92,7 +92,9 @@ def check_rows(form: SpeedForm, found: Constraints, programs: ConstrainedProgram
     return compared_on_manifold("constraints", routes, form, programs, pairs)
 
 
-def check_embedded(form: SpeedForm, found: Constraints, embedded: Embedded, programs: ConstrainedPrograms) -> Check:
+def check_embedded(
+    form: SpeedForm, constraints: Constraints, embedded: Embedded, programs: ConstrainedPrograms
+) -> Check:
     """Y^T M Y v' = Y^T (f - M a0) and u' = Y v' + a0 at the accelerations of the equations with multipliers.
 
     With these the forces of inertia and loads, from another derivation, d'Alembert's in inertial axes, do no work along
@@ -101,22 +103,25 @@ def check_embedded(form: SpeedForm, found: Constraints, embedded: Embedded, prog
     system = form.system
 
     def pairs(on_manifold: OnManifold) -> list[Pair]:
-        state = moving(form, on_manifold, found, programs)
+        state = moving(form, on_manifold, constraints, programs)
         oracle = Oracle(system, state)
         carry, zero = Carrier(form.ring, state.numbers, state.values), state.numbers.zero
-        assert found.solved is not None
-        own = [state.values[form.speeds[k].rate_name] for k in found.solved.embedding.free]
+        assert constraints.solved is not None
+        own = [state.values[form.speeds[k].rate_name] for k in constraints.solved.embedding.free]
         truth = oracle_rows(system, state)
-        rows = [truth[name.constraint][max(name.component - 1, 0)] for name in found.names]
+        rows = [truth[name.constraint][max(name.component - 1, 0)] for name in constraints.names]
         compared: list[Pair] = [
             (Message("second rate of [[label]]", label=name.label), row.acceleration, zero)
-            for name, row in zip(found.names, rows, strict=True)
+            for name, row in zip(constraints.names, rows, strict=True)
         ]
-        for name, row, force in zip(found.free, embedded.mass_matrix.polynomials, embedded.forcing, strict=True):
+        for name, row, force in zip(constraints.free, embedded.mass_matrix.polynomials, embedded.forcing, strict=True):
             left = sum((carry(x) * rate for x, rate in zip(row, own, strict=True)), zero)
             compared.append((Message("equation of [[name]]", name=name), left, carry(force.polynomial)))
         for u, row, shift in zip(
-            form.speeds, found.solved.transformation.polynomials, found.solved.acceleration_shift, strict=True
+            form.speeds,
+            constraints.solved.transformation.polynomials,
+            constraints.solved.acceleration_shift,
+            strict=True,
         ):
             right = sum((carry(x) * rate for x, rate in zip(row, own, strict=True)), carry(shift.polynomial))
             compared.append((f"{u.name}'", state.values[u.rate_name], right))
@@ -133,13 +138,13 @@ def check_embedded(form: SpeedForm, found: Constraints, embedded: Embedded, prog
 
 
 def check_integrals(
-    form: SpeedForm, found: Sequence[Integral], tied: Constraints, programs: ConstrainedPrograms
+    form: SpeedForm, integrals: Sequence[Integral], tied: Constraints, programs: ConstrainedPrograms
 ) -> Check:
     """dI/dt along the motion, by series in time, with the accelerations of the equations with multipliers."""
 
     def pairs(on_manifold: OnManifold) -> list[Pair]:
         carry = in_time(form, moving(form, on_manifold, tied, programs))
-        return [(item.name, carry(item.formula.polynomial).b, on_manifold.state.numbers.zero) for item in found]
+        return [(item.name, carry(item.formula.polynomial).b, on_manifold.state.numbers.zero) for item in integrals]
 
     return compared_on_manifold(
         "first integrals", ("dI/dt along the motion with multipliers", "zero"), form, programs, pairs

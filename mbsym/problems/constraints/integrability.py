@@ -28,7 +28,7 @@ MOST_FIELDS, MOST_STEPS = 60, 12
 
 
 def integrability(
-    scene: Scene, found: Embedding, shift_matters: bool, position_rank: int, rank: Rank
+    scene: Scene, embedding: Embedding, shift_matters: bool, position_rank: int, rank: Rank
 ) -> Integrability | None:
     """The growth of the distribution at generic points of the manifold; None where there are no velocity constraints.
 
@@ -36,15 +36,15 @@ def integrability(
     NoClosedForm where brackets outgrow the budget.
     """
     ring, n = scene.ring, len(scene.system.coordinates)
-    imposed = len(found.dependent) - position_rank
+    imposed = len(embedding.dependent) - position_rank
     if imposed <= 0:
         return None
-    fields = _fields(scene, found, shift_matters)
+    fields = _fields(scene, embedding, shift_matters)
     whole = n - position_rank + shift_matters
     growth, bounded = _growth(fields, whole, lambda x, y: bracket(scene, x, y), lambda x: is_nothing(ring, x), rank)
     # A rank that is reached is proved; that it goes no further only where the ring says so.
     reached = growth[-1]
-    proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, found, shift_matters))
+    proved = reached == whole or bounded or (reached == growth[0] and _is_involutive(scene, embedding, shift_matters))
     certainty = Certainty.PROVED if proved else Certainty.VERIFIED
     return Integrability(growth, whole - reached, imposed, certainty, shift_matters)
 
@@ -62,12 +62,12 @@ def _growth(
     for _ in range(MOST_STEPS):
         if reached == whole:
             return tuple(growth), bounded
-        before, kept = reached, []
-        for one in (x for a in fields for b in layer if not vanishes(x := bracketed(a, b))):
-            more, sure = rank([*seen, one])
+        before, next_layer = reached, []
+        for field in (x for a in fields for b in layer if not vanishes(x := bracketed(a, b))):
+            more, sure = rank([*seen, field])
             if more > reached:
-                kept.append(one)
-                seen.append(one)
+                next_layer.append(field)
+                seen.append(field)
                 reached = more
             else:
                 bounded = bounded and sure
@@ -76,7 +76,7 @@ def _growth(
         growth.append(reached)
         if reached == before:
             return tuple(growth), bounded
-        layer = kept
+        layer = next_layer
     return tuple(growth), False
 
 
@@ -115,30 +115,30 @@ def by_program(
     return Integrability(growth, 0, imposed, Certainty.PROVED, rheonomic=False)
 
 
-def _is_involutive(scene: Scene, found: Embedding, shift_matters: bool) -> bool:
+def _is_involutive(scene: Scene, embedding: Embedding, shift_matters: bool) -> bool:
     """Whether the ring proves Frobenius' condition: Y's columns and (y0, 1) commute.
 
     Their components of the independent coordinates and of t are constants; so a bracket has none there, and is a
     combination of the fields only if it is zero.
     """
     ring = scene.ring
-    fields = _fields(scene, replace(found, determinant=ring.one), shift_matters)
+    fields = _fields(scene, replace(embedding, determinant=ring.one), shift_matters)
     try:
         return all(ring.is_zero(x) is True for a, b in combinations(fields, 2) for x in bracket(scene, a, b))
     except Failure:
         return False
 
 
-def _fields(scene: Scene, found: Embedding, shift_matters: bool) -> list[Field]:
+def _fields(scene: Scene, embedding: Embedding, shift_matters: bool) -> list[Field]:
     """Y's columns and (y0, 1), each times the determinant, which leaves their span and clears the denominators."""
     ring = scene.ring
-    fields = [[*basis_vector(ring, found, place), ring.zero] for place in range(len(found.free))]
+    fields = [[*basis_vector(ring, embedding, place), ring.zero] for place in range(len(embedding.free))]
     if shift_matters:
         drift = [ring.zero] * len(scene.system.coordinates)
-        for k, x in zip(found.dependent, found.shift, strict=True):
+        for k, x in zip(embedding.dependent, embedding.shift, strict=True):
             drift[k] = x
         fields.append([*drift, ring.one])
-    return [tuple(ring.reduce(ring.times(found.determinant, x)) for x in field) for field in fields]
+    return [tuple(ring.reduce(ring.times(embedding.determinant, x)) for x in field) for field in fields]
 
 
 def is_nothing(ring: Ring, field: Field) -> bool:

@@ -101,27 +101,29 @@ class AlongMotion:
     @cached_property
     def _carried(self) -> list[tuple[OnManifold, Carrier, Carrier]]:
         """Those of the states where the equations have a solution, with their accelerations, and as series in time."""
-        found = []
+        carried = []
         with ctx.workprec(PRECISION):
-            for one in self.states:
+            for on_manifold in self.states:
                 with suppress(*NOT_THERE):
-                    state = moving(self.form, one, self.tied, self.programs)
-                    found.append((one, Carrier(self.ring, state.numbers, state.values), in_time(self.form, state)))
-        return found
+                    state = moving(self.form, on_manifold, self.tied, self.programs)
+                    carried.append(
+                        (on_manifold, Carrier(self.ring, state.numbers, state.values), in_time(self.form, state))
+                    )
+        return carried
 
     def values(self, x: Polynomial, rate: bool = False) -> list[tuple[OnManifold, Any]]:
         """x at these states, or dx/dt of what holds no accelerations."""
-        found: list[tuple[OnManifold, Any]] = []
+        evaluated: list[tuple[OnManifold, Any]] = []
         with ctx.workprec(PRECISION):
             for on_manifold, carry, in_series in self._carried:
                 with suppress(*NOT_THERE):
-                    found.append((on_manifold, in_series(x).b if rate else carry(x)))
-        return found
+                    evaluated.append((on_manifold, in_series(x).b if rate else carry(x)))
+        return evaluated
 
     def vanishes_at_states(self, x: Polynomial, rate: bool = False) -> bool:
         """Whether x is zero, or cannot be told from it, at STATES states; False where there are fewer."""
-        found = self.values(x, rate)
-        return len(found) == STATES and not any(is_certain(value) for _, value in found)
+        evaluated = self.values(x, rate)
+        return len(evaluated) == STATES and not any(is_certain(value) for _, value in evaluated)
 
     def along_speeds(self, slopes: Sequence[Polynomial]) -> list[Polynomial]:
         """Y^T slopes: derivatives by u' (by u) as those by the independent ones."""
@@ -152,20 +154,20 @@ def integrals(
 ) -> tuple[Integral, ...]:
     """The energy, momenta, and products of unit vectors that are kept; of long equations those with multipliers."""
     assert equations.constraints is not None
-    kept = _Kept(form, equations.constraints, equations, programs)
-    found: list[Integral] = []
+    motion = _Kept(form, equations.constraints, equations, programs)
+    conserved: list[Integral] = []
     known: list[Polynomial] = []
-    for integral, multipliers in kept.candidates(scene, energy):
+    for integral, multipliers in motion.candidates(scene, energy):
         x = integral.formula.polynomial
         with suppress(Failure):  # what is too long is not known to be conserved
-            geometric, on = integral.kind in (GEOMETRIC, NORM), kept.as_known(x)
-            if not geometric and not kept.says_something(integral, on, known):
+            geometric, on = integral.kind in (GEOMETRIC, NORM), motion.as_known(x)
+            if not geometric and not motion.says_something(integral, on, known):
                 continue
-            status = kept.status(integral, multipliers)
+            status = motion.status(integral, multipliers)
             if status is not None:
-                found.append(replace(integral, status=status))
+                conserved.append(replace(integral, status=status))
                 known += [] if geometric or integral.kind == ENERGY else [on]
-    return tuple(found)
+    return tuple(conserved)
 
 
 class _Kept(AlongMotion):
@@ -196,23 +198,23 @@ class _Kept(AlongMotion):
             return self.form.in_angles(self.restricted(x))
         return x
 
-    def says_something(self, found: Integral, on: Polynomial, known: Sequence[Polynomial]) -> bool:
+    def says_something(self, integral: Integral, on: Polynomial, known: Sequence[Polynomial]) -> bool:
         """Whether it depends on the state, a momentum on velocities, and is no combination of the others."""
         speeds = [u.name for u in self.form.speeds]
-        if found.kind == ENERGY:
+        if integral.kind == ENERGY:
             return bool(self.ring.dependencies(on, [*speeds, *(x.name for x in self.form.positions)]))
         return bool(self.ring.dependencies(on, speeds)) and is_independent(self.ring, on, known)
 
-    def status(self, found: Integral, multipliers: Sequence[Polynomial]) -> Certainty | None:
+    def status(self, integral: Integral, multipliers: Sequence[Polynomial]) -> Certainty | None:
         """Proved, or verified at states on the constraints; None where it is not kept, or that is not known.
 
         Energies and momenta of coordinates are told where constraint forces cannot change them, whatever these are.
         """
-        x = found.formula.polynomial
-        known = bool(multipliers) or found.kind in (GEOMETRIC, NORM)
+        x = integral.formula.polynomial
+        known = bool(multipliers) or integral.kind in (GEOMETRIC, NORM)
         if known and self._by_multipliers(self.form.rate(x), multipliers):
             return Certainty.PROVED
-        if self.equations.embedded is None or found.kind in (ENERGY, "cyclic momentum"):
+        if self.equations.embedded is None or integral.kind in (ENERGY, "cyclic momentum"):
             return None
         if not self.vanishes_at_states(x, rate=True) or self.vanishes_at_states(x):
             return None

@@ -41,15 +41,15 @@ class Embedded(Shown):
         return self.mass_matrix.terms + sum(x.terms for x in self.forcing)
 
 
-def embedded_equations(form: SpeedForm, equations: Equations, found: Constraints) -> Embedded:
+def embedded_equations(form: SpeedForm, equations: Equations, constraints: Constraints) -> Embedded:
     """The equations without multipliers, of the equations of the tree.  Raises NoClosedForm beyond the budget."""
-    if found.solved is None:
+    if constraints.solved is None:
         raise NoClosedForm("the dependent velocities have no closed form within the budget of terms")
     ring, forcing = form.ring, [x.polynomial for x in equations.forcing]
-    matrix, right = projected(ring, found.solved.embedding, equations.mass_matrix.polynomials, forcing)
-    images = dependent_velocities(form, found.solved)
+    matrix, right = projected(ring, constraints.solved.embedding, equations.mass_matrix.polynomials, forcing)
+    images = dependent_velocities(form, constraints.solved)
     right = [ring.reduce(ring.substitute(x, images)) for x in right]
-    return Embedded(found.free, Matrix.of(ring, matrix), column(ring, right))
+    return Embedded(constraints.free, Matrix.of(ring, matrix), column(ring, right))
 
 
 def oscillating_position(ring: Ring, embedded: Embedded, coordinates: Sequence[str]) -> str:

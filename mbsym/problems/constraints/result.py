@@ -75,19 +75,19 @@ class Solved(Shown):
     embedding: Embedding
 
     @staticmethod
-    def of(ring: Ring, found: Embedding) -> Solved:
+    def of(ring: Ring, embedding: Embedding) -> Solved:
         """With the rows of all velocities."""
-        n = len(found.dependent) + len(found.free)
-        columns = [basis_vector(ring, found, place) for place in range(len(found.free))]
+        n = len(embedding.dependent) + len(embedding.free)
+        columns = [basis_vector(ring, embedding, place) for place in range(len(embedding.free))]
         shift, acceleration = [ring.zero] * n, [ring.zero] * n
-        for k, x, y in zip(found.dependent, found.shift, found.acceleration, strict=True):
+        for k, x, y in zip(embedding.dependent, embedding.shift, embedding.acceleration, strict=True):
             shift[k], acceleration[k] = x, y
         return Solved(
             Matrix.of(ring, [[y[k] for y in columns] for k in range(n)]),
             column(ring, shift),
             column(ring, acceleration),
-            Formula(ring, found.determinant),
-            found,
+            Formula(ring, embedding.determinant),
+            embedding,
         )
 
     @property

@@ -78,13 +78,13 @@ class Arena:
 
 def identifiers(names: Sequence[str], others: Sequence[str]) -> list[str]:
     """``sin_theta`` for sin(theta): names that may stand in every language that is written."""
-    found: list[str] = []
+    plain_names: list[str] = []
     for name in names:
         plain = re.sub(r"\W+", "_", name).strip("_") if not name.isidentifier() else name
-        while plain in (*found, *others):
+        while plain in (*plain_names, *others):
             plain += "_"
-        found.append(plain)
-    return found
+        plain_names.append(plain)
+    return plain_names
 
 
 def arena(
@@ -413,11 +413,11 @@ def rank(rows: Sequence[Sequence[int]]) -> int:
 
 
 def _roots(p: Polynomial, generator: int, values: Mapping[int, int]) -> list[int]:
-    found: Any = nmod_poly([evaluate(c, values) for c in coefficients_in(p, generator)], PRIME)
-    if found.degree() < 1:
+    polynomial: Any = nmod_poly([evaluate(c, values) for c in coefficients_in(p, generator)], PRIME)
+    if polynomial.degree() < 1:
         return []
     return [
         int(-factor[0] * pow(int(factor[1]), -1, PRIME)) % PRIME
-        for factor, _ in found.factor()[1]
+        for factor, _ in polynomial.factor()[1]
         if factor.degree() == 1
     ]

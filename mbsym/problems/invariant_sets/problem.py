@@ -59,9 +59,9 @@ def invariant_sets(arena: Arena) -> result.InvariantSets:
 def _family(arena: Arena, whole: Polynomial) -> tuple[result.Family, tuple[Polynomial, ...]]:
     equations = in_angles(arena, whole) if arena.floating else [whole.derivative(g) for g in arena.variables]
     limits = IN_ANGLES if arena.floating else SplitLimits()
-    found = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
-    branches, generic = list(found.branches), list(found.generic)
-    if found.unfinished:  # what fewer of the integrals make stationary is quickly found by itself
+    splitting = split(equations, (*arena.variables, *arena.constant), arena.signs.never_zero, limits=limits)
+    branches, generic = list(splitting.branches), list(splitting.generic)
+    if splitting.unfinished:  # what fewer of the integrals make stationary is quickly found by itself
         for part in _without_some(arena, equations):
             branches += part.branches
             generic += [p for p in part.generic if p not in generic]
@@ -79,8 +79,8 @@ def _family(arena: Arena, whole: Polynomial) -> tuple[result.Family, tuple[Polyn
     parts = failed if arena.floating or (failed and _conserved(arena)) else []
     sets = [stationary_set for stationary_set in sets if stationary_set not in parts]
     # A branch on which no point was found modulo a prime may be empty, or may not: nothing is said of it.
-    unfinished = found.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
-    sets.sort(key=lambda one: (one.dimension, one.union))
+    unfinished = splitting.unfinished + max(0, len(kept_places) - MOST_SETS) + looked.count(None)
+    sets.sort(key=lambda stationary_set: (stationary_set.dimension, stationary_set.union))
     names = tuple(arena.name(g) for g in arena.multipliers)
     return result.Family(arena.names, names, tuple(sets), unfinished, singular, len(parts)), tuple(generic)
 
@@ -92,11 +92,11 @@ def _without_some(arena: Arena, equations: Sequence[Polynomial]) -> Iterator[Spl
     for count in reversed(range(1, len(free) + 1)):
         for some in combinations(free, count):
             fixed = [gens[g] for g in some]
-            found = split(
+            splitting = split(
                 [*fixed, *equations], (*arena.variables, *arena.constant), arena.signs.never_zero, limits=FEWER
             )
-            if not found.unfinished:
-                yield found
+            if not splitting.unfinished:
+                yield splitting
 
 
 def _is_empty(place: Place, generic: list[Polynomial]) -> bool:
@@ -209,7 +209,7 @@ def _is_parameter(arena: Arena, p: Polynomial) -> bool:
 def _largest(places: Sequence[Place]) -> list[Place]:
     """Without those that lie in the closure of another."""
     kept_places: list[Place] = []
-    for place in sorted(places, key=lambda one: len(one.branch.solved) + len(one.branch.remaining)):
+    for place in sorted(places, key=lambda candidate: len(candidate.branch.solved) + len(candidate.branch.remaining)):
         if not any(_holds(other, place) for other in kept_places):
             kept_places.append(place)
     return kept_places

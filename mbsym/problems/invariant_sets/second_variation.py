@@ -93,18 +93,18 @@ def _independent(place: Place, gradients: Rows) -> tuple[Rows | None, list[int]]
     order = sorted(
         range(len(gradients)), key=lambda i: (sum(map(len, gradients[i])), sum(x.total_degree() for x in gradients[i]))
     )
-    kept: list[int] = []
+    independent: list[int] = []
     for i in order:
-        if rank([*(numbers[k] for k in kept), numbers[i]]) > len(kept):
-            kept.append(i)
+        if rank([*(numbers[k] for k in independent), numbers[i]]) > len(independent):
+            independent.append(i)
     columns: list[int] = []
     short = sorted(
-        range(len(gradients[0])), key=lambda j: sum(len(gradients[i][j]) for i in kept if gradients[i][j] != 0)
+        range(len(gradients[0])), key=lambda j: sum(len(gradients[i][j]) for i in independent if gradients[i][j] != 0)
     )
     for j in short:
-        if rank([[numbers[i][k] for k in (*columns, j)] for i in kept]) > len(columns):
+        if rank([[numbers[i][k] for k in (*columns, j)] for i in independent]) > len(columns):
             columns.append(j)
-    return [gradients[i] for i in kept], sorted(columns)
+    return [gradients[i] for i in independent], sorted(columns)
 
 
 def _tangent(
@@ -113,16 +113,16 @@ def _tangent(
     """T, one row for each variable."""
     size = len(pivots) + len(others)
     zero = place.arena.ring.zero
-    found = [[zero] * len(others) for _ in range(size)]
+    tangent = [[zero] * len(others) for _ in range(size)]
     adjoint = adjugate(block) if block else []
     for b, j in enumerate(others):
-        found[j][b] = divisor
+        tangent[j][b] = divisor
         for a, i in enumerate(pivots):
             total = zero
             for k, row in enumerate(rows):
                 total -= adjoint[a][k] * row[j]
-            found[i][b] = place.shortened(total)
-    return found
+            tangent[i][b] = place.shortened(total)
+    return tangent
 
 
 def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
@@ -136,20 +136,20 @@ def _definite(place: Place, form: Rows, scale: Polynomial) -> SecondVariation:
         return SecondVariation(Definiteness.LEFT_OUT, size)
     if any(x == 0 for x in minors):  # no definite form has such a minor, be the form degenerate or not
         return SecondVariation(Definiteness.DEGENERATE if minors[-1] == 0 else Definiteness.NEVER, size)
-    wanted = [place.shortened(x * scale ** ((k + 1) % 2)) for k, x in enumerate(minors)]
+    scaled_minors = [place.shortened(x * scale ** ((k + 1) % 2)) for k, x in enumerate(minors)]
     chosen = {
         g
-        for x in wanted
+        for x in scaled_minors
         for g, degree in enumerate(x.degrees())
         if degree > 0 and g in place.free_multipliers and not place.fixes(g)
     }
-    positive, negative = _both(place, wanted)
+    positive, negative = _both(place, scaled_minors)
     divided = (*(s.denominator for s in place.branch.solved), *place.branch.nonzero)
     if () not in (positive, negative) and not any(p.degrees()[g] > 0 for p in divided for g in chosen):
         # Without those multipliers K may be definite already.
         gens = arena.ring.context.gens()
         images = [arena.ring.zero if g in chosen else x for g, x in enumerate(gens)]
-        alone = _both(place, [x.compose(*images, ctx=arena.ring.context) for x in wanted])
+        alone = _both(place, [x.compose(*images, ctx=arena.ring.context) for x in scaled_minors])
         if chosen and () in alone:
             (positive, negative), chosen = alone, set()
     if () in (positive, negative):
@@ -171,21 +171,23 @@ def _both(
 def _sufficient(place: Place, polynomials: Sequence[Polynomial]) -> tuple[Relation, ...] | None:
     """Conditions for all of them to be positive, each reduced by those before it; None where that is impossible."""
     arena = place.arena
-    known, found = arena.signs, []
+    known, sufficient = arena.signs, []
     try:
         for p in polynomials:
             condition = _condition(place, known, p)
             if condition.kind == "never":
                 return None
-            told: list[tuple[Polynomial, str]] = [(condition.polynomial, ">")] if condition.kind == "inequality" else []
-            told += [(f, "!=") for f in condition.nonzero if not place.never_zero(f)]
-            known = known.assuming(told)
-            found += told
-        if found and any(_excluded(place, known, p) for p in place.branch.remaining):
+            facts: list[tuple[Polynomial, str]] = (
+                [(condition.polynomial, ">")] if condition.kind == "inequality" else []
+            )
+            facts += [(f, "!=") for f in condition.nonzero if not place.never_zero(f)]
+            known = known.assuming(facts)
+            sufficient += facts
+        if sufficient and any(_excluded(place, known, p) for p in place.branch.remaining):
             return None
     except ContradictionError:
         return None
-    return tuple(Relation(arena.formula(p), relation) for p, relation in found)
+    return tuple(Relation(arena.formula(p), relation) for p, relation in sufficient)
 
 
 def _condition(place: Place, known: Signs, p: Polynomial) -> Condition:
@@ -243,10 +245,10 @@ def first_approximation(place: Place) -> FirstApproximation | None:
         if len(even) < 2:
             continue
         lead = even[-1]
-        wanted = [place.shortened(c * lead) for c in even[:-1]]
+        required = [place.shortened(c * lead) for c in even[:-1]]
         if len(even) > 2:
-            wanted += [place.shortened(x) for x in subdiscriminants(even)[1:]]
-        for p in map(place.or_zero, wanted):
+            required += [place.shortened(x) for x in subdiscriminants(even)[1:]]
+        for p in map(place.or_zero, required):
             sign = place.sign(p)
             unstable |= sign == "negative"
             if p == 0 or sign in ("positive", "nonnegative", "zero", "negative"):

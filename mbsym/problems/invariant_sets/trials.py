@@ -51,7 +51,7 @@ def gap_between(place: Place, variation: SecondVariation | None, first: FirstApp
     sieve = _Sieve(place, first.necessary)
     with ctx.workprec(BITS):
         points = _points(place, PARAMETERS if sieve.sharp else POINTS, sieve=sieve)
-        inside = list(islice((one for one in points if _hold(first.necessary, one, strictly=True)), INSIDE))
+        inside = list(islice((point for point in points if _hold(first.necessary, point, strictly=True)), INSIDE))
         for point in inside:
             if not any(_definite(variation, choice) for choice in _choices(place, point, variation)):
                 return Gap.FOUND
@@ -68,13 +68,13 @@ class _Sieve:
     def __init__(self, place: Place, relations: Sequence[Relation]) -> None:
         known = {*place.arena.parameters, *place.free_multipliers, *place.free_variables}
         known -= {rule.generator for rule in place.rules}
-        asked = [p for p, _ in place.arena.signs.assumptions] + [r.formula.polynomial for r in relations]
+        polynomials = [p for p, _ in place.arena.signs.assumptions] + [r.formula.polynomial for r in relations]
         terms = [
             [(float(c), [(g, int(power)) for g, power in enumerate(monomial) if power]) for monomial, c in p.terms()]
-            for p in asked
+            for p in polynomials
         ]
         self._asked = [term for term in terms if {g for _, powers in term for g, _ in powers} <= known]
-        self.sharp = len(self._asked) == len(asked)
+        self.sharp = len(self._asked) == len(polynomials)
 
     def __call__(self, point: Mapping[int, arb]) -> bool:
         values = {g: float(x) for g, x in point.items()}
@@ -157,7 +157,9 @@ def _choices(place: Place, point: Point, variation: SecondVariation) -> Iterator
     if not free:
         return
     chance = random.Random(5)
-    conditions = [one.formula.polynomial for side in (variation.positive, variation.negative) for one in side or ()]
+    conditions = [
+        relation.formula.polynomial for side in (variation.positive, variation.negative) for relation in side or ()
+    ]
     for k in range(CHOICES):
         size = fmpq(1, 4 ** (k % 3)) if k else fmpq(0)
         changed = dict(point) | {g: arb(chance.choice(_VALUES) * chance.choice((1, -1)) * size) for g in free}

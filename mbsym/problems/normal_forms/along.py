@@ -106,15 +106,15 @@ def along(
         return taken_in(expanded) if conservative else expanded
 
     with ctx.workprec(PRECISION):
-        found = to(4)
-        tower, elements = (_of_two_frequencies if conservative else _of_roots)(found, name, values)
+        fourth_order = to(4)
+        tower, elements = (_of_two_frequencies if conservative else _of_roots)(fourth_order, name, values)
         roots = _roots([_norm(tower, x) for x in elements.values()], interval)
         _refuse_singular(tower, elements, [factor for _, factor in roots], interval, name)
 
         def two_eigenvectors_at(value: Any) -> bool:
             """Where the discriminant vanishes: whether A^2 + w^2 does, exactly."""
             factor = next(factor for root, factor in roots if root is value)
-            matrix = matrix_of_hamiltonian(over_tower(found, tower, rational).hamiltonian())
+            matrix = matrix_of_hamiltonian(over_tower(fourth_order, tower, rational).hamiltonian())
             entries = two_eigenvectors(matrix, even_part(matrix, tower.zero, tower.one)[1])
             return all(x.is_zero() or _vanishes(tower, x, name, factor, value) for x in entries)
 
@@ -124,7 +124,7 @@ def along(
             there = {**values, name: value}
             if not conservative:
                 exact = isinstance(value, Fraction)
-                return judged_field(to, there) if exact else judged_on_border(found, there, zero)
+                return judged_field(to, there) if exact else judged_on_border(fourth_order, there, zero)
             if "product" in zero and not isinstance(value, Fraction):
                 return at_zero_root(to(ORDER), there)
             if "discriminant" in zero and not isinstance(value, Fraction):
@@ -138,36 +138,42 @@ def along(
             if zero:
                 exactly = fraction(-factor[0] / factor[1]) if factor.degree() == 1 else None
                 judged = judge(enclosure if exactly is None else exactly, zero)
-                told = tuple(int(x) for x in (factor * factor.denom()).coeffs())
-                specials.append(Special(enclosure, exactly, told, zero, judged))
-        ends = [interval[0], *(one.enclosure if one.exactly is None else one.exactly for one in specials), interval[1]]
+                coefficients = tuple(int(x) for x in (factor * factor.denom()).coeffs())
+                specials.append(Special(enclosure, exactly, coefficients, zero, judged))
+        ends = [
+            interval[0],
+            *(special.enclosure if special.exactly is None else special.exactly for special in specials),
+            interval[1],
+        ]
         between = [Between(sample, judge(sample, ())) for sample in (_between(a, b) for a, b in pairwise(ends))]
-        kept = [k for k, special in enumerate(specials) if _matters(special, between[k], between[k + 1])]
+        relevant = [k for k, special in enumerate(specials) if _matters(special, between[k], between[k + 1])]
     return Along(
         name=name,
         low=interval[0],
         high=interval[1],
         hamiltonian=conservative,
-        coordinates=tuple(coordinate for i, coordinate in enumerate(found.coordinates) if i not in found.cyclic),
-        cyclic=tuple(found.coordinates[i] for i in found.cyclic),
-        specials=tuple(specials[k] for k in kept),
-        between=(*(between[k] for k in kept), between[-1]),
+        coordinates=tuple(
+            coordinate for i, coordinate in enumerate(fourth_order.coordinates) if i not in fourth_order.cyclic
+        ),
+        cyclic=tuple(fourth_order.coordinates[i] for i in fourth_order.cyclic),
+        specials=tuple(specials[k] for k in relevant),
+        between=(*(between[k] for k in relevant), between[-1]),
     )
 
 
 def _matters(special: Special, below: Between, above: Between) -> bool:
     """Whether something else is said than on both sides: where the first approximation decides D4 = 0 is nothing."""
-    said = {(one.judged.outcome, one.judged.theorem) for one in (special, below, above)}
+    said = {(section.judged.outcome, section.judged.theorem) for section in (special, below, above)}
     return len(said) > 1
 
 
 def _of_two_frequencies(
-    found: Expansion, name: str, values: Mapping[str, Fraction]
+    expanded: Expansion, name: str, values: Mapping[str, Fraction]
 ) -> tuple[Tower, dict[str, Element]]:
     """What may vanish: trace, product and discriminant of the squares of the frequencies, resonances, D4."""
-    count = len(found.coordinates) - len(found.cyclic)
+    count = len(expanded.coordinates) - len(expanded.cyclic)
     if count != 2:
-        besides = " without its cyclic coordinates" if found.cyclic else ""
+        besides = " without its cyclic coordinates" if expanded.cyclic else ""
         raise NotAlong(
             "of systems whose energy is conserved exceptional values are listed where there are two "
             "frequencies; this one has [[count]][[besides]]",
@@ -175,7 +181,7 @@ def _of_two_frequencies(
             besides=besides,
         )
     try:
-        _, tower, named = twist(found, values)
+        _, tower, named = twist(expanded, values)
     except SingularMass:
         raise
     except ZeroDivisionError:
@@ -191,10 +197,10 @@ def _of_two_frequencies(
     return tower, named
 
 
-def _of_roots(found: Expansion, name: str, values: Mapping[str, Fraction]) -> tuple[Tower, dict[str, Element]]:
+def _of_roots(expanded: Expansion, name: str, values: Mapping[str, Fraction]) -> tuple[Tower, dict[str, Element]]:
     """The last two Hurwitz determinants, but for the factor that the last one has of the one before."""
     tower = Tower([name])
-    field, _ = state_field(over_tower(found, tower, {k: v for k, v in values.items() if k != name}))
+    field, _ = state_field(over_tower(expanded, tower, {k: v for k, v in values.items() if k != name}))
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1][::-1]
     m = len(coefficients) - 1
     if coefficients[m].is_zero():
@@ -254,7 +260,7 @@ def _roots(polynomials: Sequence[fmpq_poly], interval: tuple[Fraction, Fraction]
         for root in acb_poly(factor).roots(tol=arb(2) ** (-(ctx.prec * 2 // 3))):
             if root.imag.contains(0) and root.real > low and root.real < high:
                 roots.append((root.real, factor))
-    return sorted(roots, key=lambda one: float(one[0]))
+    return sorted(roots, key=lambda pair: float(pair[0]))
 
 
 def _vanishes(tower: Tower, x: Element, name: str, factor: fmpq_poly, enclosure: arb) -> bool:
@@ -285,8 +291,8 @@ def _decides(
     """Resonances at an algebraic value: those that vanish there exactly."""
     known = {tuple(sorted(map(int, key.split(":")))) for key in zero if ":" in key}
 
-    def decides(vector: tuple[int, ...], found: Sequence[arb]) -> bool | None:
-        total = sum((k * w for k, w in zip(vector, found, strict=True)), arb(0))
+    def decides(vector: tuple[int, ...], frequencies: Sequence[arb]) -> bool | None:
+        total = sum((k * w for k, w in zip(vector, frequencies, strict=True)), arb(0))
         if total != 0:
             return False
         return True if tuple(sorted(map(abs, vector))) in known else None
@@ -300,11 +306,11 @@ def _decides(
 # that, it is imaginary if it is one of conjugates; the others are looked at by their enclosures.
 
 
-def judged_on_border(found: Expansion, values: Mapping[str, Any], zero: Sequence[str]) -> Judged:
+def judged_on_border(expanded: Expansion, values: Mapping[str, Any], zero: Sequence[str]) -> Judged:
     """``zero``: ``root`` where a root is zero exactly, ``pair`` where the Hurwitz determinant before the last is."""
     from mbsym.problems.normal_forms.problem import enclosed
 
-    return judged_enclosed(*state_field(enclosed(found, values)), zero)
+    return judged_enclosed(*state_field(enclosed(expanded, values)), zero)
 
 
 def judged_enclosed(field: Sequence[Truncated], positions: Sequence[str], zero: Sequence[str]) -> Judged:
@@ -364,8 +370,8 @@ def _zero(field: Sequence[Truncated], others: Sequence[acb]) -> Judged:
 
 def _isolated(coefficients: Sequence[acb]) -> list[acb]:
     """Roots, each alone in its enclosure.  Raises ValueError."""
-    found: list[acb] = acb_poly(coefficients).roots(tol=arb(2) ** (-(ctx.prec // 2)))
-    return found
+    roots: list[acb] = acb_poly(coefficients).roots(tol=arb(2) ** (-(ctx.prec // 2)))
+    return roots
 
 
 def _open(why: Why) -> Judged:

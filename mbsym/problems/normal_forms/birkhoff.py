@@ -102,10 +102,10 @@ def diagonalised(
 
 def _column(adjugates: Sequence[Sequence[Sequence[Any]]], root: Any, column: int, zero: Any) -> list[Any]:
     """A column of sum B_k root^(m-1-k)."""
-    found = [zero] * len(adjugates)
+    entries = [zero] * len(adjugates)
     for matrix in adjugates:
-        found = [x * root + row[column] for x, row in zip(found, matrix, strict=True)]
-    return found
+        entries = [x * root + row[column] for x, row in zip(entries, matrix, strict=True)]
+    return entries
 
 
 def normal_form(
@@ -126,7 +126,7 @@ def normal_form(
     generators = []
     divisors: dict[tuple[int, ...], Any] = {}
     for degree in range(3, space.order + 1):
-        found = {}
+        coefficients = {}
         for key, value in whole.part(degree).coefficients.items():
             difference = tuple(a - b for a, b in zip(key[:n], key[n:], strict=True))
             if not any(difference) or difference in resonances:
@@ -136,12 +136,12 @@ def normal_form(
                 for k, root in zip(difference, linear.roots, strict=True):
                     total = total + root * k
                 divisors[difference] = inverse(total)
-            found[key] = value * divisors[difference]
-        generator = Truncated(space, found)
+            coefficients[key] = value * divisors[difference]
+        generator = Truncated(space, coefficients)
         generators.append(generator)
-        if found:
+        if coefficients:
             # what the choice of chi removes is removed exactly: enclosures would leave balls about zero
-            removed = set(found)
+            removed = set(coefficients)
             whole = flow(whole, generator)
             whole = Truncated(space, {k: v for k, v in whole.coefficients.items() if k not in removed})
     return NormalForm(linear, _diagonal(whole, linear), tuple(generators))
@@ -150,10 +150,10 @@ def normal_form(
 def _diagonal(whole: Truncated, linear: Linear) -> Truncated:
     """With sum lambda xi eta for the terms of degree 2, which are that by construction."""
     space, n = whole.space, len(linear.roots)
-    kept = {key: value for key, value in whole.coefficients.items() if sum(key) != 2}
+    coefficients = {key: value for key, value in whole.coefficients.items() if sum(key) != 2}
     for k, root in enumerate(linear.roots):
-        kept[tuple(int(j in (k, n + k)) for j in range(2 * n))] = root
-    return Truncated(space, kept)
+        coefficients[tuple(int(j in (k, n + k)) for j in range(2 * n))] = root
+    return Truncated(space, coefficients)
 
 
 # Whether the term that a resonance of third order leaves in the normal form is zero, exactly.
@@ -168,14 +168,16 @@ def _diagonal(whole: Truncated, linear: Linear) -> Truncated:
 # nothing is said.
 
 
-def is_zero_exactly(found: Expansion, values: Mapping[str, Any], vector: Sequence[int], omega: Sequence[arb]) -> bool:
+def is_zero_exactly(
+    expansion: Expansion, values: Mapping[str, Any], vector: Sequence[int], omega: Sequence[arb]
+) -> bool:
     """``vector`` of the absolute frequencies |Omega_k|, ``omega`` with the signs of their energies."""
     tower = Tower()
-    exact = exact_values(found, tower, values)
+    exact = exact_values(expansion, tower, values)
     if exact is None:
         return False
     try:
-        return of_hamiltonian(tower, over_tower(found, tower, exact).hamiltonian(), vector, omega)
+        return of_hamiltonian(tower, over_tower(expansion, tower, exact).hamiltonian(), vector, omega)
     except (Failure, ZeroDivisionError):
         return False
 

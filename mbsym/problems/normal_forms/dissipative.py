@@ -35,7 +35,7 @@ from mbsym.problems.normal_forms.result import Focus, Judged, Outcome, Theorem, 
 
 def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tuple[str, ...]]:
     """x' and v' in the state, up to ``order``, and the coordinates in it."""
-    expansion, n = numbers.found, numbers.n
+    expansion, n = numbers.expansion, numbers.n
     rates = numbers.field()
     places = [*(i for i in range(n) if i not in expansion.cyclic), *range(n, 2 * n)]
     space = Space(len(places), order, numbers.zero, numbers.one)
@@ -82,9 +82,9 @@ def judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> J
 
 def _even(square: fmpq_poly) -> fmpq_poly:
     """g(lambda^2)."""
-    found = [fmpq(0)] * (2 * square.degree() + 1)
-    found[::2] = square.coeffs()
-    return fmpq_poly(found)
+    coefficients = [fmpq(0)] * (2 * square.degree() + 1)
+    coefficients[::2] = square.coeffs()
+    return fmpq_poly(coefficients)
 
 
 def _square_free(x: fmpq_poly) -> list[fmpq_poly]:
@@ -156,11 +156,11 @@ def _zero(tower: Tower, field: Sequence[Truncated]) -> Judged:
     return Judged(outcome, theorem, why, coefficient=value)
 
 
-def focus(found: Expansion) -> Focus | None:
+def focus(expansion: Expansion) -> Focus | None:
     """Where +-i w is a pair of roots for all parameters: w^2 and a.  None where there is none, or more than one."""
-    ring = found.scene.ring
-    tower = Tower(occurring_parameters(found))
-    field, positions = state_field(over_tower(found, tower, {}))
+    ring = expansion.scene.ring
+    tower = Tower(occurring_parameters(expansion))
+    field, positions = state_field(over_tower(expansion, tower, {}))
     coefficients = faddeev(matrix_of(field), tower.zero, tower.one)[1]
     if coefficients[0].is_zero():
         return None
@@ -172,7 +172,7 @@ def focus(found: Expansion) -> Focus | None:
     return Focus(formulas[0], formulas[1], amplitude_of)
 
 
-def taylor_field(found: Expansion, order: int = 3) -> PolynomialField:
+def taylor_field(expansion: Expansion, order: int = 3) -> PolynomialField:
     """The Taylor field about the unperturbed motion as a polynomial vector field over the parameters, to ``order``:
 
         x' = v,      v' = a_1(x, v) + a_2(x, v) + ... + a_N(x, v),
@@ -184,9 +184,9 @@ def taylor_field(found: Expansion, order: int = 3) -> PolynomialField:
     their cosines, are constants of the field.  Raises NoClosedForm where coefficients hold other functions of
     parameters, SingularPoint where det M = 0 on the motion.
     """
-    tower = Tower(occurring_parameters(found))
-    rows, positions = state_field(over_tower(found, tower, {}), order)
-    variables = (*positions, *(velocity_name(name) for name in found.coordinates))
+    tower = Tower(occurring_parameters(expansion))
+    rows, positions = state_field(over_tower(expansion, tower, {}), order)
+    variables = (*positions, *(velocity_name(name) for name in expansion.coordinates))
     kinds = [tower.kind(MOST_ROOTS - 1 - k) for k in range(len(tower.squares))]
     roots = [kind if isinstance(kind, str) else f"#{k}" for k, kind in enumerate(kinds)]
     parameters = (*tower.parameters, *roots)

@@ -116,13 +116,13 @@ def _of_two_eigenvectors(hamiltonian: Truncated, w: arb) -> Judged:
     columns = _eigenvectors(hamiltonian, w)
     if columns is None:
         return _open(w)
-    one, two = columns
+    first, second = columns
     # [v, v*] = -i |d| of both: H_2 = w (I_1 - I_2) with I = |d| xi xi*
-    weights = [abs(pairing(v, conjugate(v)).imag) for v in (one, two)]
-    conjugates = [tuple(x / pairing(v, conjugate(v)) for x in conjugate(v)) for v in (one, two)]
-    linear = Linear((acb(0, w), acb(0, -w)), (tuple(one), tuple(two), *conjugates))
-    kept = [(k, k) for k in (-2, -1, 1, 2)]
-    form = normal_form(hamiltonian, linear, lambda x: 1 / x, kept, Space(4, 4, acb(0), acb(1)))
+    weights = [abs(pairing(v, conjugate(v)).imag) for v in (first, second)]
+    conjugates = [tuple(x / pairing(v, conjugate(v)) for x in conjugate(v)) for v in (first, second)]
+    linear = Linear((acb(0, w), acb(0, -w)), (tuple(first), tuple(second), *conjugates))
+    resonances = [(k, k) for k in (-2, -1, 1, 2)]
+    form = normal_form(hamiltonian, linear, lambda x: 1 / x, resonances, Space(4, 4, acb(0), acb(1)))
     _verify(hamiltonian, form)
     known: dict[str, Any] = {"frequencies": (w, -w)}
     series = _on_the_cone(form, weights)
@@ -176,11 +176,11 @@ def _eigenvectors(hamiltonian: Truncated, w: arb) -> tuple[list[acb], list[acb]]
 
 def _on_the_cone(form: NormalForm, weights: Sequence[arb]) -> list[acb]:
     """p_m, m = -2 ... 2: H_4 where I_1 = I_2 = 1; xi_k = e^(i f_k)/sqrt|d_k|, eta_k = -i |d_k| xi_k*."""
-    found = [acb(0)] * 5
+    coefficients = [acb(0)] * 5
     for (a, b, c, d), value in form.hamiltonian.part(4).coefficients.items():
         scale = weights[0].sqrt() ** (c - a) * weights[1].sqrt() ** (d - b)
-        found[2 + a - c] += value * scale * acb(0, -1) ** (c + d)
-    return found
+        coefficients[2 + a - c] += value * scale * acb(0, -1) ** (c + d)
+    return coefficients
 
 
 def _by_zeros(series: Sequence[acb]) -> Outcome:

@@ -24,13 +24,13 @@ from mbsym.algebra.truncated import Coefficients, Space, Truncated
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
-def exact_values(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> dict[str, Element] | None:
+def exact_values(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) -> dict[str, Element] | None:
     """Values in the tower: rational ones, and those that the description writes with square roots of numbers.
 
     None where there are others, or roots that are not independent (sqrt(2) beside sqrt(8)): what is zero would not be
     told then.
     """
-    written = {parameter.name: parameter.value for parameter in found.scene.system.parameters}
+    written = {parameter.name: parameter.value for parameter in expansion.scene.system.parameters}
     exact: dict[str, Element] = {}
     for name, value in values.items():
         if isinstance(value, Fraction):
@@ -55,20 +55,20 @@ def exact_values(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> d
     return exact
 
 
-def over_tower(found: Expansion, tower: Tower, values: Mapping[str, Any]) -> Numbers:
+def over_tower(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) -> Numbers:
     """The expansion with ``values`` put in; what has none is a parameter of the tower."""
     environment: dict[str, Any] = {name: tower.element(value) for name, value in values.items()}
     environment |= {name: tower.parameter(name) for name in tower.parameters}
-    ring = found.scene.ring
+    ring = expansion.scene.ring
     tower.is_positive = lambda x: ring.is_positive(in_ring(tower, ring, x))
     carry = Carrier(ring, tower, environment)
-    return Numbers(found, carry, tower.reciprocal, tower.zero, tower.one)
+    return Numbers(expansion, carry, tower.reciprocal, tower.zero, tower.one)
 
 
-def occurring_parameters(found: Expansion) -> list[str]:
+def occurring_parameters(expansion: Expansion) -> list[str]:
     """The parameters in the coefficients, within what is adjoined as well."""
-    ring = found.scene.ring
-    parts = [*found.lagrangian, *(part for force in found.forces for part in force)]
+    ring = expansion.scene.ring
+    parts = [*expansion.lagrangian, *(part for force in expansion.forces for part in force)]
     pending = [x for part in parts for x in part.values()]
     seen: set[int] = set()
     while pending:
@@ -77,7 +77,7 @@ def occurring_parameters(found: Expansion) -> list[str]:
         pending += [argument for k in fresh if (argument := ring.generators[k].argument) is not None]
     held = [ring.generators[k] for k in sorted(seen) if ring.generators[k].argument is None]
     plain = {g.name for g in held if g.kind == "parameter"}
-    names = [parameter.name for parameter in found.scene.system.parameters]
+    names = [parameter.name for parameter in expansion.scene.system.parameters]
     angles = {g.name: g.denominator for g in held if g.kind in ("sine", "cosine") and g.name in names}
     cosines = [f"cos({name if share == 1 else f'{name}/{share}'})" for name, share in angles.items()]
     return [*(name for name in names if name in plain), *cosines]
@@ -158,8 +158,8 @@ MOST_SUMMED = 256
 
 def _only(factors: Sequence[fmpq_poly], root: arb) -> fmpq_poly | None:
     """The only one of the factors that may vanish at the enclosed root."""
-    found = [factor for factor in factors if arb_poly(factor)(root).contains(0)]
-    return found[0] if len(found) == 1 else None
+    vanishing = [factor for factor in factors if arb_poly(factor)(root).contains(0)]
+    return vanishing[0] if len(vanishing) == 1 else None
 
 
 def _power(factor: fmpq_poly, whole: fmpq_poly) -> int:
@@ -179,15 +179,15 @@ def _signed_roots(tower: Tower, coefficients: Sequence[Element]) -> fmpq_poly | 
 def _composed_sum(p: tuple[fmpq, ...], q: tuple[fmpq, ...]) -> fmpq_poly:
     context = fmpq_mpoly_ctx.get(["x", "y"], Ordering.lex)
     x, y = context.gens()
-    one, other = (
+    first, second = (
         sum((c * z**k for k, c in enumerate(coefficients)), context.constant(0))
         for coefficients, z in ((p, y), (q, x - y))
     )
-    terms = one.resultant(other, "y").to_dict()
-    found = [fmpq(0)] * (1 + max(int(m[0]) for m in terms))
+    terms = first.resultant(second, "y").to_dict()
+    resultant = [fmpq(0)] * (1 + max(int(m[0]) for m in terms))
     for monomial, c in terms.items():
-        found[int(monomial[0])] = c
-    return fmpq_poly(found)
+        resultant[int(monomial[0])] = c
+    return fmpq_poly(resultant)
 
 
 def composed_sum(p: fmpq_poly, q: fmpq_poly) -> fmpq_poly:
@@ -366,8 +366,8 @@ def on_pair(
     row = max(whole, key=lambda row: size(row[column]))
     dual = [x * inverse(dot(row, conjugate)) for x in row] if source.order > 3 else []
     lower, last = _on_centre(field, root, (q, conjugate), (p, dual), inverse)
-    found = [*lower, dot(p, last)]
-    return Reduced(zero, found[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), *found[1:])
+    coefficients = [*lower, dot(p, last)]
+    return Reduced(zero, coefficients[0], tuple(a * b for a, b in zip(q, conjugate, strict=True)), *coefficients[1:])
 
 
 def _on_centre(

@@ -86,7 +86,7 @@ def expansion(
     ring, n = scene.ring, len(names)
 
     def kept(terms: Terms) -> Terms:
-        found: Terms = {}
+        constants: Terms = {}
         for key, value in terms.items():
             constant = ring.substitute(value, images)
             if constant.is_zero() or max(key) >= 2 * n:
@@ -96,8 +96,8 @@ def expansion(
                 raise NotExpanded(
                     "terms of order [[count]] vary with [[names]]", count=len(key), names=", ".join(varying)
                 )
-            found[key] = constant
-        return found
+            constants[key] = constant
+        return constants
 
     def parts(x: Jet) -> tuple[Terms, ...]:
         return tuple(kept(x.degree(k)) for k in range(1, order + 1))
@@ -114,15 +114,15 @@ def expansion(
     return Expansion(scene, names, order, lagrangian, forces, cyclic)
 
 
-def potential(found: Expansion) -> Terms | None:
+def potential(expanded: Expansion) -> Terms | None:
     """The terms of V in L = T - V, by places of coordinates; None where applied forces are static, too.
 
     The energy that is conserved, or dissipated, is T_2 + V then, whatever L has besides.
     """
-    n = len(found.coordinates)
-    if any(max(key) < n for parts in found.forces for part in parts for key in part):
+    n = len(expanded.coordinates)
+    if any(max(key) < n for parts in expanded.forces for part in parts for key in part):
         return None
-    return {key: -value for part in found.lagrangian for key, value in part.items() if max(key) < n}
+    return {key: -value for part in expanded.lagrangian for key, value in part.items() if max(key) < n}
 
 
 class Numbers:
@@ -131,7 +131,7 @@ class Numbers:
     def __init__(
         self, found: Expansion, carry: Callable[[Polynomial], Any], inverse: Callable[[Any], Any], zero: Any, one: Any
     ) -> None:
-        self.found, self.carry, self.inverse = found, carry, inverse
+        self.expansion, self.carry, self.inverse = found, carry, inverse
         self.zero, self.one, self.n = zero, one, len(found.coordinates)
         self.space = Space(2 * self.n, found.order, zero, one)
 
@@ -145,15 +145,15 @@ class Numbers:
         Variables are the other x in order, then their p.  Raises SingularMass where det M = 0.
         """
         n, space = self.n, self.space
-        lagrangian = self._lowered(self.found.lagrangian, 2)
+        lagrangian = self._lowered(self.expansion.lagrangian, 2)
         slopes = [lagrangian.derivative(n + i) for i in range(n)]
         mass = [[slopes[i][_unit(2 * n, n + j)] for j in range(n)] for i in range(n)]
         back = self._inverted(mass)
         rest = [slope - space.of({(n + j,): mass[i][j] for j in range(n)}) for i, slope in enumerate(slopes)]
         x = [space.variable(i) for i in range(n)]
-        p = [space.nothing if i in self.found.cyclic else space.variable(n + i) for i in range(n)]
+        p = [space.nothing if i in self.expansion.cyclic else space.variable(n + i) for i in range(n)]
         v = [space.nothing] * n
-        for _ in range(self.found.order):
+        for _ in range(self.expansion.order):
             right = [p[i] - rest[i].composed([*x, *v]) for i in range(n)]
             v = [_sum(space, (right[j].scaled(back[i][j]) for j in range(n))) for i in range(n)]
         whole = _sum(space, (p[i] * v[i] for i in range(n))) - lagrangian.composed([*x, *v])
@@ -161,17 +161,17 @@ class Numbers:
 
     def _inverted(self, mass: Sequence[Sequence[Any]]) -> list[list[Any]]:
         try:
-            found = inverted(mass, self.inverse, self.zero, self.one)
+            inverse = inverted(mass, self.inverse, self.zero, self.one)
         except ZeroDivisionError:
             raise SingularMass from None
-        if any(isinstance(x, acb) and not x.is_finite() for row in found for x in row):
+        if any(isinstance(x, acb) and not x.is_finite() for row in inverse for x in row):
             raise SingularMass
-        return found
+        return inverse
 
     def _without_cyclic(self, whole: Truncated) -> Truncated:
-        left = [i for i in range(self.n) if i not in self.found.cyclic]
+        left = [i for i in range(self.n) if i not in self.expansion.cyclic]
         places = [*left, *(self.n + i for i in left)]
-        space = Space(len(places), self.found.order, self.zero, self.one)
+        space = Space(len(places), self.expansion.order, self.zero, self.one)
         terms = {tuple(key[k] for k in places): value for key, value in whole.coefficients.items()}
         return Truncated(space, terms)
 
@@ -180,21 +180,21 @@ class Numbers:
 
         Raises SingularMass where det M = 0.
         """
-        n, space = self.n, Space(2 * self.n, self.found.order - 1, self.zero, self.one)
-        lagrangian = self._lowered(self.found.lagrangian, 2)
-        cut = lambda one: Truncated(space, one.coefficients)  # noqa: E731
+        n, space = self.n, Space(2 * self.n, self.expansion.order - 1, self.zero, self.one)
+        lagrangian = self._lowered(self.expansion.lagrangian, 2)
+        cut = lambda series: Truncated(space, series.coefficients)  # noqa: E731
         slopes = [lagrangian.derivative(n + i) for i in range(n)]
         mass = [[cut(slopes[i].derivative(n + j)) for j in range(n)] for i in range(n)]
         right = []
         for i in range(n):
-            total = cut(lagrangian.derivative(i)) + cut(self._lowered(self.found.forces[i], 1))
+            total = cut(lagrangian.derivative(i)) + cut(self._lowered(self.expansion.forces[i], 1))
             for j in range(n):
                 total = total - cut(slopes[i].derivative(j)) * space.variable(n + j)
             right.append(total)
         back = self._inverted([[m[(0,) * (2 * n)] for m in row] for row in mass])
         moving = [[m - space.constant(m[(0,) * (2 * n)]) for m in row] for row in mass]
         a = [space.nothing] * n
-        for _ in range(self.found.order):
+        for _ in range(self.expansion.order):
             left = [right[i] - _sum(space, (moving[i][j] * a[j] for j in range(n))) for i in range(n)]
             a = [_sum(space, (left[j].scaled(back[i][j]) for j in range(n))) for i in range(n)]
         return a
@@ -260,32 +260,32 @@ def have_generalized_potential(
         return False
 
 
-def has_forces(found: Expansion) -> bool:
+def has_forces(expanded: Expansion) -> bool:
     """Whether terms of applied forces are left in an expansion."""
-    return any(part for force in found.forces for part in force)
+    return any(part for force in expanded.forces for part in force)
 
 
-def taken_in(found: Expansion) -> Expansion:
+def taken_in(expanded: Expansion) -> Expansion:
     """The expansion with V in its Lagrangian and no forces.  Raises NotExpanded if V does not give them back."""
-    if not has_forces(found):
-        return found
-    ring, n = found.scene.ring, len(found.coordinates)
+    if not has_forces(expanded):
+        return expanded
+    ring, n = expanded.scene.ring, len(expanded.coordinates)
     assert isinstance(ring, Ring)
-    potential: list[Terms] = [{} for _ in range(found.order + 1)]
-    for i, parts in enumerate(found.forces):
+    potential: list[Terms] = [{} for _ in range(expanded.order + 1)]
+    for i, parts in enumerate(expanded.forces):
         for degree, part in enumerate(parts, start=1):
             for key, value in part.items():
                 _add(potential[degree], tuple(sorted((i, *key))), value * ring.number(Fraction(1, degree + 1)))
-    for i, parts in enumerate(found.forces):
+    for i, parts in enumerate(expanded.forces):
         for degree, part in enumerate(parts, start=1):
             again = _force(potential[degree], i, n)
             for key in {*part, *again}:
-                given, made = part.get(key) or ring.zero, again.get(key) or ring.zero
-                if not ring.vanishes(ring.reduce(given - made)):
+                original, made = part.get(key) or ring.zero, again.get(key) or ring.zero
+                if not ring.vanishes(ring.reduce(original - made)):
                     raise NotExpanded("the potential of applied forces does not give them back")
-    lagrangian = tuple(_together(part, potential[k]) for k, part in enumerate(found.lagrangian))
-    none: tuple[tuple[Terms, ...], ...] = tuple(tuple({} for _ in parts) for parts in found.forces)
-    return replace(found, lagrangian=lagrangian, forces=none)
+    lagrangian = tuple(_together(part, potential[k]) for k, part in enumerate(expanded.lagrangian))
+    none: tuple[tuple[Terms, ...], ...] = tuple(tuple({} for _ in parts) for parts in expanded.forces)
+    return replace(expanded, lagrangian=lagrangian, forces=none)
 
 
 def _force(potential: Terms, i: int, n: int) -> Terms:
@@ -303,8 +303,8 @@ def _force(potential: Terms, i: int, n: int) -> Terms:
     return terms
 
 
-def _without(key: tuple[int, ...], one: int) -> tuple[int, ...]:
-    place = key.index(one)
+def _without(key: tuple[int, ...], dropped: int) -> tuple[int, ...]:
+    place = key.index(dropped)
     return key[:place] + key[place + 1 :]
 
 
@@ -313,7 +313,7 @@ def _add(into: Terms, key: tuple[int, ...], value: Polynomial) -> None:
 
 
 def _together(a: Terms, b: Terms) -> Terms:
-    found = dict(a)
+    merged = dict(a)
     for key, value in b.items():
-        _add(found, key, value)
-    return {key: value for key, value in found.items() if not value.is_zero()}
+        _add(merged, key, value)
+    return {key: value for key, value in merged.items() if not value.is_zero()}

@@ -140,9 +140,9 @@ def first_term(
     """
     made = _Expanded(scene, whole, equilibrium, False, (), manifold)
     for most in (4, MOST_ORDER):
-        found = made.plain(most)
-        parts = potential(found)
-        if parts is None or len(found.coordinates) != 1:
+        expanded = made.plain(most)
+        parts = potential(expanded)
+        if parts is None or len(expanded.coordinates) != 1:
             return None
         for order in range(2, most + 1):
             value = parts.get((0,) * order)
@@ -169,15 +169,15 @@ def normal_forms(
     """
 
     expanded = _Expanded(scene, whole, equilibrium, conservative, cyclic, manifold)
-    found = expanded.to(4)
-    coordinates = tuple(name for i, name in enumerate(found.coordinates) if i not in found.cyclic)
+    fourth_order = expanded.to(4)
+    coordinates = tuple(name for i, name in enumerate(fourth_order.coordinates) if i not in fourth_order.cyclic)
     with ctx.workprec(PRECISION):
         at_values = None if values is None else expanded.at(values)
-        symbols: Any = partial(_in_symbols if conservative else focus, found)
+        symbols: Any = partial(_in_symbols if conservative else focus, fourth_order)
         in_symbols, why = known(symbols)
     return NormalForms(
         coordinates=coordinates,
-        cyclic=tuple(found.coordinates[i] for i in found.cyclic),
+        cyclic=tuple(fourth_order.coordinates[i] for i in fourth_order.cyclic),
         conservative=conservative,
         order=ORDER,
         at_values=at_values,
@@ -224,18 +224,18 @@ def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], res
     return judged(lowered, resonant, ORDER, vanishes)
 
 
-def _two_eigenvectors(found: Expansion, values: Mapping[str, Any]) -> bool:
+def _two_eigenvectors(expanded: Expansion, values: Mapping[str, Any]) -> bool:
     tower = Tower()
-    matrix = matrix_of(over_tower(found, tower, exact_values(found, tower, values) or {}).hamiltonian())
+    matrix = matrix_of(over_tower(expanded, tower, exact_values(expanded, tower, values) or {}).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
     return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
-def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
+def _with_zero_root(expanded: Expansion, values: Mapping[str, Any]) -> Judged:
     """A root is zero exactly, at exact values."""
     tower = Tower()
-    numbers = over_tower(found, tower, exact_values(found, tower, values) or {})
-    balls = enclosed(found, values).hamiltonian()
+    numbers = over_tower(expanded, tower, exact_values(expanded, tower, values) or {})
+    balls = enclosed(expanded, values).hamiltonian()
 
     def ball_of(x: Element) -> arb:
         return tower.enclosed(x, {}).real
@@ -246,26 +246,26 @@ def _with_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
         differs=lambda x: not ball_of(x).contains(0),
         enclosed=ball_of,
     )
-    return zero_root(numbers.hamiltonian(), balls, scalars, variables(found))
+    return zero_root(numbers.hamiltonian(), balls, scalars, variables(expanded))
 
 
-def at_zero_root(found: Expansion, values: Mapping[str, Any]) -> Judged:
+def at_zero_root(expanded: Expansion, values: Mapping[str, Any]) -> Judged:
     """The same at enclosed values at which a root is zero exactly: what else vanishes has to do so term by term."""
-    balls = enclosed(found, values).hamiltonian()
-    return zero_root(balls, balls, BALLS, variables(found))
+    balls = enclosed(expanded, values).hamiltonian()
+    return zero_root(balls, balls, BALLS, variables(expanded))
 
 
-def variables(found: Expansion) -> tuple[str, ...]:
+def variables(expanded: Expansion) -> tuple[str, ...]:
     """The coordinates without the cyclic ones, and their momenta as ``p_name``."""
-    names = [name for i, name in enumerate(found.coordinates) if i not in found.cyclic]
+    names = [name for i, name in enumerate(expanded.coordinates) if i not in expanded.cyclic]
     return (*names, *(f"p_{name}" for name in names))
 
 
-def enclosed(found: Expansion, values: Mapping[str, Any]) -> Numbers:
+def enclosed(expanded: Expansion, values: Mapping[str, Any]) -> Numbers:
     """The expansion over enclosures."""
     balls = {"pi": arb.pi()} | {name: ball(value) for name, value in values.items()}
-    carry = Carrier(found.scene.ring, Balls(balls), balls)
-    return Numbers(found, lambda x: acb(carry(x)), lambda x: 1 / x, acb(0), acb(1))
+    carry = Carrier(expanded.scene.ring, Balls(balls), balls)
+    return Numbers(expanded, lambda x: acb(carry(x)), lambda x: 1 / x, acb(0), acb(1))
 
 
 def ball(value: Any) -> arb:
@@ -273,33 +273,33 @@ def ball(value: Any) -> arb:
     return value if isinstance(value, arb) else arb(value.numerator) / value.denominator
 
 
-def _exactly(found: Expansion, values: Mapping[str, Any]) -> Resonant:
+def _exactly(expanded: Expansion, values: Mapping[str, Any]) -> Resonant:
     """Exact resonances, where values and coefficients hold nothing but square roots."""
     tower = Tower()
-    exact = exact_values(found, tower, values)
+    exact = exact_values(expanded, tower, values)
     if exact is None:
         return Resonant(None, None)
 
     def coefficients() -> list[Element]:
-        quadratic = over_tower(found, tower, exact).hamiltonian()
+        quadratic = over_tower(expanded, tower, exact).hamiltonian()
         return even_part(matrix_of(quadratic), tower.zero, tower.one)
 
     q, _ = known(coefficients)
     return Resonant(None, None) if q is None else Resonant(tower, q)
 
 
-def _in_symbols(found: Expansion) -> InSymbols | None:
+def _in_symbols(expanded: Expansion) -> InSymbols | None:
     """Of two degrees of freedom; None of others.  Raises Failure where formulas outgrow their budgets."""
-    if len(found.coordinates) - len(found.cyclic) != 2:
+    if len(expanded.coordinates) - len(expanded.cyclic) != 2:
         return None
-    return twist(found, {})[0]
+    return twist(expanded, {})[0]
 
 
-def twist(found: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower, dict[str, Element]]:
+def twist(expanded: Expansion, values: Mapping[str, Any]) -> tuple[InSymbols, Tower, dict[str, Element]]:
     """D_4 and what it stands on, with ``values`` put in; the same as elements of the tower."""
-    ring = found.scene.ring
-    tower = Tower([name for name in occurring_parameters(found) if name not in values])
-    hamiltonian = over_tower(found, tower, rational_values(values)).hamiltonian()
+    ring = expanded.scene.ring
+    tower = Tower([name for name in occurring_parameters(expanded) if name not in values])
+    hamiltonian = over_tower(expanded, tower, rational_values(values)).hamiltonian()
     constant, trace = even_part(matrix_of(hamiltonian), tower.zero, tower.one)[:2]
     discriminant = trace * trace - constant * 4
     difference = tower.square_root(discriminant)

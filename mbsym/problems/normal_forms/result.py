@@ -192,42 +192,42 @@ class NormalForms(Shown):
 # plain substitution, is the normal form to the order.
 
 
-def transformation(found: NormalForm) -> list[Truncated]:
+def transformation(form: NormalForm) -> list[Truncated]:
     """x_1 ... x_n, p_1 ... p_n in xi and eta, to the order of the normal form."""
-    space = found.hamiltonian.space
-    rows = [space.linear(column[i] for column in found.linear.columns) for i in range(space.variables)]
-    for generator in found.generators:
+    space = form.hamiltonian.space
+    rows = [space.linear(column[i] for column in form.linear.columns) for i in range(space.variables)]
+    for generator in form.generators:
         rows = [flow(row, generator) for row in rows]
     return rows
 
 
-def defects(hamiltonian: Truncated, found: NormalForm) -> Iterator[Any]:
+def defects(hamiltonian: Truncated, form: NormalForm) -> Iterator[Any]:
     """What has to vanish: coefficients of {x_i, x_j} - J_ij below the order, and of H(x(xi, eta)) - normal form."""
-    rows = transformation(found)
-    space, n = found.hamiltonian.space, len(found.linear.roots)
+    rows = transformation(form)
+    space, n = form.hamiltonian.space, len(form.linear.roots)
     for i, row in enumerate(rows):
         for j in range(i):
             expected = space.constant(space.one).scaled(-1) if i == j + n else space.nothing
             rest = bracket(row, rows[j]) - expected
             yield from (value for key, value in rest.coefficients.items() if sum(key) < space.order)
-    difference = hamiltonian.composed(rows) - found.hamiltonian
+    difference = hamiltonian.composed(rows) - form.hamiltonian
     yield from difference.coefficients.values()
 
 
-def symbols_agree(found: NormalForms, values: Mapping[str, Any]) -> bool | None:
+def symbols_agree(forms: NormalForms, values: Mapping[str, Any]) -> bool | None:
     """Whether D_4 and w_1^2 w_2^2 in parameters are at the values what enclosures of the normal form there are.
 
     Roots of polynomials and floating balls on one side, a tower of square roots over the parameters on the other.  None
     where one of them is not there.
     """
-    symbols, judged = found.in_symbols, found.at_values
+    symbols, judged = forms.in_symbols, forms.at_values
     if not isinstance(symbols, InSymbols) or judged is None or len(judged.frequencies) != 2:
         return None
     with ctx.workprec(320):
         balls = {"pi": arb.pi()}
         balls |= {k: x if isinstance(x, arb) else arb(x.numerator) / x.denominator for k, x in values.items()}
         carry = Carrier(symbols.determinant.ring, Balls(balls), balls)
-        one, other = judged.frequencies
-        pairs = [(carry(symbols.product.polynomial), (one * other) ** 2)]
+        first, second = judged.frequencies
+        pairs = [(carry(symbols.product.polynomial), (first * second) ** 2)]
         pairs += [(carry(symbols.determinant.polynomial), x) for order, x in judged.determinants if order == 4]
         return all((a - b).contains(0) for a, b in pairs)

@@ -69,21 +69,21 @@ def squares(hamiltonian: Truncated) -> list[acb]:
 
 
 def _isolated(polynomial: acb_poly, part: Fraction) -> list[acb]:
-    found: list[acb] = polynomial.roots(tol=arb(2) ** -int(ctx.prec * part))
-    return found
+    roots: list[acb] = polynomial.roots(tol=arb(2) ** -int(ctx.prec * part))
+    return roots
 
 
 def frequencies(hamiltonian: Truncated) -> list[arb] | Judged:
     """w_k > 0, largest first, each simple; or what there is to say where the roots are none of that kind."""
     try:
-        found = squares(hamiltonian)
+        roots = squares(hamiltonian)
     except ValueError:
         more = hamiltonian.space.variables > 4
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.EQUAL_MORE if more else Why.EQUAL_FREQUENCIES)
-    if any(not z.imag.contains(0) for z in found):
+    if any(not z.imag.contains(0) for z in roots):
         return Judged(Outcome.UNSTABLE, Theorem.FIRST)
     # each enclosure holds one root: one that is met by the real axis is its own conjugate
-    real = [z.real for z in found]
+    real = [z.real for z in roots]
     if any(z > 0 for z in real):
         return Judged(Outcome.UNSTABLE, Theorem.FIRST)
     if not all(z < 0 for z in real):
@@ -101,19 +101,19 @@ def definite(hamiltonian: Truncated) -> Judged | None:
         minors = (arb_mat([[sign * x for x in row[:k]] for row in matrix[:k]]).det() for k in range(1, m + 1))
         if all(minor > 0 for minor in minors):
             try:
-                found = squares(hamiltonian)
+                roots = squares(hamiltonian)
             except ValueError:  # frequencies that are equal
                 return Judged(Outcome.STABLE, Theorem.DEFINITE)
-            known = sorted((abs(z.real).sqrt() * sign for z in found), key=abs, reverse=True)
+            known = sorted((abs(z.real).sqrt() * sign for z in roots), key=abs, reverse=True)
             return Judged(Outcome.STABLE, Theorem.DEFINITE, frequencies=tuple(known))
     return None
 
 
-def signed(hamiltonian: Truncated, found: Sequence[arb]) -> list[arb]:
+def signed(hamiltonian: Truncated, magnitudes: Sequence[arb]) -> list[arb]:
     """Omega_k: w_k with the sign of the energy of its oscillation, by the eigenvector: Im v.J conj(v) < 0 for it."""
     result = []
     n = hamiltonian.space.variables // 2
-    for w in found:
+    for w in magnitudes:
         column = diagonalised(hamiltonian, [acb(0, w)], lambda x: acb(1), absolute).columns
         v, u = column
         d = acb(0)
@@ -136,17 +136,17 @@ def judged(
     sure = definite(quadratic)
     if sure is not None:
         return sure
-    found = frequencies(quadratic)
-    if isinstance(found, Judged):
-        return found
-    omega = signed(quadratic, found)
+    magnitudes = frequencies(quadratic)
+    if isinstance(magnitudes, Judged):
+        return magnitudes
+    omega = signed(quadratic, magnitudes)
     known: dict[str, Any] = {"frequencies": tuple(omega)}
     if all(x > 0 for x in omega) or all(x < 0 for x in omega):
         return Judged(Outcome.STABLE, Theorem.DEFINITE, **known)
     exact: list[Resonance] = []
     least_open = order + 1
     for vector in vectors(len(omega), order):
-        verdict = resonant(vector, found)
+        verdict = resonant(vector, magnitudes)
         if verdict is None:
             least_open = min(least_open, sum(map(abs, vector)))
         elif verdict:
@@ -166,12 +166,12 @@ def judged(
 
 def vectors(n: int, order: int) -> list[tuple[int, ...]]:
     """k with 2 < |k| <= order without a common divisor, one of k and -k, shortest first."""
-    found = [
+    candidates = [
         k
         for k in product(range(-order, order + 1), repeat=n)
         if 2 < sum(map(abs, k)) <= order and next(x for x in k if x) > 0 and _primitive(k)
     ]
-    return sorted(found, key=lambda k: (sum(map(abs, k)), k))
+    return sorted(candidates, key=lambda k: (sum(map(abs, k)), k))
 
 
 def _primitive(k: Sequence[int]) -> bool:
@@ -187,12 +187,12 @@ def _formed(
     whole = lowered(order)
     space = Space(2 * len(omega), order, acb(0), acb(1))
     linear = diagonalised(whole, [acb(0, w) for w in omega], _inverse, absolute)
-    kept: set[tuple[int, ...]] = set()
+    resonances: set[tuple[int, ...]] = set()
     for resonance in exact:
         oriented = tuple(k if w > 0 else -k for k, w in zip(resonance.vector, omega, strict=True))
         for times in range(1, order // resonance.order + 1):
-            kept |= {tuple(s * times * k for k in oriented) for s in (1, -1)}
-    form = normal_form(whole, linear, _inverse, kept, space)
+            resonances |= {tuple(s * times * k for k in oriented) for s in (1, -1)}
+    form = normal_form(whole, linear, _inverse, resonances, space)
     if not all(value.contains(0) for value in defects(whole, form)):
         raise NotVerified("the normal form, substituted, is not what the Hamiltonian becomes")
     return form
@@ -200,11 +200,11 @@ def _formed(
 
 def _quadratic(form: NormalForm) -> dict[tuple[int, int], arb]:
     """The coefficients of I_j I_k, j <= k: P = -i I."""
-    found = {}
+    coefficients = {}
     for key, value in form.actions(2).items():
         places = [k for k, times in enumerate(key) for _ in range(times)]
-        found[places[0], places[1]] = (-value).real
-    return found
+        coefficients[places[0], places[1]] = (-value).real
+    return coefficients
 
 
 def _two(
@@ -262,8 +262,8 @@ def _keys(vector: Sequence[int], omega: Sequence[arb]) -> tuple[tuple[int, ...],
 
 def _amplitude(form: NormalForm, vector: Sequence[int], omega: Sequence[arb]) -> arb:
     """|h h'| of the resonant part h xi^k + h' eta^k."""
-    one, other = (form.hamiltonian[key] for key in _keys(vector, omega))
-    return abs(acb(one) * acb(other))
+    first, second = (form.hamiltonian[key] for key in _keys(vector, omega))
+    return abs(acb(first) * acb(second))
 
 
 def _root(square: arb) -> arb:

@@ -104,8 +104,8 @@ def on_zero_root(whole: Truncated, other: acb | None) -> tuple[NormalForm, acb]:
     u = [x * slope for x in u]
     columns, roots = [tuple(v), tuple(u)], [acb(0)]
     if other is not None:
-        one, two = diagonalised(whole, [other], lambda x: 1 / x, absolute).columns
-        columns, roots = [tuple(v), one, tuple(u), two], [acb(0), other]
+        first, second = diagonalised(whole, [other], lambda x: 1 / x, absolute).columns
+        columns, roots = [tuple(v), first, tuple(u), second], [acb(0), other]
     n = len(roots)
     key = tuple(2 * int(k == n) for k in range(2 * n))
     nilpotent = Truncated(whole.space, {key: slope / 2})
@@ -271,7 +271,7 @@ def splitting(whole: Truncated, place: int, scalars: Scalars) -> tuple[Truncated
     for step in range(source.order):
         left = [slope.composed(x) for slope in slopes]
         # the linear terms are solved exactly by the first step: enclosures would leave balls about zero
-        left = [one.beyond(1) if step else one for one in left]
+        left = [slope.beyond(1) if step else slope for slope in left]
         for row, k in zip(back, others, strict=True):
             change = space.nothing
             for factor, truncated in zip(row, left, strict=True):

@@ -129,9 +129,9 @@ def _curves(field: PolynomialField) -> Iterator[tuple[list[Any], Any]]:
     prime, random = PRIMES[0], Random("regular")
     count = len(field.context.names())
     groups = [_group(relation) for relation in field.relations]
-    if any(not one for one in groups):
+    if any(not group for group in groups):
         return  # of other relations no points are known
-    alone = [(k,) for k in field.places if not any(k in one for one in groups)]
+    alone = [(k,) for k in field.places if not any(k in group for group in groups)]
     for moving in [*alone, *groups] * TRIALS:
         images = [nmod_poly([random.randrange(1, prime)], prime) for _ in range(count)]
         scale = nmod_poly([1], prime)
@@ -148,7 +148,7 @@ def _curves(field: PolynomialField) -> Iterator[tuple[list[Any], Any]]:
                 scale = total
             else:
                 inverse = pow(int(total[0]), -1, prime)
-                values = [one * inverse for one in values]
+                values = [value * inverse for value in values]
             for place, value in zip(places, values, strict=True):
                 images[place] = value
         yield images, scale
@@ -173,42 +173,46 @@ def powers_of_cofactor(grading: Grading) -> list[Exponents]:
 
 
 def darboux_polynomials(
-    found: PolynomialIntegrals, prime: int = PRIMES[0], known: Sequence[tuple[int, Any]] = ()
+    integrals: PolynomialIntegrals, prime: int = PRIMES[0], known: Sequence[tuple[int, Any]] = ()
 ) -> DarbouxPolynomials:
-    """All that are no products of others and of the integrals ``found``, up to their degree; each proved by division.
+    """All that are no products of others and of ``integrals``, up to their degree; each proved by division.
 
     ``known``: weights and polynomials of some, which are not listed again, nor their products.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
-    field, grading = found.field, found.grading
+    field, grading = integrals.field, integrals.grading
     rise, weights = grading.rise, grading.weights
     if rise is None or (field.relations and not grading.free):
-        return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_HOMOGENEOUS)
+        return DarbouxPolynomials(integrals.degree, weights, (), (), Obstacle.NOT_HOMOGENEOUS)
     powers = powers_of_cofactor(grading)
     if any(sum(1 for a in power if a) > 1 for power in powers):
-        return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.MIXED)
+        return DarbouxPolynomials(integrals.degree, weights, (), (), Obstacle.MIXED)
     means = [rest_means(field, power) for power in powers]
     if any(mean is None for mean in means):
-        return DarbouxPolynomials(found.degree, weights, (), (), Obstacle.NOT_AT_REST)
-    there = at_random(field, prime, f"darboux {found.degree}")
+        return DarbouxPolynomials(integrals.degree, weights, (), (), Obstacle.NOT_AT_REST)
+    there = at_random(field, prime, f"darboux {integrals.degree}")
     before = [(weight, f, cofactor_of(field, f)) for weight, f in known]
-    search = DarbouxSearch(found, there, [DarbouxPolynomial(f, w, k) for w, f, k in before if k is not None and k != 0])
+    search = DarbouxSearch(
+        integrals, there, [DarbouxPolynomial(f, w, k) for w, f, k in before if k is not None and k != 0]
+    )
     counts: list[DarbouxCount] = []
-    for weight in range(1, found.degree + 1):
+    for weight in range(1, integrals.degree + 1):
         most = weight // min(weights)
         choices = [_sums(mean or [], most, field.context.constant(0)) for mean in means]
         number = 1
         for choice in choices:
             number *= len(choice)
         if number > MOST_COFACTORS:
-            return DarbouxPolynomials(found.degree, weights, tuple(search.found), tuple(counts), Obstacle.TOO_MANY)
+            return DarbouxPolynomials(integrals.degree, weights, tuple(search.found), tuple(counts), Obstacle.TOO_MANY)
         cofactors = [
-            sum((c * monomial(field, one) for c, one in zip(values, powers, strict=True)), field.context.constant(0))
+            sum(
+                (c * monomial(field, power) for c, power in zip(values, powers, strict=True)), field.context.constant(0)
+            )
             for values in product(*choices)
         ]
         counts += [search.of(weight, cofactor) for cofactor in cofactors if cofactor != 0]
-    return DarbouxPolynomials(found.degree, weights, tuple(search.found), tuple(counts), None)
+    return DarbouxPolynomials(integrals.degree, weights, tuple(search.found), tuple(counts), None)
 
 
 @dataclass(frozen=True)
@@ -245,11 +249,11 @@ def rest_means(field: PolynomialField, power: Exponents) -> list[Any] | None:
     factors = rest_factors(field, power)
     if factors is None:
         return None
-    found: list[Any] = []
+    means: list[Any] = []
     for factor in factors:
-        if factor.mean != 0 and factor.mean not in found:
-            found.append(factor.mean)
-    return found
+        if factor.mean != 0 and factor.mean not in means:
+            means.append(factor.mean)
+    return means
 
 
 def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] | None:
@@ -272,12 +276,12 @@ def rest_factors(field: PolynomialField, power: Exponents) -> list[RestFactor] |
         ),
         wide.constant(0),
     )
-    found = []
+    factors = []
     for factor, _ in irreducible_factors(characteristic)[1]:
         parts = coefficients_in(factor, 0)  # the last a number: the characteristic polynomial is monic
         scaled = [c / parts[-1].leading_coefficient() for c in parts]
-        found.append(RestFactor(tuple(c.compose(context.constant(0), *context.gens(), ctx=context) for c in scaled)))
-    return found
+        factors.append(RestFactor(tuple(c.compose(context.constant(0), *context.gens(), ctx=context) for c in scaled)))
+    return factors
 
 
 def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:
@@ -298,7 +302,7 @@ def _sums(means: Sequence[Any], most: int, zero: Any) -> list[Any]:
 class _Factor:
     """A Darboux polynomial that is known, and itself modulo the prime."""
 
-    one: DarbouxPolynomial
+    polynomial: DarbouxPolynomial
     terms: Terms
 
 
@@ -315,7 +319,7 @@ class DarbouxSearch:
 
     @property
     def found(self) -> list[DarbouxPolynomial]:
-        return [factor.one for factor in self.factors[self.before :]]
+        return [factor.polynomial for factor in self.factors[self.before :]]
 
     def of(self, weight: int, cofactor: Any) -> DarbouxCount:
         """What there is for one cofactor, found and counted."""
@@ -341,8 +345,8 @@ class DarbouxSearch:
     def products(self, weight: int, cofactor: Any) -> Iterator[Terms]:
         """Products of those that are known and of integrals: of that weight, with that sum of cofactors."""
         prime, count = self.there.prime, len(self.field.variables)
-        one: Terms = {(0,) * count: 1}
-        for left, terms in self._multiples(0, weight, cofactor, one):
+        unit: Terms = {(0,) * count: 1}
+        for left, terms in self._multiples(0, weight, cofactor, unit):
             for rest in products(self.integrals, left, True, prime, count, lambda terms: terms):
                 yield times(terms, rest, prime)
 
@@ -352,20 +356,20 @@ class DarbouxSearch:
             yield left, terms
         for k in range(first, len(self.factors)):
             factor = self.factors[k]
-            if factor.one.weight <= left:
+            if factor.polynomial.weight <= left:
                 yield from self._multiples(
                     k,
-                    left - factor.one.weight,
-                    cofactor - factor.one.cofactor,
+                    left - factor.polynomial.weight,
+                    cofactor - factor.polynomial.cofactor,
                     times(terms, factor.terms, self.there.prime),
                 )
 
 
 def _less(a: Terms, b: Terms, prime: int) -> Terms:
-    found = dict(a)
+    difference = dict(a)
     for m, c in b.items():
-        found[m] = (found.get(m, 0) - c) % prime
-    return {m: c for m, c in found.items() if c}
+        difference[m] = (difference.get(m, 0) - c) % prime
+    return {m: c for m, c in difference.items() if c}
 
 
 def cofactor_of(field: PolynomialField, f: Any) -> Any | None:
@@ -416,7 +420,7 @@ def darboux_along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> 
     search = _Drops(usual, general)
     search.run()
     specials, undecided = [], []
-    for value in sorted(one for one in search.values if low <= one <= high):
+    for value in sorted(value for value in search.values if low <= value <= high):
         try:
             special = at_value(usual, general, value)
         except ZeroDivisionError:
@@ -499,7 +503,7 @@ class _Drops:
         orbits = []
         for weight in range(1, self.usual.degree + 1):
             most = weight // min(grading.weights)
-            choices = [self._sums(one, most) for one in listed]
+            choices = [self._sums(eigenvalues, most) for eigenvalues in listed]
             number = 1
             for choice in choices:
                 number *= len(choice)
@@ -592,7 +596,7 @@ class _Drops:
         def images(there: ModularField) -> list[Terms]:
             prime = there.prime
             squares = [_constant(there, self.discriminants[j]) for j in places]
-            found = []
+            image_columns = []
             for m in columns:
                 rate = there.derivative(m)
                 for mask in range(1 << len(places)):
@@ -607,8 +611,8 @@ class _Drops:
                         for other, value in parts:
                             key = (*moved, other)
                             image[key] = (image.get(key, 0) - value) % prime
-                    found.append({key: c for key, c in image.items() if c})
-            return found
+                    image_columns.append({key: c for key, c in image.items() if c})
+            return image_columns
 
         return images
 

@@ -97,15 +97,15 @@ def dropped(line: Line, build: Build, extra: int = 0) -> nmod_poly:
     entry = max(line.degree(), extra)
     total = nmod_poly([1], line.prime)
     parts = [(part, _Part(somewhere[0], images, part, line.prime, source)) for part in coupled(images)]
-    parts = [(part, one) for part, one in parts if one.rank]
-    if sum((one.rank * entry + 1) * len(part) * one.height for part, one in parts) > MOST_WORK:
+    parts = [(part, block) for part, block in parts if block.rank]
+    if sum((block.rank * entry + 1) * len(part) * block.height for part, block in parts) > MOST_WORK:
         message = Message("the minors of [[count]] monomials along a line take too long", count=count)
         raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
-    most = max((one.rank * entry for _, one in parts), default=0)
+    most = max((block.rank * entry for _, block in parts), default=0)
     values: list[list[tuple[int, int]]] = [[] for _ in parts]
     shift = source.randrange(line.prime)  # at small numbers leading coefficients may vanish
     for t in range(shift + 1, shift + most + 2):
-        if all(one.rank * entry + 1 <= len(done) for (_, one), done in zip(parts, values, strict=True)):
+        if all(block.rank * entry + 1 <= len(done) for (_, block), done in zip(parts, values, strict=True)):
             break
         here = build(line.at(t))
         for (_, part), done in zip(parts, values, strict=True):
@@ -156,10 +156,10 @@ def interpolated(values: Sequence[int], shift: int, prime: int) -> nmod_poly:
         inverse = nmod(1, prime) / nmod(k, prime)
         for j in range(len(table) - 1, k - 1, -1):
             table[j] = (table[j] - table[j - 1]) * inverse
-    found = nmod_poly([0], prime)
+    polynomial = nmod_poly([0], prime)
     for k in range(len(table) - 1, -1, -1):
-        found = found * nmod_poly([-(shift + k + 1) % prime, 1], prime) + nmod_poly([int(table[k])], prime)
-    return found
+        polynomial = polynomial * nmod_poly([-(shift + k + 1) % prime, 1], prime) + nmod_poly([int(table[k])], prime)
+    return polynomial
 
 
 def rational(value: int, prime: int) -> Fraction | None:
@@ -217,8 +217,12 @@ class Excess:
 
     def _known(self, block: Block) -> list[tuple[int, Any]]:
         """Weights and polynomials of what holds for almost all parameters."""
-        found = [(one.weight, one.polynomial) for k, one in enumerate(self.usual.generators) if k != block.level]
-        return found if block.level is None else [*found, *self.on_levels[block.level].integrals]
+        general = [
+            (generator.weight, generator.polynomial)
+            for k, generator in enumerate(self.usual.generators)
+            if k != block.level
+        ]
+        return general if block.level is None else [*general, *self.on_levels[block.level].integrals]
 
     def build(self, block: Block) -> Build:
         """The columns of the matrix whose kernel the integrals of a block are."""
@@ -271,7 +275,7 @@ class Excess:
         weights, usual = self.usual.grading.weights, self.usual.generators
         if block.level is None:
             columns = list(monomials(weights, block.weight))
-            pairs = [(one.weight, there.terms(one.polynomial)) for one in usual]
+            pairs = [(generator.weight, there.terms(generator.polynomial)) for generator in usual]
             spanned = products(pairs, block.weight, True, there.prime, len(weights), lambda terms: terms)
             self.columns += len(columns)
             return self.dimension(there, block) - len(echelon(spanned, columns, there.prime)[0])
@@ -309,7 +313,7 @@ class Excess:
                 return spanned
             zero = self._zero(there, block.level)
             scale = pow(zero.terms[zero.leading], steps, there.prime)
-            rests = [remainder(one, zero.terms, there.prime) for one in spanned]
+            rests = [remainder(terms, zero.terms, there.prime) for terms in spanned]
             return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
         return images, most + (0 if block.level is None else steps * degree(usual[block.level].polynomial))
@@ -344,13 +348,15 @@ class Excess:
             multiples = [monomial(field, m) * level for m in cofactors(usual, block.weight, zero)]
         if len(columns) + len(multiples) > MOST_EXACT:
             return None
-        found = [field.derivative(monomial(field, m)).to_dict() for m in columns] + [f.to_dict() for f in multiples]
-        rows = {key: k for k, key in enumerate(dict.fromkeys(key for one in found for key in one))}
-        table = [[fmpq(0)] * max(1, len(rows)) for _ in found]
-        for k, one in enumerate(found):
+        image_terms = [field.derivative(monomial(field, m)).to_dict() for m in columns] + [
+            f.to_dict() for f in multiples
+        ]
+        rows = {key: k for k, key in enumerate(dict.fromkeys(key for terms in image_terms for key in terms))}
+        table = [[fmpq(0)] * max(1, len(rows)) for _ in image_terms]
+        for k, one in enumerate(image_terms):
             for key, c in one.items():
                 table[k][rows[key]] = c
-        return len(found) - int(fmpq_mat(table).rank()) if found else 0
+        return len(image_terms) - int(fmpq_mat(table).rank()) if image_terms else 0
 
     def signature(self, there: ModularField) -> tuple[int, ...]:
         """The excess of every block."""
@@ -361,10 +367,10 @@ class Excess:
         return (0,) * len(self.blocks)
 
     def _zero(self, there: ModularField, level: int) -> Level:
-        one = self.usual.generators[level]
-        return Level(one.polynomial, one.weight, there.terms(one.polynomial))
+        generator = self.usual.generators[level]
+        return Level(generator.polynomial, generator.weight, there.terms(generator.polynomial))
 
 
-def larger(one: Sequence[int], other: Sequence[int]) -> bool:
+def larger(first: Sequence[int], second: Sequence[int]) -> bool:
     """Whether some entry of the first is larger."""
-    return any(a > b for a, b in zip(one, other, strict=True))
+    return any(a > b for a, b in zip(first, second, strict=True))

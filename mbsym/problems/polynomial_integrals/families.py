@@ -49,8 +49,8 @@ class Family:
     equal: tuple[tuple[str, str], ...]
 
     def put(self, values: dict[str, int]) -> dict[str, int]:
-        found = dict(values) | dict.fromkeys(self.zero, 0)
-        return found | {name: found[other] for name, other in self.equal}
+        completed = dict(values) | dict.fromkeys(self.zero, 0)
+        return completed | {name: completed[other] for name, other in self.equal}
 
     @property
     def bound(self) -> frozenset[str]:
@@ -65,20 +65,20 @@ def families(field: PolynomialField, positive: Sequence[str]) -> Iterator[Family
     """
     able = [name for name in field.parameters if name not in positive]
     parts, others = _alike(field, positive), _alike(field, able)
-    found: list[Family] = []
+    listed: list[Family] = []
     further: list[Family] = []
     for count in range(len(able) + 1):
         for zero in combinations(able, count):
             left = [[name for name in part if name not in zero] for part in others]
             for equal in product(*map(_partitions, parts)):
-                found.append(Family(zero, sum(equal, ())))
+                listed.append(Family(zero, sum(equal, ())))
                 if len(further) <= FEW_FAMILIES:
-                    among = (sum(one, ()) for one in product(*map(_partitions, left)))
-                    further += [Family(zero, found[-1].equal + one) for one in among if one]
-            if len(found) > 4 * MOST_FAMILIES:
+                    among = (sum(groups, ()) for groups in product(*map(_partitions, left)))
+                    further += [Family(zero, listed[-1].equal + pairs) for pairs in among if pairs]
+            if len(listed) > 4 * MOST_FAMILIES:
                 break
-    yield from sorted(found, key=_size)
-    if len(found) + len(further) <= FEW_FAMILIES:
+    yield from sorted(listed, key=_size)
+    if len(listed) + len(further) <= FEW_FAMILIES:
         yield from sorted(further, key=_size)
 
 
@@ -103,9 +103,9 @@ def _partitions(names: Sequence[str]) -> list[tuple[tuple[str, str], ...]]:
     partitions: list[tuple[tuple[str, str], ...]] = [()]
     for k, name in enumerate(names):
         further = []
-        for one in partitions:
-            taken = {a for a, _ in one}
-            further += [(*one, (name, other)) for other in names[:k] if other not in taken]
+        for partition in partitions:
+            taken = {a for a, _ in partition}
+            further += [(*partition, (name, other)) for other in names[:k] if other not in taken]
         partitions += further
     return partitions
 
@@ -207,16 +207,16 @@ class _Search:
             g = dropped(line, self.excess.build(block), self.excess.extra(block))
             for root, _ in roots(g):
                 zeros.setdefault(root, block)
-        found = []
+        points = []
         for root in sorted(zeros):
             there = line.at(root)
             if there.terms(self.field.denominator):
                 signature = self.excess.signature(there)
                 if larger(signature, tuple(map(max, usual, self._implied(there)))):
-                    found.append((there, signature))
+                    points.append((there, signature))
                     if zeros[root] not in self._blocks:
                         self._blocks.append(zeros[root])
-        return found
+        return points
 
     def _through(self, free: Sequence[str], those: Sequence[ModularField], degree: int) -> list[Any]:
         """The irreducible factors of the polynomial of a degree in the free parameters that has all points as zeros."""
@@ -284,10 +284,10 @@ class _Search:
 
 
 def _value(exponents: Sequence[int], numbers: Sequence[int], prime: int) -> int:
-    found = 1
+    value = 1
     for x, power in zip(numbers, exponents, strict=True):
-        found = found * pow(x, power, prime) % prime
-    return found
+        value = value * pow(x, power, prime) % prime
+    return value
 
 
 @dataclass(frozen=True)
@@ -311,8 +311,8 @@ def _images(field: PolynomialField, family: Family, f: Any | None) -> tuple[Imag
             return None, None
         chosen = min(able, key=lambda k: (len(f.derivative(k)), -k))
     gone = set(family.bound) | ({names[chosen]} if chosen is not None else set())
-    kept = [name for name in names if name not in gone]
-    context = fmpq_mpoly_ctx.get(kept, field.context.ordering())
+    remaining = [name for name in names if name not in gone]
+    context = fmpq_mpoly_ctx.get(remaining, field.context.ordering())
     equal = dict(family.equal)
 
     def plain(name: str) -> Any:
@@ -320,14 +320,14 @@ def _images(field: PolynomialField, family: Family, f: Any | None) -> tuple[Imag
             return context.constant(0)
         while name in equal:
             name = equal[name]
-        return context.gen(kept.index(name)) if name in kept else None
+        return context.gen(remaining.index(name)) if name in remaining else None
 
     images = [plain(name) for name in names]
     if f is None or chosen is None:
         return Images(images, None, None, -1), context
-    one = [context.constant(0) if x is None else x for x in images]
-    slope = f.derivative(chosen).compose(*one, ctx=context)
-    rest = f.compose(*one, ctx=context)  # the chosen one is put to zero here
+    filled = [context.constant(0) if x is None else x for x in images]
+    slope = f.derivative(chosen).compose(*filled, ctx=context)
+    rest = f.compose(*filled, ctx=context)  # the chosen one is put to zero here
     for k, name in enumerate(names):
         while name in equal:
             name = equal[name]
@@ -349,11 +349,11 @@ def _composed(p: Any, images: Images, context: Any) -> tuple[Any, int]:
         table = parts.setdefault(power, {})
         table[left] = table.get(left, 0) + c
     most = max(parts, default=0)
-    one = [context.constant(1) if x is None else x for x in places]
+    filled = [context.constant(1) if x is None else x for x in places]
     total = context.constant(0)
     for power, terms in parts.items():
         total += (
-            p.context().from_dict(terms).compose(*one, ctx=context)
+            p.context().from_dict(terms).compose(*filled, ctx=context)
             * images.top**power
             * images.bottom ** (most - power)
         )

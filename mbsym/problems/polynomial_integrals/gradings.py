@@ -40,8 +40,8 @@ def are_frames(field: PolynomialField, weights: Sequence[int]) -> bool:
     """Whether the relations are those of two such vectors of one weight, and constant by themselves."""
     if len(field.relations) != 3 or any(field.derivative(r) != 0 for r in field.relations):
         return False
-    found = _vectors(field)
-    return found is not None and len({weights[k] for vector in found for k in vector}) == 1
+    vectors = _vectors(field)
+    return vectors is not None and len({weights[k] for vector in vectors for k in vector}) == 1
 
 
 def _vectors(field: PolynomialField) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
@@ -96,21 +96,21 @@ def beyond(there: ModularField, weights: tuple[int, ...], rise: int, weight: int
     def rank(terms: Sequence[Terms]) -> int:
         return int(matrix_of(terms, there.prime).rank()) if terms else 0
 
-    kept = len(columns) - (rank([*images, *above]) - rank(above))  # F with D F in J
-    return max(0, kept - rank([*products, *here]))
+    dimension = len(columns) - (rank([*images, *above]) - rank(above))  # F with D F in J
+    return max(0, dimension - rank([*products, *here]))
 
 
 def state(there: ModularField) -> list[int] | None:
     """A random state with |b| = |c| and (b, c) = 0: columns of a quaternion's matrix; None of other relations."""
-    found = _vectors(there.field)
-    if found is None:
+    vectors = _vectors(there.field)
+    if vectors is None:
         return None
     prime, source = there.prime, random.Random(f"frames {there.prime}")
     numbers: list[Any] = [source.randrange(1, prime) for _ in there.field.variables]
     s, x, y, z = (source.randrange(1, prime) for _ in range(4))
     first = (s * s + x * x - y * y - z * z, 2 * (x * y + s * z), 2 * (x * z - s * y))
     second = (2 * (x * y - s * z), s * s - x * x + y * y - z * z, 2 * (y * z + s * x))
-    for places, values in zip(found, (first, second), strict=True):
+    for places, values in zip(vectors, (first, second), strict=True):
         for k, value in zip(places, values, strict=True):
             numbers[k] = value % prime
     return numbers
@@ -141,15 +141,17 @@ class Grading:
         return sum(w * a for w, a in zip(self.weights, exponents, strict=True))
 
 
-def grading(field: PolynomialField, kinds: Sequence[Sequence[str]], given: Sequence[int] | None = None) -> Grading:
+def grading(field: PolynomialField, kinds: Sequence[Sequence[str]], fixed: Sequence[int] | None = None) -> Grading:
     """The smallest weights, equal within each of ``kinds``, under which the field is quasi-homogeneous, or those given.
 
     Where there are none: 1 for the first kind, the speeds, and 2 for unit vectors, as the caller orders them.
     """
-    if given is not None:
-        return _judged(field, tuple(given))
+    if fixed is not None:
+        return _judged(field, tuple(fixed))
     if len(kinds) <= MOST_KINDS:
-        choices = sorted(product(range(1, MOST_WEIGHT + 1), repeat=len(kinds)), key=lambda one: (sum(one), one))
+        choices = sorted(
+            product(range(1, MOST_WEIGHT + 1), repeat=len(kinds)), key=lambda choice: (sum(choice), choice)
+        )
         for choice in choices:
             weights = _spread(field, kinds, choice)
             if rise(field, weights) is not None:
@@ -171,12 +173,12 @@ def _judged(field: PolynomialField, weights: tuple[int, ...]) -> Grading:
 def rise(field: PolynomialField, weights: Sequence[int]) -> int | None:
     """k, where every term of x'_i has the weight w_i + k; None where they differ; 0 where all x'_i vanish."""
     count = len(field.parameters)
-    found = {
+    rises = {
         sum(w * int(a) for w, a in zip(weights, monomial[count:], strict=True)) - own
         for p, own in zip(field.numerators, weights, strict=True)
         for monomial in p.monoms()
     }
-    return None if len(found) > 1 else found.pop() if found else 0
+    return None if len(rises) > 1 else rises.pop() if rises else 0
 
 
 def _may_be_left_out(field: PolynomialField, weights: Sequence[int]) -> bool:
@@ -206,12 +208,12 @@ def homogeneous_parts(field: PolynomialField, f: Any, grading: Grading) -> list[
     classes: dict[int, list[int]] = {}
     for weight in parts:
         classes.setdefault(weight % step, []).append(weight)
-    found = []
+    sums = []
     for weights in classes.values():
         most = max(weights)
         total = field.context.constant(0)
         for weight in weights:
             total += parts[weight] * (norm[step] / scale) ** ((most - weight) // step)
         if total != 0:
-            found.append((most, total))
-    return sorted(found, key=lambda one: one[0])
+            sums.append((most, total))
+    return sorted(sums, key=lambda pair: pair[0])

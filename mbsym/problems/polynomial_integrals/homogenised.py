@@ -63,7 +63,7 @@ def cases_of(
     name = larger.field.variables[-1]
     special = cases(larger, positive, budget)
     down = _Down(name)
-    return replace(special, usual=usual, cases=tuple(down.case(one) for one in special.cases))
+    return replace(special, usual=usual, cases=tuple(down.case(case) for case in special.cases))
 
 
 def along_of(
@@ -82,20 +82,20 @@ def along_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         raise NoClosedForm("special values are looked for where there is one unit vector or angle at most, and no root")
-    found = along(larger, low, high)
+    listing = along(larger, low, high)
     down = _Down(larger.field.variables[-1])
-    values = [_new_at_one(larger, value, down) for value in found.values]
-    kept = tuple(value for value in values if value.integrals or value.levels)
-    return replace(found, values=kept, weights=larger.grading.weights[:-1])
+    values = [_new_at_one(larger, value, down) for value in listing.values]
+    fresh = tuple(value for value in values if value.integrals or value.levels)
+    return replace(listing, values=fresh, weights=larger.grading.weights[:-1])
 
 
-def _new_at_one(larger: result.PolynomialIntegrals, one: result.Special, down: _Down) -> result.Special:
+def _new_at_one(larger: result.PolynomialIntegrals, raised: result.Special, down: _Down) -> result.Special:
     """What was found at a value, without what becomes a polynomial in the integrals in general where h is 1."""
-    value = one.field.context.constant(rationals.exact(one.value) if one.value is not None else 0)
-    images = [value, *one.field.context.gens()]
-    special = down.special(one)
+    value = raised.field.context.constant(rationals.exact(raised.value) if raised.value is not None else 0)
+    images = [value, *raised.field.context.gens()]
+    special = down.special(raised)
     there = at_random(special.field, PRIMES[0], "values at one")
-    general = [down.polynomial(f.polynomial.compose(*images, ctx=one.field.context)) for f in larger.generators]
+    general = [down.polynomial(f.polynomial.compose(*images, ctx=raised.field.context)) for f in larger.generators]
     pairs = [(f.weight, there.terms(p)) for f, p in zip(larger.generators, general, strict=True)]
     pairs = [(weight, terms) for weight, terms in pairs if any(any(m) for m in terms)]
     fresh = tuple(
@@ -103,7 +103,7 @@ def _new_at_one(larger: result.PolynomialIntegrals, one: result.Special, down: _
     )
     pairs += [(w, there.terms(f)) for w, f in fresh]
     on = []
-    for own, level in zip(one.levels, special.levels, strict=True):
+    for own, level in zip(raised.levels, special.levels, strict=True):
         zero = there.terms(general[larger.generators.index(own.level)])
         left = [(w, f) for w, f in level.integrals if not _spanned(there, there.terms(f), zero, pairs, larger.degree)]
         if left:
@@ -166,9 +166,9 @@ def other_levels_of(
     if larger is None:
         return None
     (unity,) = [generator for generator in larger.generators if generator.name == result.UNITY]
-    found = other_levels(larger, unity)
+    outcome = other_levels(larger, unity)
     down = _Down(larger.field.variables[-1])
-    return replace(found, levels=tuple(map(down.other, found.levels)), weights=larger.grading.weights[:-1])
+    return replace(outcome, levels=tuple(map(down.other, outcome.levels)), weights=larger.grading.weights[:-1])
 
 
 def _irreducible(generator: result.Generator) -> bool:
@@ -184,7 +184,9 @@ def _spanned(
     def reduce(terms: Terms) -> Terms:
         return terms if zero is None else remainder(terms, zero, there.prime)
 
-    rows = [reduce(one) for one in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)]
+    rows = [
+        reduce(terms) for terms in products(pairs, 2 * degree, False, there.prime, len(there.field.variables), reduce)
+    ]
     columns = sorted({m for row in (*rows, f) for m in row} | set(reduce(f)), reverse=True)
     before, _ = echelon(rows, columns, there.prime)
     return len(echelon([*before, reduce(f)], columns, there.prime)[0]) == len(before)
@@ -222,16 +224,16 @@ def darboux_along_of(
     larger = _larger(usual, kinds, known)
     if larger is None:
         return darboux_along(usual, low, high)
-    found = darboux_along(larger, low, high)
+    listing = darboux_along(larger, low, high)
     down = _Down(larger.field.variables[-1])
     return replace(
-        found,
-        general=down.darboux(found.general),
+        listing,
+        general=down.darboux(listing.general),
         values=tuple(
             replace(value, field=down.field(value.field), polynomials=tuple(map(down.factor, value.polynomials)))
-            for value in found.values
+            for value in listing.values
         ),
-        square=tuple(map(down.polynomial, found.square)),
+        square=tuple(map(down.polynomial, listing.square)),
     )
 
 
@@ -243,14 +245,14 @@ def _larger(
     usual: result.PolynomialIntegrals, kinds: Sequence[Sequence[str]], known: Sequence[tuple[str, Any]]
 ) -> result.PolynomialIntegrals | None:
     """The integrals of the larger field; None where its relations are not integrals by their homogeneous parts."""
-    field, found = homogenised(usual.field, kinds)
-    if field.relations and not found.free:
+    field, larger_grading = homogenised(usual.field, kinds)
+    if field.relations and not larger_grading.free:
         return None
     listed = [(result.UNITY, field.generator(field.variables[-1]))]
     for title, f in known:
         constant = any(not any(m[len(field.parameters) :]) for m in f.monoms())
-        listed.append((title + WITHOUT if constant else title, _filled(field, f, found.weights)))
-    return polynomial_integrals(field, found, usual.degree, listed)
+        listed.append((title + WITHOUT if constant else title, _filled(field, f, larger_grading.weights)))
+    return polynomial_integrals(field, larger_grading, usual.degree, listed)
 
 
 def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple[PolynomialField, Grading]:
@@ -288,8 +290,8 @@ def homogenised(field: PolynomialField, kinds: Sequence[Sequence[str]]) -> tuple
     )
     numerators = _raised(larger, field.numerators, weights)
     larger = replace(larger, numerators=(*numerators, context.constant(0)))
-    found = grading(larger, [*kinds, (name,)], (*weights, 1))
-    return larger, found
+    larger_grading = grading(larger, [*kinds, (name,)], (*weights, 1))
+    return larger, larger_grading
 
 
 def _up(context: Any, p: Any) -> Any:
@@ -338,20 +340,24 @@ class _Down:
             relations=tuple(map(self.polynomial, field.relations)),
         )
 
-    def darboux(self, found: result.DarbouxPolynomials) -> result.DarbouxPolynomials:
+    def darboux(self, original: result.DarbouxPolynomials) -> result.DarbouxPolynomials:
         return replace(
-            found,
-            weights=found.weights[:-1],
-            polynomials=tuple(map(self.factor, found.polynomials)),
-            counts=tuple(replace(count, cofactor=self.polynomial(count.cofactor)) for count in found.counts),
+            original,
+            weights=original.weights[:-1],
+            polynomials=tuple(map(self.factor, original.polynomials)),
+            counts=tuple(replace(count, cofactor=self.polynomial(count.cofactor)) for count in original.counts),
         )
 
-    def other(self, one: result.OtherLevel) -> result.OtherLevel:
-        values = tuple(replace(x, integrals=tuple((w, self.polynomial(f)) for w, f in x.integrals)) for x in one.values)
-        return replace(one, level=self.generator(one.level), values=values)
+    def other(self, other_level: result.OtherLevel) -> result.OtherLevel:
+        values = tuple(
+            replace(x, integrals=tuple((w, self.polynomial(f)) for w, f in x.integrals)) for x in other_level.values
+        )
+        return replace(other_level, level=self.generator(other_level.level), values=values)
 
-    def factor(self, one: result.DarbouxPolynomial) -> result.DarbouxPolynomial:
-        return replace(one, polynomial=self.polynomial(one.polynomial), cofactor=self.polynomial(one.cofactor))
+    def factor(self, polynomial: result.DarbouxPolynomial) -> result.DarbouxPolynomial:
+        return replace(
+            polynomial, polynomial=self.polynomial(polynomial.polynomial), cofactor=self.polynomial(polynomial.cofactor)
+        )
 
     def special(self, one: result.Special) -> result.Special:
         smaller = self.field(one.field)

@@ -45,39 +45,43 @@ class Level:
         return max(self.terms)
 
 
-def levels(found: PolynomialIntegrals) -> tuple[Generator, ...]:
+def levels(integrals: PolynomialIntegrals) -> tuple[Generator, ...]:
     """The integrals whose vanishing is looked at: all but norms, of which no state makes the first zero.
 
     None where the field is not quasi-homogeneous: parts of several weights are not told apart then.
     """
-    if not found.grading.homogeneous or (found.field.relations and not found.grading.free):
+    if not integrals.grading.homogeneous or (integrals.field.relations and not integrals.grading.free):
         return ()
-    return tuple(generator for generator in found.generators if not generator.by_itself and generator.name != UNITY)
+    return tuple(generator for generator in integrals.generators if not generator.by_itself and generator.name != UNITY)
 
 
-def on_level(found: PolynomialIntegrals, level: Generator) -> OnLevel:
-    """The integrals of weight up to ``found.degree`` on  V = 0  that are no polynomials in those that hold everywhere.
+def on_level(integrals: PolynomialIntegrals, level: Generator) -> OnLevel:
+    """The integrals of weight up to ``integrals.degree`` on  V = 0  that are no polynomials in those of everywhere.
 
     Raises NoClosedForm where more monomials are coupled than the bounds allow.
     """
-    field, grading = found.field, found.grading
-    there = at_random(field, PRIMES[0], f"level {found.degree}")
+    field, grading = integrals.field, integrals.grading
+    there = at_random(field, PRIMES[0], f"level {integrals.degree}")
     zero = Level(level.polynomial, level.weight, there.terms(level.polynomial))
-    known = [(one.weight, there.terms(one.polynomial)) for one in found.generators if one is not level]
+    known = [
+        (generator.weight, there.terms(generator.polynomial))
+        for generator in integrals.generators
+        if generator is not level
+    ]
     fresh: list[tuple[int, Any]] = []
     counts = []
-    for weight in range(1, found.degree + 1):
+    for weight in range(1, integrals.degree + 1):
         columns = standard(grading.weights, weight, zero)
-        most = kernel_on(there, columns, cofactors(found, weight, zero), zero)
+        most = kernel_on(there, columns, cofactors(integrals, weight, zero), zero)
 
         def reduce(terms: Terms) -> Terms:
             return remainder(terms, zero.terms, there.prime)
 
         spanned = products(known, weight, True, there.prime, len(field.variables), reduce)
-        rows, _ = echelon([reduce(one) for one in spanned], columns, there.prime)
+        rows, _ = echelon([reduce(terms) for terms in spanned], columns, there.prime)
         if len(most) > len(rows):
             for terms, leading in sparsest(rows, most, columns, there.prime):
-                f = _lifted(found, there, zero, terms, leading)
+                f = _lifted(integrals, there, zero, terms, leading)
                 if f is not None:
                     own = there.terms(f)
                     rows, _ = echelon([*rows, own], columns, there.prime)
@@ -93,19 +97,19 @@ def standard(weights: tuple[int, ...], weight: int, zero: Level) -> list[Exponen
     return [m for m in monomials(weights, weight) if not all(a >= b for a, b in zip(m, top, strict=True))]
 
 
-def cofactors(found: PolynomialIntegrals, weight: int, zero: Level) -> list[Exponents]:
+def cofactors(integrals: PolynomialIntegrals, weight: int, zero: Level) -> list[Exponents]:
     """The monomials of K."""
-    rise = found.grading.rise or 0
+    rise = integrals.grading.rise or 0
     left = weight + rise - zero.weight
-    return list(monomials(found.grading.weights, left)) if left >= 0 else []
+    return list(monomials(integrals.grading.weights, left)) if left >= 0 else []
 
 
 def images_on(
     there: ModularField, columns: Sequence[Exponents], cofactor: Sequence[Exponents], zero: Terms
 ) -> list[Terms]:
     """The derivatives of the columns, then -x^b V."""
-    found = [there.derivative(column) for column in columns]
-    return found + [times({one: there.prime - 1}, zero, there.prime) for one in cofactor]
+    images = [there.derivative(column) for column in columns]
+    return images + [times({exponents: there.prime - 1}, zero, there.prime) for exponents in cofactor]
 
 
 def kernel_on(
@@ -117,17 +121,17 @@ def kernel_on(
     return [{columns[k]: c for k, c in vector.items() if k < count} for vector in vectors]
 
 
-def _lifted(found: PolynomialIntegrals, there: ModularField, zero: Level, terms: Terms, leading: Exponents) -> Any:
-    weight = found.grading.of(leading)
-    cofactor = cofactors(found, weight, zero)
+def _lifted(integrals: PolynomialIntegrals, there: ModularField, zero: Level, terms: Terms, leading: Exponents) -> Any:
+    weight = integrals.grading.of(leading)
+    cofactor = cofactors(integrals, weight, zero)
     images = [there.derivative(m) for m in terms]
     total: Terms = {}
     for (_, c), image in zip(terms.items(), images, strict=True):
         for m, d in image.items():
             total[m] = (total.get(m, 0) + c * d) % there.prime
-    multiples = [times({one: 1}, zero.terms, there.prime) for one in cofactor]
+    multiples = [times({exponents: 1}, zero.terms, there.prime) for exponents in cofactor]
     (vector, *_) = [v for v in kernel_of([total, *multiples], there.prime) if 0 in v] or [{}]
     used = [cofactor[k - 1] for k in vector if k]
     with suppress(NoClosedForm):  # too long to be written: the count of this weight stays incomplete
-        return lifted(found.field, list(terms), False, leading, zero.polynomial, used)
+        return lifted(integrals.field, list(terms), False, leading, zero.polynomial, used)
     return None

@@ -57,26 +57,26 @@ class ModularField:
     def _at(self, apart: Sequence[Term]) -> Terms:
         prime = self.prime
         numbers = [self.values[name] for name in self.field.parameters]
-        found: dict[Exponents, int] = {}
+        terms: dict[Exponents, int] = {}
         for key, numerator, denominator, powers in apart:
             value = numerator if denominator == 1 else numerator * pow(denominator, -1, prime)
             for k, power in powers:
                 value = value * (numbers[k] if power == 1 else pow(numbers[k], power, prime)) % prime
-            found[key] = (found.get(key, 0) + value) % prime
-        return {key: value for key, value in found.items() if value}
+            terms[key] = (terms.get(key, 0) + value) % prime
+        return {key: value for key, value in terms.items() if value}
 
     def derivative(self, monomial: Exponents) -> Terms:
         """denominator * d(x^a)/dt."""
         prime = self.prime
-        found: dict[Exponents, int] = {}
+        terms: dict[Exponents, int] = {}
         for k, power in enumerate(monomial):
             if not power:
                 continue
             base = (*monomial[:k], power - 1, *monomial[k + 1 :])
             for exponents, c in self.slopes[k]:
                 key = tuple(map(int.__add__, base, exponents))
-                found[key] = (found.get(key, 0) + power * c) % prime
-        return {key: value for key, value in found.items() if value}
+                terms[key] = (terms.get(key, 0) + power * c) % prime
+        return {key: value for key, value in terms.items() if value}
 
     @cached_property
     def rules(self) -> tuple[tuple[Exponents, Terms], ...]:
@@ -132,12 +132,12 @@ def _reduced(terms: Terms, rules: Sequence[tuple[Exponents, Terms]], prime: int)
     done = {monomial: c for monomial, c in terms.items() if monomial not in todo}
     while todo:
         monomial, c = todo.popitem()
-        found = rule(monomial)
-        if found is None:
+        rewriting = rule(monomial)
+        if rewriting is None:
             done[monomial] = (done.get(monomial, 0) + c) % prime
         elif c:
-            rest = tuple(map(int.__sub__, monomial, found[0]))
-            for m, d in found[1].items():
+            rest = tuple(map(int.__sub__, monomial, rewriting[0]))
+            for m, d in rewriting[1].items():
                 key = tuple(map(int.__add__, rest, m))
                 todo[key] = (todo.get(key, 0) + c * d) % prime
     return {m: c for m, c in done.items() if c}
@@ -179,9 +179,9 @@ def _monomials(weights: tuple[int, ...], weight: int) -> Iterator[Exponents]:
 def count(weights: Sequence[int], weight: int) -> int:
     """How many monomials of that weight there are, without making them."""
     numbers = [1] + [0] * weight
-    for one in weights:
-        for k in range(one, weight + 1):
-            numbers[k] += numbers[k - one]
+    for own_weight in weights:
+        for k in range(own_weight, weight + 1):
+            numbers[k] += numbers[k - own_weight]
     return numbers[weight]
 
 
@@ -212,7 +212,7 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
 
     Raises NoClosedForm where more of them are coupled than ``MOST_COUPLED``.
     """
-    found: list[dict[int, int]] = []
+    basis: list[dict[int, int]] = []
     left = possible(images)
     for part in coupled([images[k] for k in left]):
         part = [left[k] for k in part]
@@ -225,8 +225,8 @@ def kernel_of(images: Sequence[Terms], prime: int) -> list[dict[int, int]]:
             raise NoClosedForm(message, limit=Limit.DEGREE, remedy=SMALLER)
         matrix = matrix_of([images[k] for k in part], prime)
         for vector in null_space(matrix):
-            found.append({part[k]: c for k, c in enumerate(vector) if c})
-    return found
+            basis.append({part[k]: c for k, c in enumerate(vector) if c})
+    return basis
 
 
 def possible(images: Sequence[Terms]) -> list[int]:
@@ -297,14 +297,14 @@ def echelon(rows: Sequence[Terms], order: Sequence[Exponents], prime: int) -> tu
     """The reduced echelon form of polynomials with respect to an order of monomials, and its pivots."""
     if not rows:
         return [], []
-    matrix = nmod_mat([[row.get(one, 0) for one in order] for row in rows], prime)
+    matrix = nmod_mat([[row.get(exponents, 0) for exponents in order] for row in rows], prime)
     reduced, rank = matrix.rref()
-    found, pivots = [], []
+    reduced_rows, pivots = [], []
     for r in range(rank):
         values = [int(reduced[r, k]) for k in range(len(order))]
-        found.append({one: c for one, c in zip(order, values, strict=True) if c})
-        pivots.append(next(one for one, c in zip(order, values, strict=True) if c))
-    return found, pivots
+        reduced_rows.append({exponents: c for exponents, c in zip(order, values, strict=True) if c})
+        pivots.append(next(exponents for exponents, c in zip(order, values, strict=True) if c))
+    return reduced_rows, pivots
 
 
 # From a kernel modulo a prime to polynomials over QQ(parameters): the few monomials that occur, solved exactly.
@@ -338,14 +338,14 @@ def lifted(
             "an integral has [[count]] monomials, more than [[most]]", count=len(support), most=MOST_SUPPORT
         )
         raise NoClosedForm(message, limit=Limit.TERMS, remedy=SMALLER)
-    order = [one for one in support if one != leading]
+    order = [exponents for exponents in support if exponents != leading]
     columns = [*order, leading]
     images = [field.derivative(monomial(field, column)) for column in columns]
     if factor is not None:
         images = [image - factor * monomial(field, column) for image, column in zip(images, columns, strict=True)]
     if modulo:
         images = [field.reduced(image) for image in images]
-    multiples = [monomial(field, one) * level for one in cofactor]
+    multiples = [monomial(field, exponents) * level for exponents in cofactor]
     equations = _equations(field, [*images[:-1], *multiples, images[-1]])
     solved = _eliminated(field, equations, len(order) + len(multiples))
     if solved is None:
@@ -355,15 +355,15 @@ def lifted(
     for bottom in bottoms:
         common = common * (bottom / bottom.gcd(common))
     total = common * monomial(field, leading)
-    for one, top, bottom in zip(order, tops, bottoms, strict=False):  # those of the cofactor follow
-        total -= top * (common / bottom) * monomial(field, one)
-    found = primitive(field, total)
-    rate = field.derivative(found)
+    for exponents, top, bottom in zip(order, tops, bottoms, strict=False):  # those of the cofactor follow
+        total -= top * (common / bottom) * monomial(field, exponents)
+    polynomial = primitive(field, total)
+    rate = field.derivative(polynomial)
     if factor is not None:
-        return found if rate == factor * found else None
+        return polynomial if rate == factor * polynomial else None
     if level is not None:  # the level is primitive over the parameters: by Gauss' lemma it divides there, too
-        return found if divmod(rate, level)[1] == 0 else None
-    return found if (field.reduced(rate) if modulo else rate) == 0 else None
+        return polynomial if divmod(rate, level)[1] == 0 else None
+    return polynomial if (field.reduced(rate) if modulo else rate) == 0 else None
 
 
 def monomial(field: PolynomialField, exponents: Sequence[int]) -> Any:

@@ -46,30 +46,30 @@ from mbsym.problems.polynomial_integrals.values import LARGEST, lifted_factor
 MOST_COLUMNS = 250
 
 
-def other_levels(found: PolynomialIntegrals, fixed: Generator | None) -> OtherLevels:
+def other_levels(integrals: PolynomialIntegrals, fixed: Generator | None) -> OtherLevels:
     """What holds where an integral of the list has a value that is not zero, and ``fixed`` is 1.
 
-    Of a quasi-homogeneous field; ``fixed`` is one of ``found.generators``, None where there is no such quantity.
+    Of a quasi-homogeneous field; ``fixed`` is one of ``integrals.generators``, None where there is no such quantity.
     """
-    listed = [level for level in levels(found) if level is not fixed]
-    return OtherLevels(found.degree, fixed is not None, tuple(_level(found, fixed, one) for one in listed))
+    listed = [level for level in levels(integrals) if level is not fixed]
+    return OtherLevels(integrals.degree, fixed is not None, tuple(_level(integrals, fixed, level) for level in listed))
 
 
-def _level(found: PolynomialIntegrals, fixed: Generator | None, generator: Generator) -> OtherLevel:
+def _level(integrals: PolynomialIntegrals, fixed: Generator | None, generator: Generator) -> OtherLevel:
     if fixed is None:
-        return OtherLevel(generator, 1, complete=found.complete)
+        return OtherLevel(generator, 1, complete=integrals.complete)
     step = gcd(generator.weight, fixed.weight)
     power, other = fixed.weight // step, generator.weight // step
-    weights = _weights(found.degree, generator.weight, fixed.weight)
-    rise = found.grading.rise or 0
+    weights = _weights(integrals.degree, generator.weight, fixed.weight)
+    rise = integrals.grading.rise or 0
     top = generator.weight * power
     most = max(weights)
     if most + rise < top:  # K is zero: F is an integral everywhere, and those are all known where the list is complete
-        return OtherLevel(generator, power, complete=_general(found, most).complete)
-    if modular.count(found.grading.weights, most) > MOST_COLUMNS:
+        return OtherLevel(generator, power, complete=_general(integrals, most).complete)
+    if modular.count(integrals.grading.weights, most) > MOST_COLUMNS:
         return OtherLevel(generator, power, looked=False)
     try:
-        usual = _general(found, most)
+        usual = _general(integrals, most)
         return _Search(usual, fixed, generator, power, other, weights).result()
     except NoClosedForm:
         return OtherLevel(generator, power, looked=False)
@@ -83,20 +83,22 @@ def _weights(degree: int, first: int, second: int) -> list[int]:
     for n in range(1, bound + 1):
         if n - first in reached or n - second in reached:
             reached.add(n)
-    found = []
+    weights = []
     for start in range(min(step, degree + 1)):
         own = range(start, degree + 1, step)
-        found.append(next(n for n in range(own[-1], bound + 1) if all(n - w in reached for w in own)))
-    return sorted({n for n in found if n})
+        weights.append(next(n for n in range(own[-1], bound + 1) if all(n - w in reached for w in own)))
+    return sorted({n for n in weights if n})
 
 
-def _general(found: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
+def _general(integrals: PolynomialIntegrals, degree: int) -> PolynomialIntegrals:
     """The integrals up to a larger degree; those known keep their names."""
-    if degree <= found.degree:
-        return found
-    known = [(generator.name, generator.polynomial) for generator in found.generators]
-    larger = polynomial_integrals(found.field, found.grading, degree, known)
-    return replace(larger, generators=(*found.generators, *(x for x in larger.generators if x.weight > found.degree)))
+    if degree <= integrals.degree:
+        return integrals
+    known = [(generator.name, generator.polynomial) for generator in integrals.generators]
+    larger = polynomial_integrals(integrals.field, integrals.grading, degree, known)
+    return replace(
+        larger, generators=(*integrals.generators, *(x for x in larger.generators if x.weight > integrals.degree))
+    )
 
 
 class _Search:
@@ -166,10 +168,10 @@ class _Search:
         polynomial = self.top - rationals.exact(value) * self.bottom
         zero = replace(self.one, polynomial=polynomial, weight=self.weight)
         try:
-            found = on_level(self.usual, zero)
+            on_value = on_level(self.usual, zero)
         except NoClosedForm:
             return None
-        return SpecialLevel(value, found.integrals, found.complete)
+        return SpecialLevel(value, on_value.integrals, on_value.complete)
 
     def _zero(self, there: modular.ModularField) -> Level:
         return Level(self.level, self.weight, there.terms(self.level))
@@ -218,7 +220,7 @@ class _Search:
         pairs = [(own, there.terms(f)) for own, f in self.known]
         spanned = products(pairs, weight, True, there.prime, len(self.field.variables), lambda terms: terms)
         scale = pow(zero.terms[zero.leading], steps, there.prime)
-        rests = [modular.remainder(one, zero.terms, there.prime) for one in spanned]
+        rests = [modular.remainder(terms, zero.terms, there.prime) for terms in spanned]
         return [{m: c * scale % there.prime for m, c in rest.items()} for rest in rests]
 
     def _usual_is_complete(self, line: Line, source: Random) -> bool:

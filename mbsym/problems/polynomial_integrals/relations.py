@@ -58,8 +58,8 @@ def linear_relations(
     return Relations(tuple(relations), complete and (free or not field.relations))
 
 
-def _same(one: Relation, other: Relation) -> bool:
-    return one.polynomial == other.polynomial and set(map(str, other.conditions)) <= set(map(str, one.conditions))
+def _same(first: Relation, second: Relation) -> bool:
+    return first.polynomial == second.polynomial and set(map(str, second.conditions)) <= set(map(str, first.conditions))
 
 
 class _Leading:
@@ -156,11 +156,11 @@ class _Leading:
             cases = []
             if not self._nonzero(slope, state):
                 cases.append(_put(state, (slope, rest)))
-            kept = tuple(with_quotient(p, place, -rest, slope) for p in state.equations)
+            equations = tuple(with_quotient(p, place, -rest, slope) for p in state.equations)
             if not any(slope in (c, -c) for c in state.conditions):
                 apart = [] if slope.is_constant() else [p for p, _ in irreducible_factors(slope)[1]]
                 nonzero = (*state.nonzero, *(p for p in apart if not self._nonzero(p, state)))
-                cases.append(_State(kept, state.conditions, nonzero, (*state.solved, (place, -rest, slope))))
+                cases.append(_State(equations, state.conditions, nonzero, (*state.solved, (place, -rest, slope))))
             return cases
         if effort[0] == 3:
             self.complete = False  # an unknown of higher degree: roots of parameters are not followed
@@ -178,13 +178,13 @@ class _Leading:
                 top = -(f - slope * self.context.gen(k)) / slope.leading_coefficient()
                 one = self.context.constant(1)
                 equations = tuple(with_quotient(p, k, top, one) for p in state.equations)
-                kept = []
+                conditions = []
                 for p in state.conditions:  # those that change are equations again
                     moved = with_quotient(p, k, top, one)
                     if moved == p:
-                        kept.append(p)
+                        conditions.append(p)
                     elif p.degrees()[k] == 1 and p.derivative(k).is_constant():
-                        kept.append(p)
+                        conditions.append(p)
                         equations = (*equations, moved)
                     else:
                         equations = (*equations, moved)
@@ -195,7 +195,7 @@ class _Leading:
                     (place, with_quotient(a, k, top, one), with_quotient(b, k, top, one))
                     for place, a, b in state.solved
                 )
-                return _State(equations, (*kept, f), nonzero, solved)
+                return _State(equations, (*conditions, f), nonzero, solved)
         return _State(state.equations, (*state.conditions, f), state.nonzero, state.solved)
 
     def _linear(self, f: Any) -> tuple[int, Any] | None:
@@ -209,7 +209,7 @@ class _Leading:
                     able.append((len(slope), place, slope))
         if not able:
             return None
-        _, place, slope = min(able, key=lambda one: one[:2])
+        _, place, slope = min(able, key=lambda candidate: candidate[:2])
         return place, slope
 
     def _has_unknowns(self, f: Any) -> bool:
@@ -249,10 +249,10 @@ class _Leading:
         zero = self.field.context.constant(0)
         images = [*gens_back[: self.count], *(zero for _ in self.others), *gens_back[self.count :]]
         back = primitive(self.field, f.compose(*images, ctx=self.field.context))
-        kept = [p for k, p in enumerate(state.conditions) if not self._follows(p, state.conditions[:k])]
-        if any(self._never(p, state.nonzero) for p in kept):
+        independent = [p for k, p in enumerate(state.conditions) if not self._follows(p, state.conditions[:k])]
+        if any(self._never(p, state.nonzero) for p in independent):
             return None
-        conditions = tuple(p.compose(*images, ctx=self.field.context) for p in kept)
+        conditions = tuple(p.compose(*images, ctx=self.field.context) for p in independent)
         apart = {str(p): p for p in state.nonzero}
         nonzero = tuple(p.compose(*images, ctx=self.field.context) for p in apart.values())
         # What holds variables stems from the denominator: that, and what divides it, is not zero at any system.
@@ -267,11 +267,14 @@ class _Leading:
 
     def _follows(self, p: Any, others: Sequence[Any]) -> bool:
         """Whether a condition is one of the others, once what is linear in a parameter has been put in."""
-        for one in others:
-            k = next((k for k in range(self.count) if one.degrees()[k] == 1 and one.derivative(k).is_constant()), None)
+        for condition in others:
+            k = next(
+                (k for k in range(self.count) if condition.degrees()[k] == 1 and condition.derivative(k).is_constant()),
+                None,
+            )
             if k is not None:
-                slope = one.derivative(k)
-                top = -(one - slope * self.context.gen(k)) / slope.leading_coefficient()
+                slope = condition.derivative(k)
+                top = -(condition - slope * self.context.gen(k)) / slope.leading_coefficient()
                 p = with_quotient(p, k, top, self.context.constant(1))
         return bool(p == 0)
 

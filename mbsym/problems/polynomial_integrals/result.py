@@ -179,7 +179,7 @@ class Polynomials:
     ``symmetries`` are None where they outgrew a bound.
     """
 
-    found: PolynomialIntegrals
+    integrals: PolynomialIntegrals
     variables: tuple[Formula, ...]
     formulas: tuple[Formula, ...]
     levels: tuple[OnLevel, ...]

@@ -183,11 +183,11 @@ class Search:
         for known in self.waiting:
             of_known.of(known.terms)
         listed = []
-        for one in self.generators:
-            if not one.name and of_known.rank and of_known.depends(one.terms):
-                one = replace(one, name=FUNCTION)
-            independent, sure = judged.of(one.terms)
-            listed.append(Generator(one.polynomial, one.weight, one.name, independent, sure))
+        for generator in self.generators:
+            if not generator.name and of_known.rank and of_known.depends(generator.terms):
+                generator = replace(generator, name=FUNCTION)
+            independent, sure = judged.of(generator.terms)
+            listed.append(Generator(generator.polynomial, generator.weight, generator.name, independent, sure))
         return PolynomialIntegrals(
             self.field, self.grading, self.degree, tuple(listed), tuple(self.counts), judged.rank
         )
@@ -198,7 +198,7 @@ class Search:
         products = self.products(weight)
         order = columns
         rows, _ = echelon(products, order, self.there.prime)
-        for known in [one for one in self.waiting if one.weight == weight]:
+        for known in [known for known in self.waiting if known.weight == weight]:
             enlarged, _ = echelon([*rows, known.terms], order, self.there.prime)
             if len(enlarged) > len(rows):
                 self.generators.append(known)
@@ -216,9 +216,9 @@ class Search:
 
     def _columns(self, weight: int) -> Iterator[Exponents]:
         weights = range(weight + 1) if not self.grading.homogeneous or self.modulo else (weight,)
-        leading = [one for one, _ in self.there.rules] if self.modulo else []
-        for one in weights:
-            for exponents in monomials(self.grading.weights, one):
+        leading = [exponents for exponents, _ in self.there.rules] if self.modulo else []
+        for own_weight in weights:
+            for exponents in monomials(self.grading.weights, own_weight):
                 if not any(all(a >= b for a, b in zip(exponents, top, strict=True)) for top in leading):
                     yield exponents
 
@@ -255,7 +255,7 @@ class Search:
                 if weight and (field.reduced(rate) if self.modulo else rate) == 0:
                     part = primitive(field, part)
                     knowns.append(Known(part, weight, name, self.there.terms(part)))
-        return sorted(knowns, key=lambda one: one.weight)
+        return sorted(knowns, key=lambda known_part: known_part.weight)
 
 
 def products(
@@ -267,8 +267,8 @@ def products(
     reduce: Callable[[Terms], Terms],
 ) -> list[Terms]:
     """All products of polynomials of given weights: of one weight, or (not ``exactly``) up to it, 1 among them."""
-    one: Terms = {(0,) * variables: 1}
-    reached: list[tuple[int, Terms]] = [(0, one)]
+    unit: Terms = {(0,) * variables: 1}
+    reached: list[tuple[int, Terms]] = [(0, unit)]
     for own, factor in generators:
         further = []
         for start, terms in reached:
@@ -362,7 +362,7 @@ def _spaced(order: Sequence[int], number: int) -> Sequence[int]:
 
 def refuse_too_many(field: PolynomialField, grading: Grading, degree: int) -> None:
     """Raises NoClosedForm where the degree needs more monomials than are looked at."""
-    needed = sum(count(grading.weights, one) for one in range(degree + 1))
+    needed = sum(count(grading.weights, weight) for weight in range(degree + 1))
     if needed > MOST_MONOMIALS:
         message = Message(
             "weighted degree [[degree]] has [[needed]] monomials in [[count]] variables, more than [[most]]",

@@ -55,8 +55,8 @@ def along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> Along:
     somewhere = at_random(field, PRIMES[0], "whole")
     complete = usual.complete and not any(excess.signature(somewhere))
     zeros = _Zeros(usual, excess, whole=complete)
-    found, undecided = [], []
-    for value in sorted(one for one in zeros.values if low <= one <= high):
+    specials, undecided = [], []
+    for value in sorted(value for value in zeros.values if low <= value <= high):
         image = value.numerator * pow(value.denominator, -1, PRIMES[0]) % PRIMES[0]
         there = ModularField(field, PRIMES[0], {name: image})
         if not there.terms(field.denominator):
@@ -65,11 +65,11 @@ def along(usual: PolynomialIntegrals, low: Fraction, high: Fraction) -> Along:
         elif larger(excess.signature(there), excess.nothing):
             special = at_value(usual, name, value)
             if special is not None:
-                found.append(special)
+                specials.append(special)
             if special is None or not special.complete:
                 undecided.append(value)
     irrational = tuple(p for p in zeros.irrational if meets(p, low, high))
-    listed = tuple(found)
+    listed = tuple(specials)
     return Along(name, low, high, listed, irrational, zeros.whole, tuple(undecided), complete)
 
 
@@ -143,7 +143,10 @@ def at_value(usual: PolynomialIntegrals, name: str, value: Fraction) -> Special 
     field = usual.field.at({name: rationals.exact(value)})
     image = field.context.constant(rationals.exact(value))
     images = [image, *field.context.gens()]
-    known = [(str(k), one.polynomial.compose(*images, ctx=field.context)) for k, one in enumerate(usual.generators)]
+    known = [
+        (str(k), generator.polynomial.compose(*images, ctx=field.context))
+        for k, generator in enumerate(usual.generators)
+    ]
     return special_of(usual, field, known, value)
 
 
@@ -153,7 +156,9 @@ def special_of(
     """The new integrals of a field that is a special case, ``known`` those of the usual one by their numbers."""
     here = polynomial_integrals(field, usual.grading, usual.degree, known)
     # A root of what is known in general, as r is of r^2, is one more, although it is a function of that.
-    new = tuple((one.weight, one.polynomial) for one in here.generators if one.name in ("", FUNCTION))
+    new = tuple(
+        (generator.weight, generator.polynomial) for generator in here.generators if generator.name in ("", FUNCTION)
+    )
     named = {generator.name: generator for generator in here.generators}
     on: list[OnLevel] = []
     for level in levels(usual):
@@ -162,7 +167,7 @@ def special_of(
             there = on_level(here, named[str(k)])
             if len(there.integrals) > len(on_level(usual, level).integrals):
                 on.append(OnLevel(level, there.integrals, there.counts))
-    complete = here.complete and all(one.complete for one in on)
+    complete = here.complete and all(level.complete for level in on)
     return Special(value, field, new, tuple(on), complete) if new or on else None
 
 
@@ -179,8 +184,8 @@ def lifted_factor(factor: Any) -> fmpq_poly | None:
 
 def meets(p: fmpq_poly, low: Fraction, high: Fraction) -> bool:
     """Whether a polynomial may have a zero in the interval: signs at the ends and at the enclosed real zeros."""
-    found: Any = p.complex_roots()  # pairs of a zero and its multiplicity
-    for root, _ in found:
+    zeros: Any = p.complex_roots()  # pairs of a zero and its multiplicity
+    for root, _ in zeros:
         if root.imag.contains(0):
             real = root.real
             if not (real < low.numerator / low.denominator or real > high.numerator / high.denominator):

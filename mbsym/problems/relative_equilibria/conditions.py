@@ -33,16 +33,16 @@ class Conditions:
         parameters: tuple[str, ...] = (),
     ) -> None:
         self.parameters = parameters
-        self.chart, self.found, self.within, self.limits = chart, chart.found, within, limits
-        self.case = case or Case(self.found.at_rest)
+        self.chart, self.rest, self.within, self.limits = chart, chart.rest, within, limits
+        self.case = case or Case(self.rest.at_rest)
         self.ranks = (self.case.rank, rank)
-        self.ring: Ring = chart.found.ring
+        self.ring: Ring = chart.rest.ring
         self.remarks: list[str] = []
         self.doubts: list[str] = []
         self.unfinished = False
 
     def _conditions(self) -> None:
-        rest, ring = self.found, self.ring
+        rest, ring = self.rest, self.ring
         forcing = [*rest.kept, *self.case.zero, *self.case.left]
         for joint, other in zip(self.chart.joints, self.chart.replaced, strict=True):
             # Where the angles are regular these follow, and with them the exact solution is much faster.
@@ -71,7 +71,7 @@ class Conditions:
     def _for_all_times(self, x: Polynomial) -> Iterator[Polynomial]:
         """What must vanish so that x does at all times: its coefficients with respect to what moves."""
         ring = self.ring
-        moving = [*self.found.turning, *(item.name for item in self.found.system.prescribed), "t"]
+        moving = [*self.rest.turning, *(item.name for item in self.rest.system.prescribed), "t"]
         present = ring.dependencies(x, moving)
         if not present:
             yield x
@@ -199,13 +199,13 @@ class Case:
         return len(self.pivots)
 
 
-def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> Iterator[Case]:
+def cases(rest: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> Iterator[Case]:
     """The cases of a constrained system; one where there are no constraints.
 
     ``possible``: False of (zero, nonzero) that no position has.  Raises NoClosedForm where there are too many.
     """
-    ring = found.ring
-    pending: list[tuple[list[list[Polynomial]], Case]] = [(_table(found), Case(()))]
+    ring = rest.ring
+    pending: list[tuple[list[list[Polynomial]], Case]] = [(_table(rest), Case(()))]
     looked_at = 0
     while pending:
         rows, case = pending.pop()
@@ -229,20 +229,20 @@ def cases(found: Rest, possible: Callable[[Polynomials, Polynomials], bool]) -> 
         pending.append((_eliminated(ring, rows, i, k), regular))
 
 
-def near(found: Rest, case: Case) -> tuple[Polynomials, tuple[int, ...]]:
+def near(rest: Rest, case: Case) -> tuple[Polynomials, tuple[int, ...]]:
     """What has to vanish at rest near positions of a case, and which constraints are independent there.
 
     The pivots are those of the case, but what vanishes in it is not left out: so these may be differentiated.
     """
-    rows = _table(found)
+    rows = _table(rest)
     for i, k in case.pivots:
-        rows = _eliminated(found.ring, rows, i, k)
+        rows = _eliminated(rest.ring, rows, i, k)
     return tuple(row[-1] for row in rows), tuple(k for _, k in case.pivots)
 
 
-def _table(found: Rest) -> list[list[Polynomial]]:
+def _table(rest: Rest) -> list[list[Polynomial]]:
     """[J^T | f]."""
-    return [[*(row.partials[i] for row in found.rows), f] for i, f in enumerate(found.at_rest)]
+    return [[*(row.partials[i] for row in rest.rows), f] for i, f in enumerate(rest.at_rest)]
 
 
 def _pivot(rows: Sequence[Sequence[Polynomial]]) -> tuple[int, int] | None:

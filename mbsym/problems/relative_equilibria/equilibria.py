@@ -102,15 +102,15 @@ def equilibria(
     """
     first = rest(at_numbers(system, values))
     rank = rank_of(first) if rank is None else rank
-    found = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
-    if found.complete or not found.families:
-        return found
+    listed = _listed(first, first.system, within, limits or Limits(), rank, described_place(system, first, values))
+    if listed.complete or not listed.families:
+        return listed
     symmetric, changed = with_cyclic_last_angles(first)
     if not changed:
-        return found
+        return listed
     counted = _listed(symmetric, first.system, within, limits or Limits(), rank)
     if not counted.complete:
-        return found
+        return listed
     turns = (
         Message(
             "counted up to turns of [[body]] about its axis [[axis]], on which nothing depends", body=body, axis=axis
@@ -244,7 +244,7 @@ def searches_of(
             return False
         return there
 
-    for case in list(cases(chart.found, possible)):  # all, as what is left out concerns the first, too
+    for case in list(cases(chart.rest, possible)):  # all, as what is left out concerns the first, too
         search = _ChartSearch(chart, within, limits, case, rank, parameters)
         search.is_real = (case.zero, case.nonzero) in real
         if left_out:
@@ -273,12 +273,12 @@ def _counted_once(searches: Sequence[_ChartSearch]) -> None:
         if len(searches) == 1 or not search.case.zero:
             continue
         search.points = [x for x in search.points if not _on_any(x.place, [y for _, y in closures])]
-        kept = [
+        keeps = [
             not _on_any(place, [y for dimension, y in closures if dimension > x.dimension])
             for x, place in zip(search.families, search.family_places, strict=True)
         ]
         for name in ("families", "family_places", "family_equations"):
-            setattr(search, name, [x for x, keep in zip(getattr(search, name), kept, strict=True) if keep])
+            setattr(search, name, [x for x, keep in zip(getattr(search, name), keeps, strict=True) if keep])
 
 
 def _on_any(place: Place, closures: Sequence[Sequence[Polynomial]]) -> bool:
@@ -342,7 +342,7 @@ class _ChartSearch(SearchInBoxes):
             return
         if self.reason:
             self.remarks.append(Message("no exact solution: [[why]]", why=self.reason))
-            self.unfinished = bool(self.found.rows)  # all cases are searched at once
+            self.unfinished = bool(self.rest.rows)  # all cases are searched at once
             if not self.unfinished:
                 self._search_numerically(bisect=True)
             return
@@ -350,12 +350,12 @@ class _ChartSearch(SearchInBoxes):
 
     def add_described(self, forms: Mapping[str, LinearForm]) -> bool:
         """Whether the place with these coordinates is one of rest of this case, which then is listed."""
-        candidate, names = candidate_at(self.found, forms), self.occurring
+        candidate, names = candidate_at(self.rest, forms), self.occurring
         if self.impossible or not {*names} <= {*forms} or not all(map(candidate.vanishes, self.equations)):
             return False
         if any(map(candidate.vanishes, self.nonzero)):
             return False
-        place = candidate.place(self.found, exact_rates(self.found))
+        place = candidate.place(self.rest, exact_rates(self.rest))
         if not any(self._same(place, x.place) for x in self.points):
             self._add(place, EXACT)
         return True
@@ -379,7 +379,7 @@ class _ChartSearch(SearchInBoxes):
         """Whether x is zero there whatever the coordinates that may have any value."""
         varying = self.ring.dependencies(x, self.free)
         places = [place.elsewhere(varying, t) for t in ELSEWHERE] if varying else [place]
-        return all((value := one.residue(x)) is not None and value == 0 for one in places)
+        return all((value := place.residue(x)) is not None and value == 0 for place in places)
 
     def exists(self) -> bool:
         """Whether there may be a solution: False is proved."""
@@ -412,7 +412,7 @@ class _ChartSearch(SearchInBoxes):
             if self._solve_in_direction_cosines():
                 return
             reasons = joined(result.unfinished, "; ")
-            if self.found.rows:
+            if self.rest.rows:
                 self.unfinished = True
                 self.remarks.append(Message("the exact solution is not finished ([[reasons]])", reasons=reasons))
                 return
@@ -427,17 +427,17 @@ class _ChartSearch(SearchInBoxes):
 
     def _solve_in_direction_cosines(self) -> bool:
         """The second way to a complete list; False where it does not lead to one."""
-        if self.families or self.found.rows:
+        if self.families or self.rest.rows:
             return False
-        found = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
-        if found is None or any(not self._may_rest(place) for place in found.places):
+        solved = orientations(self.chart, self.occurring, self.nonzero, self._for_all_times, self.limits)
+        if solved is None or any(not self._may_rest(place) for place in solved.places):
             return False
         known = [x.place for x in self.points]
-        for place in found.places:
+        for place in solved.places:
             if not any(self._same(place, other) for other in known):
                 self._add(place, EXACT)
         self.remarks.append(
-            Message("solved exactly in the direction cosines of [[joints]]", joints=", ".join(found.joints))
+            Message("solved exactly in the direction cosines of [[joints]]", joints=", ".join(solved.joints))
         )
         return True
 
@@ -455,7 +455,7 @@ class _ChartSearch(SearchInBoxes):
             exact |= {ring.index("coordinate", name): fmpq_poly([0])}
             if name in ring.angles:
                 exact |= {ring.index("sine", name): fmpq_poly([0]), ring.index("cosine", name): fmpq_poly([1])}
-        return Place(self.found, balls, exact | exact_rates(self.found), point.modulus, point.enclosure)
+        return Place(self.rest, balls, exact | exact_rates(self.rest), point.modulus, point.enclosure)
 
     def _add_free_point(self) -> None:
         self._add(self._zero(), EXACT)

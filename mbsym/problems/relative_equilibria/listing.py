@@ -46,11 +46,11 @@ class Solution:
     beyond: tuple[str, ...] = ()
 
 
-def groups(found: Iterable[Solution]) -> list[list[Solution]]:
+def groups(candidates: Iterable[Solution]) -> list[list[Solution]]:
     """Candidates that mean one configuration: their features cannot be told apart at the working precision."""
     together: list[list[Solution]] = []
     table: dict[tuple[float, ...], list[list[Solution]]] = {}
-    for candidate in found:
+    for candidate in candidates:
         # Rounded features only say where to look; overlapping balls decide.
         key = tuple(round(float(x.mid()), 6) + 0.0 for x in candidate.features)
         for group in table.get(key, []):
@@ -85,11 +85,11 @@ class Listing(Conditions):
         """The place where every coordinate is 0, exactly."""
         ring, zero, one = self.ring, fmpq_poly([0]), fmpq_poly([1])
         exact = {}
-        for name in self.found.constant:
+        for name in self.rest.constant:
             exact[ring.index("coordinate", name)] = zero
             if name in ring.angles:
                 exact |= {ring.index("sine", name): zero, ring.index("cosine", name): one}
-        return Place(self.found, {}, exact | exact_rates(self.found), fmpq_poly([0, 1]))
+        return Place(self.rest, {}, exact | exact_rates(self.rest), fmpq_poly([0, 1]))
 
     def _may_rest(self, place: Place) -> bool:
         """Whether no equation is proved not to vanish there: the second route of every list in balls."""
@@ -131,7 +131,7 @@ class Listing(Conditions):
     @cached_property
     def _reflections(self) -> tuple[Reflection, ...]:
         """Polar coordinates; none for the search of a family's points."""
-        return () if self.found.rows else reflections(self.found)
+        return () if self.rest.rows else reflections(self.rest)
 
     def _values(self, place: Place) -> tuple[CoordinateValue, ...]:
         return tuple(self._value(place, name) for name in self.occurring)
@@ -175,9 +175,9 @@ class Listing(Conditions):
             cyclic = joint.angles[:1] * joint.first_free + joint.angles[2:] * joint.last_free
             if set(joint.angles) & set(self.free) - set(cyclic):
                 continue
-            features += [place.ball(x) for x in direction_features(self.found, joint)]
+            features += [place.ball(x) for x in direction_features(self.rest, joint)]
             done |= set(joint.angles)
-        for name in self.found.constant:
+        for name in self.rest.constant:
             if name in done:
                 continue
             if self._periodic(name):
@@ -192,7 +192,7 @@ class Listing(Conditions):
     def _linear(self) -> LinearAtRest | str:
         """The matrices as formulas, or why there are none."""
         try:
-            return linear_at_rest(self.found)
+            return linear_at_rest(self.rest)
         except Failure as reason:
             return message_of(reason)
 
@@ -214,8 +214,8 @@ class Listing(Conditions):
         names = ", ".join(varying)
         if words != {found.word}:
             *others, last = sorted(words - {found.word})
-            told = Message("[[first]] or [[last]]", first=joined(others, ", "), last=last) if others else last
-            return undecided(Because.DIFFERS_ALONG, names, found.word, told)
+            alternatives = Message("[[first]] or [[last]]", first=joined(others, ", "), last=last) if others else last
+            return undecided(Because.DIFFERS_ALONG, names, found.word, alternatives)
         return replace(found, reasons=(*found.reasons, Reason(Because.ALSO_ELSEWHERE, (names,))))
 
 
@@ -333,14 +333,14 @@ def from_many_points(
     value = _vectorised(ring, [*equations, *slopes], unknowns)
     if linear:
         with np.errstate(all="ignore"):
-            found = value(q)
-        for at in np.flatnonzero(np.isfinite(found).all(axis=0)):
-            columns = found[n:, at].reshape(n, n)[:, bounded:]
-            q[bounded:, at] = -np.linalg.lstsq(columns, found[:n, at], rcond=None)[0]
+            values = value(q)
+        for at in np.flatnonzero(np.isfinite(values).all(axis=0)):
+            columns = values[n:, at].reshape(n, n)[:, bounded:]
+            q[bounded:, at] = -np.linalg.lstsq(columns, values[:n, at], rcond=None)[0]
     for _ in range(60):
         with np.errstate(all="ignore"):
-            found = value(q)
-        f, jacobian = found[:n], found[n:].reshape(n, n, -1)
+            values = value(q)
+        f, jacobian = values[:n], values[n:].reshape(n, n, -1)
         matrices = np.moveaxis(jacobian, 2, 0)
         usable = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=0)
         change = np.zeros_like(q)
@@ -372,7 +372,7 @@ def _vectorised(ring: Ring, polynomials: Sequence[Polynomial], names: Sequence[s
 
     def values(q: Any) -> Any:
         inputs = dict.fromkeys(ring.names(), 0.0) | {"pi": math.pi} | dict(zip(names, q, strict=True))
-        found = program.evaluate(outputs, inputs, Arrays(inputs))
-        return np.array([np.broadcast_to(x, q.shape[1:]) for x in found])
+        evaluated = program.evaluate(outputs, inputs, Arrays(inputs))
+        return np.array([np.broadcast_to(x, q.shape[1:]) for x in evaluated])
 
     return values

@@ -120,12 +120,12 @@ class Cosines:
             weights = _combinations([x for _, x in monomials], [inner for _, _, inner in vectors])
             if weights is None:
                 continue
-            found: list[dict[tuple[int, ...], Terms]] = [{} for _ in polynomials]
+            forms: list[dict[tuple[int, ...], Terms]] = [{} for _ in polynomials]
             for (k, rest, _), weight in zip(vectors, weights, strict=True):
                 for (exponents, _), number in zip(monomials, weight, strict=True):
                     if number:
-                        found[k].setdefault(exponents, {})[rest] = number
-            return [list(item.items()) for item in found]
+                        forms[k].setdefault(exponents, {})[rest] = number
+            return [list(item.items()) for item in forms]
         return None
 
     def _split(self, x: Polynomial) -> dict[tuple[int, ...], Terms] | None:
@@ -168,11 +168,11 @@ def _beneath(ring: Ring, x: Polynomial) -> set[int]:
     return reached
 
 
-def _combinations(basis: Sequence[Terms], wanted: Sequence[Terms]) -> list[list[Any]] | None:
-    """Numbers w with  sum_k w_k basis_k = wanted  for each of ``wanted``, earlier members first; else None."""
-    every = [*basis, *wanted]
+def _combinations(basis: Sequence[Terms], targets: Sequence[Terms]) -> list[list[Any]] | None:
+    """Numbers w with  sum_k w_k basis_k = wanted  for each of ``targets``, earlier members first; else None."""
+    every = [*basis, *targets]
     places = {m: k for k, m in enumerate(dict.fromkeys(m for x in every for m in x))}
-    if not wanted:
+    if not targets:
         return []
     table = [[fmpq(0)] * len(every) for _ in places]
     for column, x in enumerate(every):
@@ -181,13 +181,13 @@ def _combinations(basis: Sequence[Terms], wanted: Sequence[Terms]) -> list[list[
     reduced = reduced_rows(fmpq_mat(table))
     if any(pivot >= len(basis) for pivot in reduced):
         return None
-    found = []
-    for k in range(len(wanted)):
+    weights = []
+    for k in range(len(targets)):
         numbers = [fmpq(0)] * len(basis)
         for pivot, row in reduced.items():
             numbers[pivot] = row[len(basis) + k]
-        found.append(numbers)
-    return found
+        weights.append(numbers)
+    return weights
 
 
 #: Bits of a coefficient that are allowed, as a multiple of those in sines and cosines; the part of the work (the
@@ -221,7 +221,7 @@ def orientations(
     if not replaced:
         return None
     per_joint = [[(frame, choice) for frame in (0, 1) for choice in choices(joint)] for joint in replaced]
-    components = [moment_components(chart.found, joint) for joint in replaced]
+    components = [moment_components(chart.rest, joint) for joint in replaced]
     for picked in product(*per_joint):
         moments = [components[k][frame] for k, (frame, _) in enumerate(picked)]
         if any(not part or any(x is None for x in part) for part in moments):
@@ -236,7 +236,7 @@ class _System:
     """The equations in direction cosines and in the other unknowns."""
 
     def __init__(self, chart: Chart, cosines: Sequence[Cosines], equations: Sequence[Polynomial]) -> None:
-        self.chart, self.ring, self.cosines = chart, chart.found.ring, cosines
+        self.chart, self.ring, self.cosines = chart, chart.rest.ring, cosines
         self.original = list(equations)
 
     @staticmethod
@@ -247,7 +247,7 @@ class _System:
         moments: Sequence[Sequence[Polynomial | None]],
         split: Split,
     ) -> _System | None:
-        rest, ring = chart.found, chart.found.ring
+        rest, ring = chart.rest, chart.rest.ring
         inside = {name for joint in joints for name in joint.angles}
         conditions = [x for name, x in zip(rest.system.coordinates, rest.at_rest, strict=True) if name not in inside]
         conditions += [x for part in moments for x in part if x is not None]
@@ -339,7 +339,7 @@ class _System:
 
     def _described(self, point: AlgebraicPoint, names: Sequence[str]) -> list[Place] | None:
         """The place in each of its sets of angles; [] where the angles are singular, None where that is not known."""
-        ring, rest = self.ring, self.chart.found
+        ring, rest = self.ring, self.chart.rest
         start = 0
         sets: list[list[_Angles]] = []
         for cosine in self.cosines:
@@ -381,16 +381,18 @@ class _Angles:
     exact: Mapping[int, Any]
 
 
-def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: Sequence[str]) -> list[_Angles] | None:
+def _angles(
+    cosines: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: Sequence[str]
+) -> list[_Angles] | None:
     """The sets of angles at a solution: two, none ([]) where they are singular; None where that cannot be told."""
-    ring, joint, choice = one.ring, one.joint, one.choice
+    ring, joint, choice = cosines.ring, cosines.joint, cosines.choice
     known = dict(zip(choice.entries, values, strict=True))
     if len(choice.vectors) == 2:
         (u, v), p = (([known[x] for x in vector]) for vector in choice.vectors), point.modulus
         for k, entry in enumerate(choice.third()):
             a, b = (k + 1) % 3, (k + 2) % 3
             known[entry] = (u[a] * v[b] - u[b] * v[a]) * choice.sign() % p
-    seen = list(_simple(one, known))
+    seen = list(_simple(cosines, known))
     middle = joint.angles[1]
     kinds = {ring.index(kind, middle): kind for kind in ("sine", "cosine")}
     first = next(((key, value) for key, value in seen if len(key) == 1 and key[0] in kinds), None)
@@ -407,7 +409,7 @@ def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: S
             return None
         length = length.sqrt()
     root = _rational_root(square)
-    found = []
+    sets = []
     for sign in (1, -1):
         exact = {index: inner}
         with ctx.workprec(PRECISION):
@@ -428,8 +430,8 @@ def _angles(one: Cosines, point: AlgebraicPoint, values: Sequence[Any], names: S
                 return None
             angles[name] = angle_of(s, c, ring.angles[name])
         inside = {ring.index(kind, name) for name in angles for kind in ("sine", "cosine")}
-        found.append(_Angles(angles, {k: value for k, value in exact.items() if k in inside}))
-    return found
+        sets.append(_Angles(angles, {k: value for k, value in exact.items() if k in inside}))
+    return sets
 
 
 def _simple(cosines: Cosines, known: Mapping[tuple[int, int], Any]) -> Iterator[tuple[tuple[int, ...], Any]]:

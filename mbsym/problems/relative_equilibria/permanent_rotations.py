@@ -101,11 +101,11 @@ def permanent_rotations(system: System, values: Mapping[str, Value]) -> Permanen
         if len(chart.joints) != 1 or not chart.joints[0].first_free or len(chart.joints[0].angles) != 3:
             return None
         joint = replace(chart.joints[0], last_free=False)  # the axes of the body will do, whatever it is free to do
-        found = {rate: _moment(chart.found.system, joint, rate) for rate in (*RATES, *CHECKED)}
+        moments = {rate: _moment(chart.rest.system, joint, rate) for rate in (*RATES, *CHECKED)}
     except Failure:
         return None
-    known = {rate: x for rate, x in found.items() if x is not None}
-    if len(known) < len(found):
+    known = {rate: x for rate, x in moments.items() if x is not None}
+    if len(known) < len(moments):
         return None
     a = known[0]
     b = tuple((x - y) / 2 for x, y in zip(known[1], known[-1], strict=True))
@@ -121,10 +121,10 @@ def permanent_rotations(system: System, values: Mapping[str, Value]) -> Permanen
 def _moment(still: System, joint: Joint, rate: int) -> tuple[Polynomial, ...] | None:
     """The components in the body's axes as polynomials in g, the same for equal functions on the sphere."""
     turning = MotionEntry(joint.angles[0], ZERO, number(Fraction(rate)))
-    found = rest(replace(still, motion=(turning,) if rate else ()))
-    components, _ = moment_components(found, joint)
+    steady = rest(replace(still, motion=(turning,) if rate else ()))
+    components, _ = moment_components(steady, joint)
     column = joint.axes[0] - 1
-    cosines = Cosines(found, joint, Choice((tuple((k, column) for k in range(3)),)))
+    cosines = Cosines(steady, joint, Choice((tuple((k, column) for k in range(3)),)))
     if len(components) != 3 or any(x is None for x in components):
         return None
     # Written in the entries of one column, they do not depend on the angle about it.
@@ -164,8 +164,8 @@ def _told(
         return None
     acts = [any(not x.is_zero() for x in part) for part in (a, b, c)]
     axes = ac * ac - _raised(ab * bc, ac * ac) if acts[1] else ac
-    given = acts[0] and acts[2]
-    factors = [] if axes.is_zero() or not given else [x for x, _ in irreducible_factors(axes)[1]]
+    both_act = acts[0] and acts[2]
+    factors = [] if axes.is_zero() or not both_act else [x for x, _ in irreducible_factors(axes)[1]]
     factors = [x for x in factors if not all(_divides(x, y) for y in c)]
     rows: list[list[str]] = [[], [], []]
     for triple in zip(a, b, c, strict=True):
@@ -179,7 +179,7 @@ def _told(
         joint.body,
         joint.angles[0],
         tuple(map(_text, factors)),
-        given and axes.is_zero(),
+        both_act and axes.is_zero(),
         either and bool(factors) and all(_changes_sign(x) for x in factors),
         either,
         tuple(rows[0]),

@@ -27,9 +27,9 @@ from mbsym.model.system import System
 PRECISION = 200
 
 
-def exact_rates(found: Rest) -> dict[int, Any]:
+def exact_rates(rest: Rest) -> dict[int, Any]:
     """The rates of a steady motion, by the index of their velocity, where they are rational numbers."""
-    rates = {k: rate for k, rate in found.rates.items() if rate.is_constant()}
+    rates = {k: rate for k, rate in rest.rates.items() if rate.is_constant()}
     return {k: fmpq_poly([rate.leading_coefficient() if rate else 0]) for k, rate in rates.items()}
 
 
@@ -55,7 +55,7 @@ class Place:
         modulus: Any,
         enclosure: Callable[[Any, int], Any] | None = None,
     ) -> None:
-        self.found = found
+        self.rest = found
         self.ring = found.ring
         self.modulus = modulus
         self._enclosure = enclosure
@@ -76,7 +76,7 @@ class Place:
             exact.pop(ring.index("coordinate", name), None)
             exact[ring.index("sine", name)] = fmpq_poly([2 * t / (1 + t * t)])
             exact[ring.index("cosine", name)] = fmpq_poly([(1 - t * t) / (1 + t * t)])
-        return Place(self.found, balls, exact, self.modulus, self._enclosure)
+        return Place(self.rest, balls, exact, self.modulus, self._enclosure)
 
     def reflected(self, length: str, angle: str) -> Place:
         """The same place of all bodies at -r, theta + pi (``mechanics.reflections``)."""
@@ -90,7 +90,7 @@ class Place:
         with ctx.workprec(PRECISION):
             turn = arb.pi() if balls[angle] <= 0 else -arb.pi()
             balls[length], balls[angle] = -balls[length], balls[angle] + turn
-        return Place(self.found, balls, exact, self.modulus, self._enclosure)
+        return Place(self.rest, balls, exact, self.modulus, self._enclosure)
 
     def enclose(self, element: Any) -> Any:
         """A ball around an element of the number field.  Raises NotRational where its root is not known."""
@@ -184,13 +184,13 @@ class Unknowns:
         ring, found = self.ring, []
         for k in self.indices:
             g = ring.generators[k]
-            one = ring.context.gen(k)
+            generator = ring.context.gen(k)
             if g.kind == "sine":
-                found.append(one**2 + ring.generator("cosine", g.name) ** 2 - 1)
+                found.append(generator**2 + ring.generator("cosine", g.name) ** 2 - 1)
             elif g.kind == "root":
-                found.append(one**2 - g.argument)
+                found.append(generator**2 - g.argument)
             elif g.kind == "reciprocal":
-                found.append(one * g.argument - 1)
+                found.append(generator * g.argument - 1)
         return [self.polynomial(x) for x in found]
 
     def is_relation(self, x: Any) -> bool:
@@ -245,11 +245,11 @@ class Candidate:
         except NOT_THERE:
             return False
 
-    def place(self, found: Rest, rates: Mapping[int, Any]) -> Place:
+    def place(self, at_rest: Rest, rates: Mapping[int, Any]) -> Place:
         """With all other coordinates at 0."""
         ring, balls = self.ring, {}
         exact: dict[int, Any] = {}
-        for name in found.constant:
+        for name in at_rest.constant:
             if name in self.forms:
                 continue
             exact[ring.index("coordinate", name)] = fmpq_poly([0])
@@ -262,13 +262,13 @@ class Candidate:
             for name, form in self.forms.items():
                 turns, rest = (rationals.exact(x) for x in (form.turns, form.constant))
                 balls[name] = arb(rest) + arb.pi() * turns
-        return Place(found, balls, exact | dict(rates), fmpq_poly([0, 1]))
+        return Place(at_rest, balls, exact | dict(rates), fmpq_poly([0, 1]))
 
 
-def candidates(found: Rest, names: Sequence[str], equations: Sequence[Polynomial]) -> Iterator[Candidate]:
+def candidates(rest: Rest, names: Sequence[str], equations: Sequence[Polynomial]) -> Iterator[Candidate]:
     """Those at which all equations vanish: ``names`` at zero, and at the rests of their springs."""
     rests: dict[str, list[LinearForm]] = {name: [LinearForm()] for name in names}
-    for load in found.system.loads:
+    for load in rest.system.loads:
         name, value = load.rest_position or ("", None)
         form = None if value is None else linear_form(value)
         if form is not None and not form.coefficients:
@@ -280,7 +280,7 @@ def candidates(found: Rest, names: Sequence[str], equations: Sequence[Polynomial
         if forms in tried:
             continue
         tried.append(forms)
-        candidate = candidate_at(found, forms)
+        candidate = candidate_at(rest, forms)
         if all(candidate.vanishes(x) for x in equations):
             yield candidate
 
@@ -298,9 +298,9 @@ def described_place(system: System, there: Rest, values: Mapping[str, Any]) -> d
     return forms
 
 
-def candidate_at(found: Rest, forms: Mapping[str, LinearForm]) -> Candidate:
+def candidate_at(rest: Rest, forms: Mapping[str, LinearForm]) -> Candidate:
     """The place with these coordinates."""
-    return Candidate(found.ring, forms, _images(found.ring, forms))
+    return Candidate(rest.ring, forms, _images(rest.ring, forms))
 
 
 def _images(ring: Ring, forms: Mapping[str, LinearForm]) -> dict[int, Polynomial]:

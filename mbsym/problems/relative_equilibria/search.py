@@ -97,8 +97,8 @@ class Square:
         n = len(unknowns)
 
         def jacobian(box: krawczyk.Box) -> list[list[Any]]:
-            found = list(at_slopes(box))
-            return [found[k : k + n] for k in range(0, len(found), n)]
+            entries = list(at_slopes(box))
+            return [entries[k : k + n] for k in range(0, len(entries), n)]
 
         return at_values, jacobian
 
@@ -138,7 +138,7 @@ def _over_boxes(
             inputs.append((place, unknowns.index(str(payload))))
         else:
             known[place] = arb.pi() if payload == "pi" else fixed.get(str(payload), arb(0))
-    wanted = [places[node.number] for node in outputs]
+    output_places = [places[node.number] for node in outputs]
 
     def function(box: krawczyk.Box) -> list[Any]:
         values = known[:]
@@ -146,7 +146,7 @@ def _over_boxes(
             values[place] = box[k]
         for place, does, first, second in steps:
             values[place] = does(values[first]) if second < 0 else does(values[first], values[second])
-        return [values[k] for k in wanted]
+        return [values[k] for k in output_places]
 
     return function
 
@@ -179,10 +179,10 @@ class SearchInBoxes(Listing):
         n, linear = len(names), len(square.multipliers)
         function, jacobian = square.functions(ring)
         nonzero = self.nonzero[len(self.case.nonzero) * bool(linear) :]  # with multipliers no pivot is assumed
-        special = list(candidates(self.found, names, self.equations)) if not self.chart.restrictions else []
+        special = list(candidates(self.rest, names, self.equations)) if not self.chart.restrictions else []
         special = [x for x in special if not any(x.vanishes(y) for y in self.nonzero)]
         for candidate in special:
-            place = candidate.place(self.found, exact_rates(self.found))
+            place = candidate.place(self.rest, exact_rates(self.rest))
             if not self._known([float(place.balls[name].mid()) for name in names], 1e-12):
                 self._add(place, EXACT)
         limited = [name for name in names if not self._periodic(name)]
@@ -271,7 +271,7 @@ class SearchInBoxes(Listing):
         left: list[krawczyk.Box] = []
         for group in groups:
             hull = group[0][0].union(group[-1][0])
-            inside = [x for x in special if hull.contains(x.place(self.found, {}).balls[name])]
+            inside = [x for x in special if hull.contains(x.place(self.rest, {}).balls[name])]
             if len(inside) != 1 or not only_root(self.ring, equation, name, inside[0], hull):
                 left += group
         return tuple(left)
@@ -285,12 +285,19 @@ class SearchInBoxes(Listing):
 
     def _square_system(self) -> Square | None:
         """As many of the equations at rest as unknowns: those of the occurring coordinates."""
-        ring, rest = self.ring, self.found
+        ring, rest = self.ring, self.rest
         if rest.rows:
             square = len(self.equations) == len(self.occurring) and not self.case.zero and not self.chart.restrictions
-            kept = sum(not x.is_zero() for x in rest.kept)
+            constraint_count = sum(not x.is_zero() for x in rest.kept)
             return (
-                Square((*self.equations[kept:], *self.equations[:kept]), self.occurring, (), kept) if square else None
+                Square(
+                    (*self.equations[constraint_count:], *self.equations[:constraint_count]),
+                    self.occurring,
+                    (),
+                    constraint_count,
+                )
+                if square
+                else None
             )
         chosen = [
             ring.fraction(x)[0]
@@ -315,7 +322,7 @@ class SearchInBoxes(Listing):
 
         None where some rows follow from others, so that nothing determines their multipliers.
         """
-        ring, rest = self.ring, self.found
+        ring, rest = self.ring, self.rest
         moving = [*rest.turning, *(item.name for item in rest.system.prescribed), "t"]
         redundant = self.ranks[1] is not None and self.ranks[1] < len(rest.rows)
         if (
@@ -324,19 +331,19 @@ class SearchInBoxes(Listing):
             or any(ring.dependencies(x, moving) for x in (*rest.balanced, *rest.kept))
         ):
             return None
-        forces, kept = (
+        forces, constraints = (
             [x for y in of if not (x := ring.fraction(y)[0]).is_zero()] for of in (rest.balanced, rest.kept)
         )
-        equations = [*forces, *kept]
+        equations = [*forces, *constraints]
         coordinates, multipliers = (
             tuple(name for name in names if any(ring.depends_on(x, name) for x in equations))
             for names in (rest.constant, rest.multipliers)
         )
         square = len(equations) == len(coordinates) + len(multipliers) and coordinates == self.occurring
-        return Square(tuple(equations), coordinates, multipliers, len(kept)) if square else None
+        return Square(tuple(equations), coordinates, multipliers, len(constraints)) if square else None
 
     def _add_certified(self, box: Mapping[str, Any], nonzero: Sequence[Polynomial]) -> None:
-        place = Place(self.found, box, {}, None)
+        place = Place(self.rest, box, {}, None)
         with ctx.workprec(PRECISION):
             if any(self.ring.evaluate(x, place.balls).contains(0) for x in nonzero):
                 return
@@ -420,7 +427,7 @@ def _decoupled(sums: Sequence[_Terms], unknowns: Sequence[int]) -> list[_Terms]:
         inverse = arb_mat([[x.get(unit, arb(0)) for unit in units] for x in rows]).inv()
     except ZeroDivisionError:
         return []
-    found = []
+    decoupled = []
     for i in range(len(rows)):
         total: _Terms = {}
         for j, x in enumerate(rows):
@@ -428,8 +435,8 @@ def _decoupled(sums: Sequence[_Terms], unknowns: Sequence[int]) -> list[_Terms]:
                 total[key] = total.get(key, arb(0)) + inverse[i, j] * value
         for j, unit in enumerate(units):
             total[unit] = arb(int(i == j))
-        found.append({key: value for key, value in total.items() if not value.is_zero()})
-    return found
+        decoupled.append({key: value for key, value in total.items() if not value.is_zero()})
+    return decoupled
 
 
 def _bound(ring: Ring, x: _Terms, unknown: int, known: Mapping[int, Any]) -> Any:

@@ -53,7 +53,7 @@ class LinearAtRest:
     varying: tuple[str, ...]
     tilts: tuple[int, ...]
     spin: Polynomial | None
-    found: Rest
+    rest: Rest
     energy: Energy | None
     ignorable: tuple[str, ...]
     #: The equations of motion have no terms of higher order.
@@ -68,7 +68,7 @@ class LinearAtRest:
         """An open verdict decided by terms of higher order of the energy, or by further integrals; else as it is."""
         if not verdict.word.open or verdict.coordinates_singular or self.varying or place.modulus is None:
             return verdict
-        if self.found.rows:
+        if self.rest.rows:
             return verdict
         field = NumberField(place.modulus, place.enclose)
         try:
@@ -83,17 +83,17 @@ class LinearAtRest:
 
     def _by_higher_order(self, place: Place, field: NumberField) -> Verdict | None:
         """Where no coordinate turns, V = T_2 part of the energy apart: K = V'' as a formula gives all derivatives."""
-        ring, names = self.found.ring, self.found.system.coordinates
-        if not self.conservative or self.found.turning or any(x != 0 for row in self.matrices[4] for x in row):
+        ring, names = self.rest.ring, self.rest.system.coordinates
+        if not self.conservative or self.rest.turning or any(x != 0 for row in self.matrices[4] for x in row):
             return None
-        kept = [i for i, name in enumerate(names) if name not in self.ignorable]
-        if not kept:
+        remaining = [i for i, name in enumerate(names) if name not in self.ignorable]
+        if not remaining:
             return None
-        stiffness = [[self.matrices[3][i][j] for j in kept] for i in kept]
+        stiffness = [[self.matrices[3][i][j] for j in remaining] for i in remaining]
         forces = (x for row in (*stiffness, *self.matrices[2]) for x in row)
         if self.law is EnergyLaw.CONSERVED and all(ring.is_zero(x) is True for x in forces):
             return coasting(Because.ALIKE) if self._alike else by_geodesics()
-        of = [names[i] for i in kept]
+        of = [names[i] for i in remaining]
 
         def derivative(i: int, j: int, *further: int) -> Element | None:
             x = stiffness[i][j]
@@ -101,20 +101,20 @@ class LinearAtRest:
                 x = ring.derivative(x, of[k])
             return place.residue(x)
 
-        applied = generalized_forces(self.found.scene).values()
+        applied = generalized_forces(self.rest.scene).values()
         by_velocities = (ring.velocity_derivative(x, name) for x in applied for name in names)
         gyroscopic = any(
             ring.is_zero(x) is not True for x in (*by_velocities, *(x for row in self.matrices[2] for x in row))
         )
-        conserved, only = self.law is EnergyLaw.CONSERVED, len(kept) == len(names)
-        verdict = by_potential(len(kept), derivative, field, conserved, only, gyroscopic)
+        conserved, only = self.law is EnergyLaw.CONSERVED, len(remaining) == len(names)
+        verdict = by_potential(len(remaining), derivative, field, conserved, only, gyroscopic)
         return drifting(verdict) if verdict is not None and self.ignorable else verdict
 
     @property
     def _alike(self) -> bool:
         """Whether all positions are alike for the kinetic energy."""
         try:
-            return constantly_curved(self.found.ring, self.matrices[0], self.found.system.coordinates)
+            return constantly_curved(self.rest.ring, self.matrices[0], self.rest.system.coordinates)
         except Failure:
             return False
 
@@ -126,42 +126,42 @@ class LinearAtRest:
     @cached_property
     def bends(self) -> list[list[list[Polynomial]]]:
         """dJ/dq, a symmetric matrix for each constraint."""
-        ring, names = self.found.ring, self.found.system.coordinates
-        return [[[ring.derivative(x, name) for name in names] for x in row.partials] for row in self.found.rows]
+        ring, names = self.rest.ring, self.rest.system.coordinates
+        return [[[ring.derivative(x, name) for name in names] for x in row.partials] for row in self.rest.rows]
 
     @cached_property
     def _conserved(self) -> Conserved | None:
         """The integrals, where the energy is conserved and some momentum is."""
         if self.energy is None or not self.conservative:
             return None
-        return conserved(self.found.scene, self.energy, self.ignorable, self.found.turning)
+        return conserved(self.rest.scene, self.energy, self.ignorable, self.rest.turning)
 
     def _by_first_approximation(self, place: Place) -> Verdict:
         if self.varying:
             return undecided(Because.VARIES, ", ".join(self.varying))
-        if self.found.rows:
+        if self.rest.rows:
             return self._constrained(place)
         values = [[[place.ball(x) for x in row] for row in rows_] for rows_ in self.matrices]
         exact = [[[place.residue(x) for x in row] for row in rows_] for rows_ in self.matrices]
-        return self._of(values, exact, place, range(len(self.found.system.coordinates)))
+        return self._of(values, exact, place, range(len(self.rest.system.coordinates)))
 
     def _constrained(self, place: Place) -> Verdict:
         """M, D, G, K, N on the displacements Y that constraints allow, K with the curvature of the constraints:
 
         Y^T X Y,    Y^T (K - sum lambda_k dJ_k/dq) Y,    J Y = 0,    f + J^T lambda = 0
         """
-        if not all(row.name.holonomic for row in self.found.rows):
+        if not all(row.name.holonomic for row in self.rest.rows):
             return undecided(Because.NO_EQUATIONS, OF_VELOCITIES)
         numbers: Algebra[Any] = Balls({}) if place.modulus is None else NumberField(place.modulus, place.enclose)
         look = place.ball if place.modulus is None else place.residue
-        n = len(self.found.system.coordinates)
+        n = len(self.rest.system.coordinates)
         with ctx.workprec(PRECISION):
             try:
                 parts = [[[look(x) for x in row] for row in rows_] for rows_ in self.matrices]
-                jacobian = [[look(x) for x in row.partials] for row in self.found.rows]
+                jacobian = [[look(x) for x in row.partials] for row in self.rest.rows]
                 table = [
                     [*column, -look(f)]
-                    for column, f in zip(zip(*jacobian, strict=True), self.found.at_rest, strict=True)
+                    for column, f in zip(zip(*jacobian, strict=True), self.rest.at_rest, strict=True)
                 ]
                 bends = [[[look(x) for x in line] for line in bend] for bend in self.bends]
                 if any(x is None for rows_ in (*parts, jacobian, table, *bends) for row in rows_ for x in row):
@@ -196,19 +196,19 @@ class LinearAtRest:
                 exact, values = made, [[[place.enclose(x) for x in row] for row in rows_] for rows_ in made]
         return self._of(values, exact, place, [k for k in range(n) if k not in pivots])
 
-    def _of(self, values: Rows, exact: Rows, place: Place, kept: Sequence[int]) -> Verdict:
-        """The verdict on matrices in the coordinates ``kept``."""
+    def _of(self, values: Rows, exact: Rows, place: Place, remaining: Sequence[int]) -> Verdict:
+        """The verdict on matrices in the coordinates ``remaining``."""
         rational = all(x is not None and x.degree() <= 0 for rows_ in exact for row in rows_ for x in row)
         verdicts = []
         for indices in blocks(*values):
             cyclic = tuple(
                 at
                 for at, i in enumerate(indices)
-                if kept[i] in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
+                if remaining[i] in self.cyclic and all(values[m][i][j] == 0 for m in (3, 4) for j in indices)
             )
             if rational:
                 parts = [[[exact[m][i][j][0] for j in indices] for i in indices] for m in range(5)]
-                names = tuple(self.found.system.coordinates[kept[i]] for i in indices)
+                names = tuple(self.rest.system.coordinates[remaining[i]] for i in indices)
                 rate = self._rate(place) if {*self.tilts} <= {*indices} else None
                 verdicts.append(_rational_verdict(parts, self.conservative, cyclic, rate, names, self.exact))
             else:

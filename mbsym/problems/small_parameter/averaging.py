@@ -129,7 +129,7 @@ class Order:
     def split(self, p: Polynomial, what: str) -> tuple[Polynomial, Polynomial]:
         """The terms of order eps^-1 and eps^0.  Raises NoClosedForm where p has larger ones, or hides what matters."""
         self.refuse_hidden(p, what)
-        found: tuple[dict[Any, Any], dict[Any, Any]] = {}, {}
+        by_order: tuple[dict[Any, Any], dict[Any, Any]] = {}, {}
         for monomial, c in p.to_dict().items():
             power = sum(k * monomial[at] for at, k in self.amplitudes.items())
             power -= sum(monomial[at] for at in self.rates)
@@ -140,20 +140,20 @@ class Order:
                     what=what,
                 )
             if power <= 0:
-                found[power + 1][monomial] = c
-        grown, kept = found
-        return self.ring.context.from_dict(grown), self.ring.context.from_dict(kept)
+                by_order[power + 1][monomial] = c
+        grown, bounded = by_order
+        return self.ring.context.from_dict(grown), self.ring.context.from_dict(bounded)
 
     def unshaken(self, p: Polynomial) -> Polynomial:
         """The terms in which neither the rate nor an amplitude stands."""
         scaled = (*self.rates, *self.amplitudes)
-        kept = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in scaled)}
-        return self.ring.context.from_dict(kept)
+        terms = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in scaled)}
+        return self.ring.context.from_dict(terms)
 
     def unscaled(self, p: Polynomial) -> Polynomial:
         """The terms in which no amplitude stands."""
-        kept = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in self.amplitudes)}
-        return self.ring.context.from_dict(kept)
+        terms = {m: c for m, c in p.to_dict().items() if not any(m[k] for k in self.amplitudes)}
+        return self.ring.context.from_dict(terms)
 
     def holds_phase(self, p: Polynomial) -> bool:
         degrees = p.degrees()
@@ -237,9 +237,14 @@ class Order:
         s, c = ring.zero, ring.one
         for n, (sine, cosine, itself) in zip(k, self.phases, strict=True):
             times = int(n / self._unit(sine, itself))
-            one, other = ring.multiple_angle(ring.context.gen(sine), ring.context.gen(cosine), abs(times))
-            one = one if times >= 0 else -one
-            s, c = ring.times(s, other) + ring.times(c, one), ring.times(c, other) - ring.times(s, one)
+            sine_multiple, cosine_multiple = ring.multiple_angle(
+                ring.context.gen(sine), ring.context.gen(cosine), abs(times)
+            )
+            sine_multiple = sine_multiple if times >= 0 else -sine_multiple
+            s, c = (
+                ring.times(s, cosine_multiple) + ring.times(c, sine_multiple),
+                ring.times(c, cosine_multiple) - ring.times(s, sine_multiple),
+            )
         return s, c
 
     def refuse_hidden(self, p: Polynomial, what: str) -> None:
@@ -264,18 +269,18 @@ class Order:
 
 def _odd(n: int) -> int:
     """(n - 1)!!"""
-    found = 1
+    product = 1
     for k in range(n - 1, 0, -2):
-        found *= k
-    return found
+        product *= k
+    return product
 
 
 def _even(n: int) -> int:
     """n!!"""
-    found = 1
+    product = 1
     for k in range(n, 0, -2):
-        found *= k
-    return found
+        product *= k
+    return product
 
 
 def _exponentials(a: int, b: int) -> dict[int, tuple[fmpq, fmpq]]:
@@ -311,12 +316,12 @@ def averaged(
     whole_force, whole_rest = (moving(x.polynomial) for x in (energy.force_function, energy.A0))
     for what, parts in (("T", [*(x.polynomial for x in energy.A1), whole_rest]), ("U", [whole_force])):
         if any(order.holds_phase(order.unscaled(x)) for x in parts):
-            told = ", ".join(orders)
+            amplitudes = ", ".join(orders)
             raise NoClosedForm(
                 "[[what]] depends on [[phase]] also where [[told]] = 0",
                 what=what,
                 phase=phase,
-                told=told,
+                told=amplitudes,
                 remedy=_REMEDY,
             )
     if not ring.vanishes(moving(order.mean(grown, "U"))):
@@ -490,18 +495,18 @@ def orders_of(scene: Scene[Polynomial], energy: Energy, phases: Mapping[str, str
     if waves:
         mass = [x for row in energy.A2.polynomials for x in row]
         killing = {name: k for name, k in parameters.items() if all(m[k] for m in waves)}
-        found = [name for name, k in killing.items() if not any(p.degrees()[k] > 0 for p in mass)]
-        found = found or [name for name, k in killing.items() if _has_mass_without(ring, energy, k)]
-        if not found:
+        small = [name for name, k in killing.items() if not any(p.degrees()[k] > 0 for p in mass)]
+        small = small or [name for name, k in killing.items() if _has_mass_without(ring, energy, k)]
+        if not small:
             beside = [name for name, k in parameters.items() if not any(p.degrees()[k] > 0 for p in mass)]
             every = [few for few in _choices(beside) if all(any(m[parameters[n]] for n in few) for m in waves)]
             least = [few for few in every if len(few) == min(map(len, every))]
-            found = list(least[0]) if len(least) == 1 else []
-        elif len(found) > 1:
-            found = []
-        if not found:
+            small = list(least[0]) if len(least) == 1 else []
+        elif len(small) > 1:
+            small = []
+        if not small:
             raise NoClosedForm("which parameters are small is not plain: name what [[phase]] shakes", phase=phase)
-        orders |= dict.fromkeys(found, 1)
+        orders |= dict.fromkeys(small, 1)
     shaken = [parameters[name] for name in orders]
     means = {what: order.mean(p, what) for what, p in loads.items()}
     left = [
@@ -556,12 +561,12 @@ def _power(
 
 def _hidden(ring: Ring, formulas: Sequence[Polynomial]) -> set[int]:
     """What stands in denominators, roots and functions."""
-    found: set[int] = set()
+    hidden: set[int] = set()
     ahead = [ring.generators[k].argument for k in occurring(formulas)]
     while ahead:
         argument = ahead.pop()
         if argument is not None:
-            new = set(occurring([argument])) - found
-            found |= new
+            new = set(occurring([argument])) - hidden
+            hidden |= new
             ahead += [ring.generators[k].argument for k in new]
-    return found
+    return hidden

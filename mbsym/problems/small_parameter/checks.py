@@ -35,7 +35,7 @@ def residual_orders(
         for name in names
     }
     at = [values[name] for name in names]
-    series = dict(zip(fast, (_polynomial(one, at) for one in functions), strict=True))
+    series = dict(zip(fast, (_polynomial(function, at) for function in functions), strict=True))
     shift = max(
         (
             -sum(weights.get(n, 0) * int(e) for n, e in zip(names, m, strict=True))
@@ -62,20 +62,21 @@ def residual_orders(
     least = min(
         sum(weights.get(n, 0) * int(e) for n, e in zip(names, m, strict=True)) for m in field.denominator.monoms()
     )
-    found: list[int | None] = []
-    for name, one in zip(fast, functions, strict=True):
+    orders: list[int | None] = []
+    for name, function in zip(fast, functions, strict=True):
         rest = rows[name]
         for other in field.variables:
             if other not in fast:
                 place = names.index(other)
                 slope = Series(
-                    one.context, {k: d for k, c in one.coefficients.items() if not (d := c.derivative(place)).is_zero}
+                    function.context,
+                    {k: d for k, c in function.coefficients.items() if not (d := c.derivative(place)).is_zero},
                 )
                 rest -= _polynomial(slope, at) * rows[other]
         scale = there.scales[field.variables.index(name)]
         order = next((k for k, c in enumerate(rest.coeffs()) if c != 0), None)
-        found.append(None if order is None else order - shift - least + scale)
-    return tuple(found)
+        orders.append(None if order is None else order - shift - least + scale)
+    return tuple(orders)
 
 
 def _polynomial(series: Series, at: Sequence[fmpq]) -> fmpq_poly:
@@ -142,29 +143,31 @@ class Numbers:
         return p.derivative(place) * self.cosine - p.derivative(place + 1) * self.sine
 
 
-def _chebyshev(one: Any, x: Any, k: int) -> tuple[Any, Any]:
+def _chebyshev(unit: Any, x: Any, k: int) -> tuple[Any, Any]:
     """T_k and U_(k-1)."""
-    first, second = [one, x], [one * 0, one]
+    first, second = [unit, x], [unit * 0, unit]
     while len(first) <= k:
         first.append(2 * x * first[-1] - first[-2])
         second.append(2 * x * second[-1] - second[-2])
     return first[k], second[k]
 
 
-def oscillation_orders(rows: Any, names: Sequence[str], found: Oscillation, seed: int = 1) -> tuple[int | None, ...]:
-    """The lowest order of eps in f(X) - omega (1 + eps nu_1 + ...) X'(T) for each variable of ``found``, then for its
+def oscillation_orders(
+    rows: Any, names: Sequence[str], oscillation: Oscillation, seed: int = 1
+) -> tuple[int | None, ...]:
+    """The lowest order of eps in f(X) - omega (1 + eps nu_1 + ...) X'(T) for each variable of the solution, then its
     drifting ones.  None: nothing is left."""
     try:
-        numbers = Numbers(found, seed)
-        speed = _speed(numbers, found)
-        series = _all_series(numbers, found)
+        numbers = Numbers(oscillation, seed)
+        speed = _speed(numbers, oscillation)
+        series = _all_series(numbers, oscillation)
     except ZeroDivisionError:  # a denominator vanishes at these numbers
         if seed > MOST_SEEDS:
             raise
-        return oscillation_orders(rows, names, found, seed + 1)
+        return oscillation_orders(rows, names, oscillation, seed + 1)
     context, eps = numbers.context, numbers.eps
     rates = {}
-    for drift in found.drifts:
+    for drift in oscillation.drifts:
         series[drift.variable] = numbers.series(drift.waves)
         rates[drift.variable] = sum((numbers(x) * eps**n for n, x in enumerate(drift.rates)), context.constant(0))
     powers: dict[tuple[str, int], Any] = {}
@@ -176,7 +179,7 @@ def oscillation_orders(rows: Any, names: Sequence[str], found: Oscillation, seed
         return powers[name, exponent]
 
     result: list[int | None] = []
-    for name in (*found.names, *rates):
+    for name in (*oscillation.names, *rates):
         left = numbers.slope(series[name]) * speed + rates.get(name, 0)
         for k, terms in rows[names.index(name)].items():
             for exponents, c in terms.items():
@@ -191,12 +194,14 @@ def oscillation_orders(rows: Any, names: Sequence[str], found: Oscillation, seed
     return tuple(result)
 
 
-def _speed(numbers: Numbers, found: Oscillation) -> Any:
+def _speed(numbers: Numbers, oscillation: Oscillation) -> Any:
     """omega (1 + eps nu_1 + ...)."""
     zero = numbers.context.constant(0)
-    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(found.corrections)), zero)
-    return numbers(found.frequency) * (1 + shifts)
+    shifts = sum((numbers(x) * numbers.eps ** (k + 1) for k, x in enumerate(oscillation.corrections)), zero)
+    return numbers(oscillation.frequency) * (1 + shifts)
 
 
-def _all_series(numbers: Numbers, found: Oscillation) -> dict[str, Any]:
-    return {name: numbers.series(one) for name, one in zip(found.names, found.series, strict=True)}
+def _all_series(numbers: Numbers, oscillation: Oscillation) -> dict[str, Any]:
+    return {
+        name: numbers.series(harmonics) for name, harmonics in zip(oscillation.names, oscillation.series, strict=True)
+    }

@@ -82,11 +82,11 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
         for exponents, c in rows[i][0].items():
             rest = [(j, e) for j, e in enumerate(exponents) if e and j not in values]
             if len(rest) > 1 or any(e > 1 for _, e in rest):
-                told = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
+                term = "*".join(f"{names[j]}**{e}" if e > 1 else names[j] for j, e in rest)
                 raise NoClosedForm(
                     "the equations are not quasi-linear: without the small parameter that of [[name]] holds [[told]]",
                     name=names[i],
-                    told=told,
+                    told=term,
                     remedy="declare which variables are small: 'small parameter: {eps: {powers: {x: 1}}}'",
                 )
             for j, e in enumerate(exponents):
@@ -99,29 +99,29 @@ def generating(tower: Tower, names: Sequence[str], rows: Rows, start: Callable[[
                 shift[i] = shift[i] + c if i in shift else c
     matrix = {key: c for key, c in matrix.items() if not c.is_zero()}
     blocks = _blocks(moving, matrix)
-    found = Generating(tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, ())
-    roots = [(block, _roots_of(found, block)) for block in blocks]
+    system = Generating(tower, tuple(names), rows, constant, moving, aside, matrix, shift, blocks, ())
+    roots = [(block, _roots_of(system, block)) for block in blocks]
     return replace(
-        found,
-        modes=tuple(x for _, one in roots for x in one.modes),
-        damped=tuple(block for block, one in roots if one.damped),
-        with_zero=tuple(block for block, one in roots if one.zero),
-        not_known=tuple(block for block, one in roots if one.not_known),
+        system,
+        modes=tuple(x for _, block_roots in roots for x in block_roots.modes),
+        damped=tuple(block for block, block_roots in roots if block_roots.damped),
+        with_zero=tuple(block for block, block_roots in roots if block_roots.zero),
+        not_known=tuple(block for block, block_roots in roots if block_roots.not_known),
     )
 
 
 def _aside(rows: Rows, count: int) -> tuple[int, ...]:
     """Variables on which no other equation depends, one after the other; what is found first is integrated last."""
     left = list(range(count))
-    found: list[int] = []
+    aside: list[int] = []
     while True:
         used = {
             j for i in left for part in rows[i].values() for exponents in part for j, e in enumerate(exponents) if e
         }
         fresh = [i for i in left if i not in used]
         if not fresh or len(fresh) == len(left):
-            return tuple(reversed(found))
-        found += fresh
+            return tuple(reversed(aside))
+        aside += fresh
         left = [i for i in left if i not in fresh]
 
 
@@ -149,13 +149,13 @@ class _Roots:
     not_known: bool
 
 
-def _roots_of(found: Generating, block: tuple[int, ...]) -> _Roots:
-    tower = found.tower
+def _roots_of(system: Generating, block: tuple[int, ...]) -> _Roots:
+    tower = system.tower
     if len(block) > MOST_BLOCK:
         raise NoClosedForm(
             "more than [[most]] variables oscillate together without the small parameter", most=MOST_BLOCK
         )
-    whole = faddeev(found.block_matrix(block), tower.zero, tower.one)[1]  # low to high
+    whole = faddeev(system.block_matrix(block), tower.zero, tower.one)[1]  # low to high
     coefficients = without_zeros(whole)
     factors = [coefficients] if _even(coefficients) else _factors(tower, coefficients)
     even = [factor for factor in factors if _even(factor)]

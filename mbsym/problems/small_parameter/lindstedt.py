@@ -141,8 +141,8 @@ class Orders:
     def go_on(self) -> None:
         """One order more.  Raises Demand, Resonance."""
         system, order = self.system, self.complete
-        for one in self.series:
-            one.append(self.nothing)
+        for series in self.series:
+            series.append(self.nothing)
         for i in system.constant:
             slope = self.forcing(i, order)
             if not slope.mean.is_zero():
@@ -157,12 +157,12 @@ class Orders:
 
     def _answer(self, block: tuple[int, ...], forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
         """The forced oscillations of a block."""
-        found: list[dict[int, Any]] = [{} for _ in block]
+        oscillations: list[dict[int, Any]] = [{} for _ in block]
         for k in sorted({k for harmonics in forcing for k in harmonics.waves}):
             cosines, sines = self._at(block, [harmonics.wave(k) for harmonics in forcing], k, order)
             for place, wave in enumerate(zip(cosines, sines, strict=True)):
-                found[place][k] = wave
-        return [Harmonics(self.tower, one) for one in found]
+                oscillations[place][k] = wave
+        return [Harmonics(self.tower, waves) for waves in oscillations]
 
     def _at(
         self, block: tuple[int, ...], forcing: Sequence[tuple[Element, Element]], k: int, order: int
@@ -220,8 +220,8 @@ class Orders:
     def _led(self, forcing: Sequence[Harmonics], order: int) -> list[Harmonics]:
         """The block that oscillates by itself: its frequency is corrected, its amplitude may be determined."""
         tower, block, size = self.tower, self.mode.block, len(self.mode.block)
-        rest = [Harmonics(tower, {k: wave for k, wave in one.waves.items() if k != 1}) for one in forcing]
-        found = self._answer(block, rest, order)
+        rest = [Harmonics(tower, {k: wave for k, wave in harmonics.waves.items() if k != 1}) for harmonics in forcing]
+        oscillations = self._answer(block, rest, order)
         # l G = i omega nu a (l v), G = F_c - i F_s.
         top = bottom = (tower.zero, tower.zero)
         for l, harmonics, v in zip(self.left, forcing, self.right, strict=True):
@@ -241,12 +241,14 @@ class Orders:
             a, b = harmonics.wave(1)
             own = Harmonics(tower, {1: (c * self.amplitude, -(s * self.amplitude))}).slope().wave(1)
             loads.append((a - own[0] * shift * speed, b - own[1] * shift * speed))
-        kept = [j for j in range(size) if j != place]
+        others = [j for j in range(size) if j != place]
         upper = [
-            [*(row[j] for j in kept), *(-speed if i == j else zero for j in kept)] for i, row in enumerate(self.matrix)
+            [*(row[j] for j in others), *(-speed if i == j else zero for j in others)]
+            for i, row in enumerate(self.matrix)
         ]
         lower = [
-            [*(speed if i == j else zero for j in kept), *(row[j] for j in kept)] for i, row in enumerate(self.matrix)
+            [*(speed if i == j else zero for j in others), *(row[j] for j in others)]
+            for i, row in enumerate(self.matrix)
         ]
         answer = solved(tower, [*upper, *lower], [*(-c for c, _ in loads), *(-s for _, s in loads)])
         if answer is None:
@@ -256,13 +258,13 @@ class Orders:
             )
         self._divided(block, 1, order, [*answer, shift])
         known = [(zero, zero)] * size
-        for n, j in enumerate(kept):
-            known[j] = (answer[n], answer[len(kept) + n])
-        correction = tower.parameter(self.corrections[order - 1]) if self.corrections else -found[place].start
+        for n, j in enumerate(others):
+            known[j] = (answer[n], answer[len(others) + n])
+        correction = tower.parameter(self.corrections[order - 1]) if self.corrections else -oscillations[place].start
         for j, (c, s) in enumerate(self.right):
             wave = (known[j][0] + c * correction, known[j][1] - s * correction)
-            found[j] = found[j] + Harmonics(tower, {1: wave})
-        return found
+            oscillations[j] = oscillations[j] + Harmonics(tower, {1: wave})
+        return oscillations
 
     def quadratures(self, order: int) -> list[Drift]:
         """The variables that no equation needs; those that depend on one that drifts are left out."""

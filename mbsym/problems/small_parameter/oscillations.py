@@ -55,7 +55,7 @@ class ModeIsOpen(NoClosedForm):
     def __init__(self, blocks: Sequence[tuple[str, ...]]) -> None:
         self.blocks = tuple(blocks)
         counts = Counter(self.blocks)
-        message = joined((_together(one, n) for one, n in counts.items()), "; ")
+        message = joined((_together(block, n) for block, n in counts.items()), "; ")
         remedy = Message(
             "name a variable whose oscillation leads: --of NAME, or 'leading: NAME' under the small parameter"
         )
@@ -124,7 +124,7 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
             for _ in range(order):
                 orders.go_on()
     names = [i for i in range(len(there.names)) if i not in system.aside]
-    found = Oscillation(
+    solution = Oscillation(
         tower,
         there.small,
         order,
@@ -140,36 +140,42 @@ def oscillation(there: Equations, order: int, leading: str = "", which: int = 1)
         tuple(tuple(orders.series[i][: order + 1]) for i in names),
         tuple(orders.quadratures(order)),
         tuple(divisor for divisor in orders.divisors if divisor.order <= order),
-        tuple((tuple(there.names[i] for i in one.block), one.square) for one in system.modes if one is not mode),
+        tuple(
+            (tuple(there.names[i] for i in other_mode.block), other_mode.square)
+            for other_mode in system.modes
+            if other_mode is not mode
+        ),
         damped=_named(there, system.damped),
         with_zero=_named(there, system.with_zero),
         not_known=_named(there, system.not_known),
         other_amplitudes=others,
     )
     return replace(
-        found, residuals=oscillation_orders(there.rows, there.names, found), exponent=_exponent(there, found, names)
+        solution,
+        residuals=oscillation_orders(there.rows, there.names, solution),
+        exponent=_exponent(there, solution, names),
     )
 
 
-def _exponent(there: Equations, found: Oscillation, names: Sequence[int]) -> tuple[int, Element] | None:
+def _exponent(there: Equations, solution: Oscillation, names: Sequence[int]) -> tuple[int, Element] | None:
     """Poincare's characteristic exponent of a cycle of two variables: the mean of div X over the period, first term.
 
     The phase runs evenly, so that it is the mean over the phase of  sum_i dX_i/dx_i  on the series.  None of families,
     of more variables, and where it vanishes in all orders that are known.
     """
-    if found.kind is Amplitude.FREE or len(names) != 2 or found.drifts:
+    if solution.kind is Amplitude.FREE or len(names) != 2 or solution.drifts:
         return None
-    tower, series = found.tower, dict(zip(names, found.series, strict=True))
+    tower, series = solution.tower, dict(zip(names, solution.series, strict=True))
     harmonics = Harmonics.constant(tower, tower.one)
-    total = [Harmonics(tower, {}) for _ in range(found.order + 1)]
+    total = [Harmonics(tower, {}) for _ in range(solution.order + 1)]
     for i in names:
         for k, terms in there.rows[i].items():
             for exponents, c in terms.items():
-                if not exponents[i] or k > found.order:
+                if not exponents[i] or k > solution.order:
                     continue
                 product = {k: harmonics.scaled(c * exponents[i])}
                 for j in (place for place, e in enumerate(exponents) for _ in range(e - (place == i))):
-                    product = _times(product, series[j], found.order)
+                    product = _times(product, series[j], solution.order)
                 for n, part in product.items():
                     total[n] = total[n] + part
     return next(((n, part.mean) for n, part in enumerate(total) if not part.mean.is_zero()), None)
@@ -215,13 +221,13 @@ def _mode(there: Equations, system: Generating, leading: str, which: int) -> Mod
     if len({mode.block for mode in own}) > 1 or (len(own) > 1 and not leading):
         raise ModeIsOpen([tuple(there.names[i] for i in mode.block) for mode in own])
     if which > len(own):
-        one = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
+        single = "without the small parameter [[names]] have one frequency: there is none with the number [[which]]"
         more = (
             "without the small parameter [[names]] have [[count]] frequencies: there is none with the number [[which]]"
         )
         names = ", ".join(there.names[i] for i in own[0].block)
         if len(own) == 1:
-            raise NoClosedForm(one, names=names, which=which)
+            raise NoClosedForm(single, names=names, which=which)
         raise NoClosedForm(more, names=names, count=len(own), which=which)
     return own[which - 1]
 
@@ -250,11 +256,11 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
         if factor.degrees()[place] == 0:
             of_parameters = of_parameters * factor
         elif factor != tower.context.gens()[place]:
-            found = _squares(there, _by_powers(tower, factor, place))
-            if found is None:
+            factor_squares = _squares(there, _by_powers(tower, factor, place))
+            if factor_squares is None:
                 unsolved.append(tower.made(factor, tower.context.constant(1)))
-            real = [x for x in found or () if there.sign(x) != "negative"]
-            imaginary = imaginary or len(real) < len(found or ())
+            real = [x for x in factor_squares or () if there.sign(x) != "negative"]
+            imaginary = imaginary or len(real) < len(factor_squares or ())
             squares += [x for x in real if not any((x - y).is_zero() for y in squares)]
     if not squares and imaginary and not unsolved and of_parameters.is_constant():
         if any(name != AMPLITUDE for name in there.values):
@@ -277,8 +283,8 @@ def _determined(there: Equations, leading: str, demand: Demand) -> tuple[Element
         chosen = elements[0]
     rest = [symbol * symbol - x for x in squares if x is not chosen] + unsolved
     others = None
-    for one in rest:
-        others = one if others is None else others * one
+    for condition in rest:
+        others = condition if others is None else others * condition
     return _positive_root(tower, chosen), others
 
 
@@ -350,15 +356,15 @@ def _secular(there: Equations, order: int, condition: Any) -> NoClosedForm:
     where = Message("in the order [[order]] of [[small]] secular terms remain", order=order, small=there.small)
     if condition.is_constant():
         return NotPeriodic("[[none]]: [[where]] for every real amplitude", none=none, where=where)
-    told = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
+    formula = there.told(tower.made(condition / condition.leading_coefficient(), tower.context.constant(1)))
     degrees = zip(tower.parameters, condition.degrees()[MOST_ROOTS:], strict=True)
     if any(degree > 0 and name.startswith("#") for name, degree in degrees):
         return NoClosedForm(
             "[[where]] unless [[told]] = 0: values of variables that this determines are not found here",
             where=where,
-            told=told,
+            told=formula,
         )
-    return NotPeriodic("[[none]]: [[where]] unless [[told]] = 0", none=none, where=where, told=told)
+    return NotPeriodic("[[none]]: [[where]] unless [[told]] = 0", none=none, where=where, told=formula)
 
 
 def _but_powers(tower: Tower, demand: Demand) -> Any:
@@ -391,8 +397,8 @@ def _with_corrections(there: Equations, orders: Orders, order: int, first: int) 
             images = list(tower.context.gens())
             images[place] = tower.context.constant(0)
             rest = top.compose(*images, ctx=tower.context)
-            one = tower.context.constant(1)
-            _put(orders, place, tower.made(-rest, one) / tower.made(slope, one))
+            unit = tower.context.constant(1)
+            _put(orders, place, tower.made(-rest, unit) / tower.made(slope, unit))
 
 
 def _put(orders: Orders, place: int, value: Element) -> None:
@@ -409,12 +415,7 @@ def _put(orders: Orders, place: int, value: Element) -> None:
             total = total * value + part
         return total / tower.made(x.bottom, tower.context.constant(1))
 
-    for i, one in enumerate(orders.series):
-        orders.series[i] = [x.mapped(change) for x in one[: orders.complete]]
+    for i, series in enumerate(orders.series):
+        orders.series[i] = [x.mapped(change) for x in series[: orders.complete]]
     orders.shifts = [change(x) for x in orders.shifts[: orders.complete - 1]]
     orders.products.clear()
-
-
-def values_of(found: Oscillation) -> Mapping[str, Element]:
-    """Constants of the solution by the symbols that stand for them in the tower."""
-    return {AMPLITUDE: found.amplitude, **{f"#{name}": x for name, x in found.constants}}

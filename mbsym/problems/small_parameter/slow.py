@@ -189,15 +189,15 @@ def adjoined(
 
 def _linear_in_one(left: Sequence[Quotient], unknown: Sequence[int]) -> tuple[int, int, Quotient] | None:
     """(row, place, value) of the shortest equation p z + q = 0 with p free of the unknown ones."""
-    found = []
+    candidates = []
     for at, row in enumerate(left):
         for place in unknown:
             factor = row.top.derivative(place)
             if factor != 0 and not any(factor.degrees()[k] > 0 for k in unknown):
-                found.append((len(row.top), at, place, factor))
-    if not found:
+                candidates.append((len(row.top), at, place, factor))
+    if not candidates:
         return None
-    _, at, place, factor = min(found, key=lambda one: one[:3])
+    _, at, place, factor = min(candidates, key=lambda candidate: candidate[:3])
     rest = left[at].top - factor * factor.context().gen(place)
     return at, place, Quotient.of(-rest, factor)
 
@@ -260,19 +260,19 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
     others = [i for i, name in enumerate(names) if i not in swift and name not in slow]
     looked = 0
     for constant, more in ((constant, more) for constant in (True, False) for more in range(len(others) + 1)):
-        found = []
+        candidates = []
         for chosen in combinations(others, more):
             looked += 1
             if looked > MOST_CHOICES:
                 raise NoClosedForm("too many variables to find the fast ones among them", remedy=DECLARE)
             places = tuple(sorted((*swift, *chosen)))
             if roots(there, places, constant).any:
-                found.append(places)
-        if len(found) > 1:
-            told = "; ".join(", ".join(names[i] for i in one) for one in found[:3])
-            raise NoClosedForm("which variables are fast is not clear: [[told]]", told=told, remedy=DECLARE)
-        if found:
-            return tuple(names[i] for i in found[0])
+                candidates.append(places)
+        if len(candidates) > 1:
+            choices = "; ".join(", ".join(names[i] for i in places) for places in candidates[:3])
+            raise NoClosedForm("which variables are fast is not clear: [[told]]", told=choices, remedy=DECLARE)
+        if candidates:
+            return tuple(names[i] for i in candidates[0])
     raise NoClosedForm(
         "the lowest order in the small parameter does not determine fast variables by slow ones: it is singular, or "
         "not solved by equations that are linear or quadratic in one of them",
@@ -282,15 +282,15 @@ def fast_variables(there: ScaledField, slow: Sequence[str] = ()) -> tuple[str, .
 
 def roots_of(there: ScaledField, fast: Sequence[str]) -> Roots:
     """Where the lowest order of the equations of ``fast`` vanishes.  Raises NoClosedForm where that is not known."""
-    found = roots(there, [there.field.variables.index(name) for name in fast])
-    if not found.any:
+    solutions = roots(there, [there.field.variables.index(name) for name in fast])
+    if not solutions.any:
         raise NoClosedForm(
             "at the lowest order in [[small]] the equations of [[fast]] do not determine them: they are "
             "singular, or not solved by equations that are linear or quadratic in one of them",
             small=there.small,
             fast=", ".join(fast),
         )
-    return found
+    return solutions
 
 
 DECLARE = "declare them: 'small parameter: {eps: {fast: [x, y]}}'"
@@ -312,8 +312,8 @@ def manifold(there: ScaledField, fast: Sequence[str], order: int, start: Root | 
     functions = [Series.constant(value) for value in start.values]
     for _ in range(MOST_STEPS):
         left = equations(there, indices, slow, functions, on, order + 1)
-        if not any(one.coefficients for one in left):
-            return [one.exactly() for one in functions]
+        if not any(series.coefficients for series in left):
+            return [function.exactly() for function in functions]
         changed = []
         for function, row in zip(functions, start.inverse, strict=True):
             for c, series in zip(row, left, strict=True):
@@ -341,7 +341,7 @@ def equations(
     first = len(there.field.parameters)
     flows: dict[int, Series] = {}
     deep = None if known is None else known + max(0, max(-there.scales[i] for i in fast))
-    found = []
+    residuals = []
     for place, i in enumerate(fast):
         k = there.scales[i]
         most = None if known is None else known - k
@@ -352,8 +352,8 @@ def equations(
                 if j not in flows:
                     flows[j] = on(there.rows[j], functions, deep)
                 rest = rest - (slope * flows[j]).up_to(most)
-        found.append(rest.shifted(k))
-    return found
+        residuals.append(rest.shifted(k))
+    return residuals
 
 
 def divisors(
@@ -379,11 +379,11 @@ def flow(there: ScaledField, fast: Sequence[str], functions: Sequence[Series], o
         raise NoClosedForm(
             "the matrix of inertia is singular at [[small]] = 0 on the whole manifold", small=there.small
         )
-    found = {}
+    rates = {}
     for name, row in zip(there.field.variables, there.rows, strict=True):
         if name not in fast:
-            found[name] = on(row, near, None).over(below, order + 1)
-    return found
+            rates[name] = on(row, near, None).over(below, order + 1)
+    return rates
 
 
 def without_root(flow: dict[str, Series], root: Adjoined, names: Sequence[str]) -> dict[str, Series]:
@@ -447,8 +447,8 @@ def steady_states(
         quotients = {k: at(c) for k, c in x.coefficients.items()}
         return Series(context, {k: c for k, c in quotients.items() if not c.is_zero}, x.known)
 
-    for name, one in flow.items():
-        if on(one).coefficients:
+    for name, rate in flow.items():
+        if on(rate).coefficients:
             raise NoClosedForm(
                 "the motion is no steady state on the manifold: [[name]] does not stay constant", name=name
             )
@@ -482,10 +482,10 @@ def steady_states(
             raise NoClosedForm("the flow on the manifold does not keep the zero roots: the expansion is wrong")
     narrow = narrow[: len(narrow) - zeros]
     quotient, rest = divided(whole, narrow)
-    for one in rest:
-        if one.coefficients:
+    for part in rest:
+        if part.coefficients:
             raise NoClosedForm("the roots of the flow on the manifold are none of the system: the expansion is wrong")
-    remainder = min((one.known for one in rest if one.known is not None), default=order + 1)
+    remainder = min((part.known for part in rest if part.known is not None), default=order + 1)
     free = _free(there, values)
     return SteadyStates(
         zeros, hurwitz(context, narrow), hurwitz(context, quotient), remainder, free if len(free) == zeros else ()

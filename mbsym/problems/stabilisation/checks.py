@@ -25,21 +25,23 @@ from mbsym.problems.stability.exact import inertia
 POINTS = 3
 
 
-def check_stabilisation(scene: Scene[Any], linear: Linearisation, found: Stabilisation) -> Check | None:
+def check_stabilisation(scene: Scene[Any], linear: Linearisation, stabilisation: Stabilisation) -> Check | None:
     """Degrees of instability, pervasiveness and controllability, each at random points off the places told.
 
     None where the matrices are irrational at all of them.
     """
     wrong: set[str] = set()
     compared = 0
-    if len(linear.coordinates) > MOST_COORDINATES or not (found.gyroscopic or found.dissipation or found.control):
+    if len(linear.coordinates) > MOST_COORDINATES or not (
+        stabilisation.gyroscopic or stabilisation.dissipation or stabilisation.control
+    ):
         return None  # too large, or nothing is said
     for values in _points(scene):
         there = at_values(scene, linear, values)
         if there is None:
             continue
         compared += 1
-        wrong |= set(_wrong(scene, linear, found, there, values))
+        wrong |= set(_wrong(scene, linear, stabilisation, there, values))
         if compared == POINTS:
             break
     first, second = "minors and resultants in symbols", "Kalman's rank and eigenvalues counted at numbers"
@@ -71,7 +73,7 @@ def _points(scene: Scene[Any]) -> Iterator[dict[str, Fraction]]:
 
 
 def _wrong(
-    scene: Scene[Any], linear: Linearisation, found: Stabilisation, there: AtValues, values: dict[str, Fraction]
+    scene: Scene[Any], linear: Linearisation, stabilisation: Stabilisation, there: AtValues, values: dict[str, Fraction]
 ) -> Iterator[str]:
     names = linear.coordinates
     carry = Carrier(scene.ring, Rationals({}, {}), {k: Rationals({}, {}).number(v) for k, v in values.items()})
@@ -82,7 +84,7 @@ def _wrong(
         except NOT_THERE:
             return True
 
-    for part in found.gyroscopic:
+    for part in stabilisation.gyroscopic:
         own = there.only([names.index(name) for name in part.coordinates])
         stiff = (own.places + own.places.transpose()) / 2
         for region in part.regions:
@@ -91,17 +93,17 @@ def _wrong(
             there_too = all(r == "!=" or (carry(x.polynomial) > 0) == (r == ">") for x, r in region.signs)
             if there_too and inertia(stiff)[2] != region.degree:
                 yield "the degree of instability"
-    for damped in found.dissipation:
+    for damped in stabilisation.dissipation:
         at = [names.index(name) for name in damped.coordinates]
         own = there.only(at)
         if _is_generic(damped.rank.locus, vanishes) and damped.rank.certainty is Certainty.PROVED:
             matrix = (own.rates + own.rates.transpose()) / 2
             if feels_everything(own, matrix) != damped.rank.full:
                 yield "pervasiveness"
-    for control in found.control:
+    for control in stabilisation.control:
         own = there.only([names.index(name) for name in control.coordinates])
-        told = _is_generic(control.rank.locus, vanishes) and control.rank.certainty is Certainty.PROVED
-        if told and exact.is_controllable(own) != control.rank.full:
+        comparable = _is_generic(control.rank.locus, vanishes) and control.rank.certainty is Certainty.PROVED
+        if comparable and exact.is_controllable(own) != control.rank.full:
             yield "controllability"
 
 

@@ -44,20 +44,20 @@ def regions(whole: Cleared, stiffness: Rows) -> tuple[tuple[Region, ...], int]:
     last = powers[-1][1] if powers else ()
     squares = [x for x, exponent in last if exponent % 2 == 0 and not whole.known.never_zero(x)]
     deciding = sum(str(factor) in factors for factor, exponent in last if exponent % 2)
-    found: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
+    degrees: dict[tuple[int, ...], dict[tuple[int, ...], int]] = {}
     for choice in product((1, -1), repeat=len(factors)):
         signs = dict(zip(factors, choice, strict=True))
         if not _excluded(whole.known, [factors[name] * sign for name, sign in signs.items()]):
             degree = _changes([_sign(unit, held, signs, whole.known) for unit, held in powers])
-            found.setdefault(choice[:deciding], {})[choice] = degree
-    told = []
-    for outer, inner in found.items():
+            degrees.setdefault(choice[:deciding], {})[choice] = degree
+    merged = []
+    for outer, inner in degrees.items():
         for choice, degree in inner.items() if len(set(inner.values())) > 1 else [(outer, next(iter(inner.values())))]:
             signed = list(zip(factors.values(), choice, strict=False))
-            kept = [(x, "!=") for x in squares if all(x != y for y, _ in signed)]
-            where = [(whole.formula(x), how) for x, how in (*((x, ">" if s > 0 else "<") for x, s in signed), *kept)]
-            told.append(Region(tuple(where), degree))
-    return tuple(told), len(stiffness) - len(minors)
+            nonzero = [(x, "!=") for x in squares if all(x != y for y, _ in signed)]
+            where = [(whole.formula(x), how) for x, how in (*((x, ">" if s > 0 else "<") for x, s in signed), *nonzero)]
+            merged.append(Region(tuple(where), degree))
+    return tuple(merged), len(stiffness) - len(minors)
 
 
 def _minors(stiffness: Rows) -> Sequence[Polynomial] | None:
@@ -132,16 +132,18 @@ class Cleared:
 
 def cleared(ring: Ring, matrices: Sequence[Matrix | None], signs: Signs) -> Cleared:
     """The matrices (None: without columns) over parameters.  Raises NoClosedForm where roots or functions occur."""
-    given: list[Rows] = [[] if matrix is None else [list(row) for row in matrix.polynomials] for matrix in matrices]
+    polynomials: list[Rows] = [
+        [] if matrix is None else [list(row) for row in matrix.polynomials] for matrix in matrices
+    ]
     factor = ring.one
-    for x in (x for rows in given for row in rows for x in row):
+    for x in (x for rows in polynomials for row in rows for x in row):
         for bottom, exponent in ring.fraction(ring.reduce(ring.times(x, factor)))[1]:
             factor = ring.reduce(ring.times(factor, ring.power(bottom, exponent)))
     word = signs.sign(factor)
     further = ring.one if word == "positive" else -ring.one if word == "negative" else factor  # times a square
     whole = [
         [[further * ring.fraction(ring.reduce(ring.times(x, factor)))[0] for x in row] for row in rows]
-        for rows in given
+        for rows in polynomials
     ]
     small, known = in_parameters(ring, whole, signs)
     if not isinstance(small, ParameterRing):

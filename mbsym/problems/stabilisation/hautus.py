@@ -68,7 +68,7 @@ def rank_of(whole: Cleared, mass: Rows, rates: Rows, places: Rows, inputs: Rows,
             tuple(whole.formula(c) for c in variable.coefficients(x, variable.degree(x))) for x in in_lambda
         )
         return Rank(False, Certainty.PROVED, factors, Locus((), (), provided))
-    quotients = [divmod(one, common)[0] for one in minors]
+    quotients = [divmod(maximal_minor, common)[0] for maximal_minor in minors]
     if not rest:
         quotients = [_without_zero_roots(x, variable) for x in quotients]
     spare = [x for x in free if whole.known.never_zero(x) is False and not _divides(x, beta)]
@@ -100,7 +100,7 @@ def annihilator(inputs: Rows, known: Signs, size: int) -> tuple[Polynomial, Rows
             continue
         _, minor, at, columns = best
         block = [[inputs[i][j] for j in columns] for i in at]
-        found = []
+        annihilating = []
         for k in (k for k in range(size) if k not in at):
             row = [x * minor for x in unit[k]]
             for place, i in enumerate(at):  # Cramer: the combination of pivot rows that gives row k of B
@@ -108,8 +108,8 @@ def annihilator(inputs: Rows, known: Signs, size: int) -> tuple[Polynomial, Rows
                 swapped[place] = [inputs[k][j] for j in columns]
                 coefficient = determinant(swapped)
                 row = [x - coefficient * y for x, y in zip(row, unit[i], strict=True)]
-            found.append(row)
-        return minor, found
+            annihilating.append(row)
+        return minor, annihilating
     return zero + 1, unit
 
 
@@ -186,7 +186,9 @@ def _locus(
         lost.setdefault(str(factor), factor)
     # What vanishes together, beside what is lost anyhow; numbers, powers and positive factors say nothing of where.
     left = [divmod(x, common)[0] for x in values]
-    open_ = [[one for one in _open_factors(x, whole.known) if str(one) not in lost] for x in left]
+    open_ = [
+        [open_factor for open_factor in _open_factors(x, whole.known) if str(open_factor) not in lost] for x in left
+    ]
     simple = [x if x == 0 else prod(factors, start=x * 0 + 1) for x, factors in zip(left, open_, strict=True)]
     together = () if any(x == 1 for x in simple) else tuple({str(x): x for x in simple}.values())
     return Locus(

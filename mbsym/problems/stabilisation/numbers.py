@@ -90,17 +90,17 @@ class AtValues:
     def gain(self, inputs: Numbers) -> Numbers:
         """[ 0; M^-1 B ]."""
         kind = self.kind
-        found = [[kind(1, 1)[0, 0]] * inputs.ncols() for _ in range(self.size + len(self.moving))]
+        rows = [[kind(1, 1)[0, 0]] * inputs.ncols() for _ in range(self.size + len(self.moving))]
         for lines, leading, places in (
-            (self.moving, self.mass, range(self.size, len(found))),
+            (self.moving, self.mass, range(self.size, len(rows))),
             (self.following, self.rates, self.following),
         ):
             if lines:
                 block = kind(len(lines), len(lines), [leading[i, j] for i in lines for j in lines])
                 right = kind(len(lines), inputs.ncols(), [x for i in lines for x in inputs.tolist()[i]])
                 for place, row in zip(places, block.solve(right).tolist(), strict=True):
-                    found[place] = row
-        return kind(len(found), inputs.ncols(), [x for row in found for x in row])
+                    rows[place] = row
+        return kind(len(rows), inputs.ncols(), [x for row in rows for x in row])
 
     def only(self, at: Sequence[int]) -> AtValues:
         """The block of some coordinates."""
@@ -170,12 +170,12 @@ def unreached(a: Numbers, b: Numbers) -> Any:
 
 def _independent(vectors: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """Those vectors that do not depend on the ones before."""
-    kept: list[list[Any]] = []
+    independent: list[list[Any]] = []
     for vector in vectors:
-        rows = [*kept, list(vector)]
+        rows = [*independent, list(vector)]
         if fmpq_mat(len(rows), len(vector), [x for row in rows for x in row]).rank() == len(rows):
-            kept = rows
-    return kept
+            independent = rows
+    return independent
 
 
 def is_stabilisable(there: AtValues) -> bool | None:
@@ -210,14 +210,14 @@ def feedback(there: AtValues) -> Feedback | str:
     first, second = (np.array([[_float(x) for x in row] for row in matrix.tolist()]) for matrix in (a, b))
     try:
         riccati = solve_continuous_are(first, second, np.eye(n), np.eye(m))
-        wanted = second.T @ riccati
+        optimal_gains = second.T @ riccati
     except (LinAlgError, ValueError) as error:
         return Message("the Riccati equation was not solved: [[why]]", why=error)
-    if not np.isfinite(wanted).all():
+    if not np.isfinite(optimal_gains).all():
         return "the Riccati equation was not solved in floating point"
-    noise = np.abs(wanted) < NOISE * np.max(np.abs(wanted))
+    noise = np.abs(optimal_gains) < NOISE * np.max(np.abs(optimal_gains))
     for digits in DIGITS:
-        gains = fmpq_mat(m, n, [rounded(float(x), digits) for x in np.where(noise, 0.0, wanted).flatten()])
+        gains = fmpq_mat(m, n, [rounded(float(x), digits) for x in np.where(noise, 0.0, optimal_gains).flatten()])
         closed = a - b * gains
         characteristic = closed.charpoly().coeffs()
         roots = count_roots(characteristic)
@@ -229,8 +229,8 @@ def feedback(there: AtValues) -> Feedback | str:
         function = lyapunov_function(closed)
         if at_values.enclosed and (function is None or not _proves_enclosed(at_values, gains, function)):
             continue
-        told = () if at_values.enclosed else tuple(fraction(x) for x in characteristic)
-        return Feedback((), "", _rows(gains), told, verdict, function)
+        coefficients = () if at_values.enclosed else tuple(fraction(x) for x in characteristic)
+        return Feedback((), "", _rows(gains), coefficients, verdict, function)
     return "no rounded feedback was proved to work"
 
 
@@ -285,11 +285,11 @@ def lyapunov_function(a: Numbers) -> tuple[tuple[Fraction, ...], ...] | None:
 
     n = a.nrows()
     floats = np.array([[_float(x) for x in row] for row in a.tolist()])
-    found = solve_continuous_lyapunov(floats.T, -np.eye(n))
-    if not np.isfinite(found).all():
+    solution = solve_continuous_lyapunov(floats.T, -np.eye(n))
+    if not np.isfinite(solution).all():
         return None
     for digits in DIGITS:
-        rows = [[rounded(float(found[min(i, j), max(i, j)]), digits) for j in range(n)] for i in range(n)]
+        rows = [[rounded(float(solution[min(i, j), max(i, j)]), digits) for j in range(n)] for i in range(n)]
         candidate = fmpq_mat(n, n, [x for row in rows for x in row])
         if proves_decay(candidate, a):
             return _rows(candidate)

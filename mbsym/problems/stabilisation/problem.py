@@ -123,12 +123,12 @@ def at_values(scene: Scene[Any], linear: Linearisation, values: Mapping[str, Any
     inputs = None if linear.B is None else _numbers(scene, linear.B, values)
     if linear.B is not None and inputs is None:
         return None
-    found = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+    evaluated = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
     try:
-        found.state  # noqa: B018
+        evaluated.state  # noqa: B018
     except ZeroDivisionError:
         return None
-    return found
+    return evaluated
 
 
 def enclosed_at(scene: Scene[Any], linear: Linearisation, values: Mapping[str, Any]) -> AtValues | None:
@@ -143,11 +143,11 @@ def enclosed_at(scene: Scene[Any], linear: Linearisation, values: Mapping[str, A
                 for matrix in (*linear.matrices, linear.B)
                 if matrix is not None
             )
-            found = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
-            found.state  # noqa: B018
+            evaluated = AtValues(mass, damped + gyro, stiff + circulatory, inputs)
+            evaluated.state  # noqa: B018
         except (*NOT_THERE, ZeroDivisionError):
             return None
-    return found
+    return evaluated
 
 
 def _numbers(scene: Scene[Any], matrix: Matrix, values: Mapping[str, Any]) -> Any | None:
@@ -185,9 +185,13 @@ def _energy(whole: Cleared | None, names: tuple[str, ...], damped: Matrix, there
     definite: bool | None = None
     if whole is not None:
         try:
-            found = definiteness(whole.matrices[3], whole.known, "K")
-            definite = _PROVED.get(found.word)
-            conditions = [one.condition for one in found.requirements if one.condition.kind == "inequality"]
+            verdict = definiteness(whole.matrices[3], whole.known, "K")
+            definite = _PROVED.get(verdict.word)
+            conditions = [
+                requirement.condition
+                for requirement in verdict.requirements
+                if requirement.condition.kind == "inequality"
+            ]
             minors = tuple(whole.formula(condition.polynomial) for condition in conditions)
         except TooLargeError:
             pass
@@ -305,20 +309,20 @@ def _controlled(
     if there is None:
         return control, least, None, "the description gives no values of all parameters"
     with ctx.workprec(BITS):
-        found, why = numbers.feedback(there), ""
-        if isinstance(found, str):  # parts that no force but an input couples to the others may be within reach
-            why = found
+        feedback, why = numbers.feedback(there), ""
+        if isinstance(feedback, str):  # parts that no force but an input couples to the others may be within reach
+            why = feedback
             within = [at for at in parts if len(parts) > 1 and numbers.is_stabilisable(there.only(at))]
             every = sorted(i for at in within for i in at)
             if not every or len(every) == there.size:
                 return control, least, None, why
             there = there.only(every)
-            found = numbers.feedback(there)
-    if isinstance(found, str):
+            feedback = numbers.feedback(there)
+    if isinstance(feedback, str):
         return control, least, None, why
     names = [linear.coordinates[i] for i in every]
     states = (*names, *(velocity_name(names[i]) for i in there.moving))
-    return control, least, replace(found, states=states, of_part=why), ""
+    return control, least, replace(feedback, states=states, of_part=why), ""
 
 
 def _control(whole: Cleared | None, linear: Linearisation, at: Sequence[int], there: AtValues | None) -> Control:
@@ -398,17 +402,17 @@ def without_drift(rank: Rank, whole: Cleared, gyro: Rows, stiff: Rows, damping: 
     needed = [both]
     if unfelt:
         held, free = annihilator(stiff, whole.known, len(stiff))
-        found = _minor([[dot(u, [dot(row, v) for row in gyro]) for v in unfelt] for u in free], whole)
-        if found is None:
+        minor = _minor([[dot(u, [dot(row, v) for row in gyro]) for v in unfelt] for u in free], whole)
+        if minor is None:
             drift = (whole.formula(both * 0), whole.formula(both * 0 + 1))
             turned = any(x != 0 for row in gyro for x in row)  # then w is needed, which a lower rank of K may deny
             open_ = _open_factors(held, whole.known) if turned else []
             return Rank(False, Certainty.PROVED, (drift,), Locus((), (), tuple(map(whole.formula, open_))))
-        needed.append(found)
+        needed.append(minor)
     if rank.locus is None:
         return rank
     locus = rank.locus
-    doubtful = {str(x): x for one in needed for x in map(whole.formula, _open_factors(one, whole.known))}
+    doubtful = {str(x): x for polynomial in needed for x in map(whole.formula, _open_factors(polynomial, whole.known))}
     if all(x == 0 for row in gyro for x in row):  # then what Hautus' test loses at lambda = 0 is a drift
         doubtful = {text: x for text, x in doubtful.items() if text not in map(str, locus.factors)}
     factors = tuple(x for x in locus.factors if str(x) not in doubtful)

@@ -52,12 +52,12 @@ class AlgebraicPoint:
     def value(self, p: Polynomial) -> Element:
         """p at the point."""
         top, bottom = self._put(p)
-        found = residue(top, self._images, self._field.modulus)
+        quotient = residue(top, self._images, self._field.modulus)
         for factor, exponent in bottom:
             inverse = self._field.inverse(residue(factor, self._images, self._field.modulus))
             for _ in range(exponent):
-                found = self._field.times(found, inverse)
-        return Element(self._field, found)
+                quotient = self._field.times(quotient, inverse)
+        return Element(self._field, quotient)
 
 
 def algebraic_point(
@@ -77,16 +77,19 @@ def _point(
     scene: Scene, ring: Ring, matrices: Any, values: Mapping[str, Any], equilibrium: Equilibrium
 ) -> AlgebraicPoint | None:
     whole: Ring = scene.ring
-    given: dict[int, Polynomial] = {}
+    values_by_index: dict[int, Polynomial] = {}
     for parameter in scene.system.parameters:
         value = values.get(parameter.name)
         expression = number(value) if isinstance(value, Fraction) else parameter.value
         if expression is None:
             continue
-        given[whole.index("parameter", parameter.name)] = scene.lower(expression)
+        values_by_index[whole.index("parameter", parameter.name)] = scene.lower(expression)
         if parameter.name in whole.angles:
             sine, cosine = scene.lower.angle(divide(expression, number(whole.angles[parameter.name])))
-            given |= {whole.index("sine", parameter.name): sine, whole.index("cosine", parameter.name): cosine}
+            values_by_index |= {
+                whole.index("sine", parameter.name): sine,
+                whole.index("cosine", parameter.name): cosine,
+            }
     dependent = determined(scene, [(name, x.polynomial) for name, x in equilibrium.solved if name not in values])
     notation = {item.name for item in scene.system.notation}
     symbols: dict[int, Polynomial] = {}
@@ -95,7 +98,7 @@ def _point(
         named = g.kind == "parameter" and g.name in notation
         place = ring.indices[index] if isinstance(ring, ParameterRing) else index
         symbol = definition_in_parameters(scene, g.name) if named else whole.context.gen(place)
-        symbols[index] = whole.substitute(whole.substitute(symbol, dependent), given)
+        symbols[index] = whole.substitute(whole.substitute(symbol, dependent), values_by_index)
     places = {ring.indices[k] if isinstance(ring, ParameterRing) else k: x for k, x in symbols.items()}
 
     def put(p: Polynomial) -> Fractional:

@@ -133,8 +133,8 @@ def _directions(tables: Sequence[Any]) -> list[list[float]]:
     for _ in range(ATTEMPTS):
         other = source.standard_normal(len(tables))
         pencil = [sum(x * t for x, t in zip(w, tables, strict=True)) for w in (best, other)]
-        found = _in_plane(pencil[0], pencil[1], best_only=True)
-        best = found[0][0] * best + found[0][1] * other
+        weights = _in_plane(pencil[0], pencil[1], best_only=True)
+        best = weights[0][0] * best + weights[0][1] * other
         best = best / np.linalg.norm(best)
         if np.linalg.eigvalsh(sum(x * t for x, t in zip(best, tables, strict=True)))[0] > 1e-9:
             return [[float(x) for x in best]]
@@ -155,10 +155,10 @@ def _in_plane(a: Any, b: Any, best_only: bool = False) -> list[tuple[float, floa
     angle = max((math.pi * k / _TURNS for k in range(_TURNS)), key=lambda x: min(abs(np.linalg.eigvalsh(at(x)))))
     borders = {0.0, math.pi / 2}
     try:
-        found = np.linalg.eigvals(np.linalg.solve(at(angle), at(angle + math.pi / 2)))
+        eigenvalues = np.linalg.eigvals(np.linalg.solve(at(angle), at(angle + math.pi / 2)))
     except np.linalg.LinAlgError:  # singular everywhere: no combination is definite
-        found = np.array([])
-    for root in found:
+        eigenvalues = np.array([])
+    for root in eigenvalues:
         if abs(root.imag) <= 1e-7 * (1 + abs(root)) ** 2:
             borders.add((angle + math.atan2(1.0, -root.real)) % math.pi)
     ordered = sorted(borders)
@@ -307,9 +307,9 @@ def lowest_form(size: int, derivative: Derivative, field: NumberField) -> tuple[
         return along(a, b, c, d) - joined(a, b, c, d) - joined(a, c, b, d) - joined(a, d, b, c)
 
     for order in range(3, MOST_ORDER + 1 if not others else 5):
-        found = form(order, split if order == 4 else along)
-        if any(x != 0 for x in found):
-            return order, found
+        coefficients = form(order, split if order == 4 else along)
+        if any(x != 0 for x in coefficients):
+            return order, coefficients
     return 0, ()
 
 
@@ -374,8 +374,8 @@ class Conserved:
         multipliers = definite_combination(gradients, hessians, field)
         if multipliers is None:
             return None
-        kept = [name for name, mu in zip(self.names, multipliers, strict=True) if not mu.contains(0)]
-        return tuple(kept) or self.names
+        contributing = [name for name, mu in zip(self.names, multipliers, strict=True) if not mu.contains(0)]
+        return tuple(contributing) or self.names
 
 
 def by_integrals(names: Sequence[str], drift: bool) -> Verdict:
@@ -409,7 +409,7 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
     hidden = [*left_out, *(item.name for item in system.prescribed), "t"]
     free = is_free_about_the_origin(system)
     proved = [item for item in known if item.status is Certainty.PROVED or (free and item.kind == "angular momentum")]
-    found = [(item.name, item.formula.polynomial) for item in proved]
+    functions = [(item.name, item.formula.polynomial) for item in proved]
     for kind in ("linear momentum", "angular momentum"):
         parts = [item for item in proved if item.kind == kind and ring.dependencies(item.formula.polynomial, hidden)]
         for count in (2, 3):
@@ -419,7 +419,7 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
                 axes = enumerated([item.of for item in chosen])
                 try:
                     square = sum((ring.times(x, x) for item in chosen if (x := item.formula.polynomial)), ring.zero)
-                    found.append(
+                    functions.append(
                         (
                             Message("square of the [[kind]] across ([[axes]])", kind=Message(kind), axes=axes),
                             ring.reduce(square),
@@ -427,8 +427,8 @@ def of_integrals(scene: Scene, known: Sequence[Integral], left_out: Sequence[str
                     )
                 except Failure:
                     continue
-    seen = [(name, x) for name, x in found if not ring.dependencies(x, hidden)]
+    seen = [(name, x) for name, x in functions if not ring.dependencies(x, hidden)]
     if len(seen) < 2 or not any(item.kind in ENERGIES for item in proved):
         return None
-    kept = tuple(name for name in system.coordinates if name not in left_out)
-    return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), kept, system.coordinates)
+    remaining = tuple(name for name in system.coordinates if name not in left_out)
+    return Conserved(ring, tuple(name for name, _ in seen), tuple(x for _, x in seen), remaining, system.coordinates)

@@ -113,7 +113,7 @@ def constant_of(system: System, ring: Ring, indices: Sequence[int]) -> Constant 
 
 def _root(arguments: Mapping[int, Polynomial]) -> Constant | None:
     """sqrt(n) where all arguments are rational multiples of n by squares."""
-    found: dict[int, Any] = {}
+    images: dict[int, Any] = {}
     base = 0
     for k, argument in arguments.items():
         if not argument.is_constant() or argument == 0:
@@ -127,11 +127,11 @@ def _root(arguments: Mapping[int, Polynomial]) -> Constant | None:
         root = int(ratio.p.isqrt())
         if root * root != ratio.p:
             return None
-        found[k] = fmpq_poly([0, fmpq(root, base) / value.q])
+        images[k] = fmpq_poly([0, fmpq(root, base) / value.q])
     p = fmpz_poly([-base, 0, 1])
     roots = roots_between(p, fmpq(0), fmpq(base + 1))
     made = number(roots[0])
-    return Constant(made, found, f"sqrt({base})") if isinstance(made, AlgebraicNumber) else None
+    return Constant(made, images, f"sqrt({base})") if isinstance(made, AlgebraicNumber) else None
 
 
 def constant_of_roots(ring: Ring, indices: Sequence[int]) -> Constant | None:
@@ -149,11 +149,11 @@ def constant_of_roots(ring: Ring, indices: Sequence[int]) -> Constant | None:
     size = 1 << len(squares)
 
     def times_sum(vector: Sequence[Any]) -> list[Any]:
-        found = [fmpq(0)] * size
+        multiplied = [fmpq(0)] * size
         for place, x in enumerate(vector):
             for k, square in enumerate(squares):
-                found[place ^ (1 << k)] += x * square if place & (1 << k) else x
-        return found
+                multiplied[place ^ (1 << k)] += x * square if place & (1 << k) else x
+        return multiplied
 
     powers = [[fmpq(int(place == 0)) for place in range(size)]]
     for _ in range(size):
@@ -161,13 +161,13 @@ def constant_of_roots(ring: Ring, indices: Sequence[int]) -> Constant | None:
     basis = fmpq_mat(size, size, [x for vector in powers[:size] for x in vector]).transpose()
     if basis.det() == 0:
         return None
-    wanted = [[fmpq(int(place == 1 << k)) for place in range(size)] for k in range(len(squares))]
-    told = [basis.solve(fmpq_mat(size, 1, vector)).entries() for vector in (*wanted, powers[size])]
-    minimal = primitive(fmpq_poly([-x for x in told.pop()] + [fmpq(1)]))
+    unit_vectors = [[fmpq(int(place == 1 << k)) for place in range(size)] for k in range(len(squares))]
+    solutions = [basis.solve(fmpq_mat(size, 1, vector)).entries() for vector in (*unit_vectors, powers[size])]
+    minimal = primitive(fmpq_poly([-x for x in solutions.pop()] + [fmpq(1)]))
     made = number(roots_between(minimal, fmpq(0), sum((x + 1 for x in squares), fmpq(1)))[-1])
     if not isinstance(made, AlgebraicNumber) or int(made.polynomial.degree()) < size:
         return None
-    images = {k: fmpq_poly(list(x)) for k, x in zip(indices, told, strict=True)}
+    images = {k: fmpq_poly(list(x)) for k, x in zip(indices, solutions, strict=True)}
     return Constant(made, images, " + ".join(f"sqrt({x})" for x in squares))
 
 
@@ -181,11 +181,11 @@ def _angles(turns: Mapping[int, Fraction], kinds: Mapping[int, str]) -> Constant
     made = number(roots[-1])  # the largest of 2 cos(pi k/D) is that of k = 1
     if not isinstance(made, AlgebraicNumber):
         return None
-    found = {}
+    images = {}
     for k, value in turns.items():
         angle = value if kinds[k] == "cosine" else Fraction(1, 2) - value
-        found[k] = fmpq_poly(fmpz_poly.chebyshev_t(abs(int(angle * parts))))(fmpq_poly([0, fmpq(1, 2)]))
-    return Constant(made, found, f"2*cos(pi/{parts})")
+        images[k] = fmpq_poly(fmpz_poly.chebyshev_t(abs(int(angle * parts))))(fmpq_poly([0, fmpq(1, 2)]))
+    return Constant(made, images, f"2*cos(pi/{parts})")
 
 
 def context_of(names: Sequence[str], constant: Constant | None) -> Any:

@@ -57,8 +57,8 @@ def _besides_positions(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Any
     """The roots but one zero for each cyclic coordinate: nothing depends on its position, its column of A is zero."""
     m, d, g, k, n = parts
     whole = state_matrix(arb_mat, m, _sum(d, g), _sum(k, n))
-    kept = [i for i in range(whole.nrows()) if i not in cyclic]
-    return spectrum(acb_mat([[whole[i, j] for j in kept] for i in kept]))[0]
+    remaining = [i for i in range(whole.nrows()) if i not in cyclic]
+    return spectrum(acb_mat([[whole[i, j] for j in remaining] for i in remaining]))[0]
 
 
 def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows] | None:
@@ -79,8 +79,8 @@ def _ignoring_cyclic(parts: Sequence[Rows], cyclic: Sequence[int]) -> list[Rows]
         total = block(rows, True, True)
         for left, right in pairs:
             total = total - block(left, True, False) * inverse * block(right, False, True)
-        found: Rows = total.tolist()
-        return found
+        reduced: Rows = total.tolist()
+        return reduced
 
     return [less(m, (m, m)), less(d), less(g, (m, g), (g, m)), less(parts[3], (g, g)), less(n)]
 
@@ -126,8 +126,8 @@ def _verdict(m: Rows, d: Rows, g: Rows, k: Rows, n: Rows, conservative: bool, ex
 
 def _semidefinite(rows: Rows) -> bool:
     """Whether a symmetric matrix is positive semidefinite: positive definite but for rows that are exactly 0."""
-    kept = [i for i, row in enumerate(rows) if not all(x == 0 for x in row)]
-    return _positive([[rows[i][j] for j in kept] for i in kept])
+    nonzero = [i for i, row in enumerate(rows) if not all(x == 0 for x in row)]
+    return _positive([[rows[i][j] for j in nonzero] for i in nonzero])
 
 
 def eigenvalues(m: Rows, c: Rows, k: Rows, following: Sequence[int] = ()) -> tuple[list[Any] | None, bool]:
@@ -218,13 +218,13 @@ def from_matrices(coordinates: Sequence[str], parts: Sequence[Rows], following: 
     velocity, position = ([[x[i][j] + y[i][j] for j in size] for i in size] for x, y in ((d, g), (k, n)))
     try:
         with ctx.workprec(PRECISION):
-            found, _ = eigenvalues(m, velocity, position, following)
+            roots, _ = eigenvalues(m, velocity, position, following)
     except ZeroDivisionError:
         return None
-    if found is None:
+    if roots is None:
         return None
-    found.sort(key=lambda ball: (float(ball.real.mid()), float(ball.imag.mid())))
-    return Spectrum(tuple(coordinates), tuple(Root(ball, 1) for ball in found))
+    roots.sort(key=lambda ball: (float(ball.real.mid()), float(ball.imag.mid())))
+    return Spectrum(tuple(coordinates), tuple(Root(ball, 1) for ball in roots))
 
 
 def _times(ball: acb, scale: Any) -> acb:
@@ -243,9 +243,9 @@ class RootNumbers:
 
 def numbers(spectrum: Spectrum) -> tuple[RootNumbers, ...]:
     """Pairs of conjugate roots once, by their upper half."""
-    found = []
+    upper_roots = []
     for root in spectrum.roots:
         real, imaginary = (0.0 if part.contains(0) else float(part.mid()) for part in (root.ball.real, root.ball.imag))
         if imaginary >= 0:
-            found.append(RootNumbers(real, imaginary, root.multiplicity))
-    return tuple(found)
+            upper_roots.append(RootNumbers(real, imaginary, root.multiplicity))
+    return tuple(upper_roots)

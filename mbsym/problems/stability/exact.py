@@ -71,12 +71,12 @@ def decided(open_verdict: Verdict, first_order: Numbers, shifts: Numbers | None,
     if not rest.nrows():
         return bounded(facts) if calm else coasting()
     left = counted(rest.charpoly())
-    kept = is_calm(rest)
-    if kept and left.left and left.left + left.zero == left.degree:
+    rest_calm = is_calm(rest)
+    if rest_calm and left.left and left.left + left.zero == left.degree:
         return exactly(drifting(concluded({Fact.ROOTS_LEFT}), constant_momenta=left.zero > 0), calm)
     if calm:
         return bounded(facts)
-    if not kept:
+    if not rest_calm:
         return growing(first_order)
     if left.zero == left.degree:
         return coasting()
@@ -99,14 +99,14 @@ def kernel_of(*matrices: Numbers) -> Numbers:
     kind, n, zero = type(matrices[0]), matrices[0].nrows(), matrices[0][0, 0] * 0
     rows = [row for matrix in matrices for row in matrix.tolist()]
     stacked = kind(len(rows), n, [x for row in rows for x in row])
-    found = null_vectors(Operators(zero, zero + 1), reduced_rows(stacked), n)
-    return kind(len(found), n, [x for v in found for x in v])
+    basis = null_vectors(Operators(zero, zero + 1), reduced_rows(stacked), n)
+    return kind(len(basis), n, [x for v in basis for x in v])
 
 
 def _independent(kind: Any, rows: Sequence[Sequence[Any]]) -> Numbers:
     """Rows that span the same, none too many."""
-    kept = list(reduced_rows(kind(len(rows), len(rows[0]), [x for row in rows for x in row])).values())
-    return kind(len(kept), len(rows[0]), [x for row in kept for x in row])
+    basis = list(reduced_rows(kind(len(rows), len(rows[0]), [x for row in rows for x in row])).values())
+    return kind(len(basis), len(rows[0]), [x for row in basis for x in row])
 
 
 def is_calm(first_order: Numbers) -> bool:
@@ -121,15 +121,15 @@ def is_calm(first_order: Numbers) -> bool:
 def across(first_order: Numbers, shifts: Numbers) -> Numbers:
     """A on the states modulo (v, 0), v the rows of ``shifts``: A (v, 0) = 0."""
     basis, rows = reduced_rows(shifts), first_order.tolist()
-    kept = [i for i in range(len(rows)) if i not in basis]
-    found = []
-    for i in kept:
+    remaining = [i for i in range(len(rows)) if i not in basis]
+    entries = []
+    for i in remaining:
         row = rows[i]
         for at, v in basis.items():
             if i < len(v) and v[i] != 0:
                 row = [x - v[i] * y for x, y in zip(row, rows[at], strict=True)]
-        found += [row[j] for j in kept]
-    return type(first_order)(len(kept), len(kept), found)
+        entries += [row[j] for j in remaining]
+    return type(first_order)(len(remaining), len(remaining), entries)
 
 
 def is_open(verdict: Verdict) -> bool:
@@ -198,8 +198,8 @@ def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
         return PointVerdict(verdict, polynomial, roots)
     energy = _energy_besides(system, at, d, n)
     if roots.left + len(system.cyclic) == 2 * system.size:
-        found = concluded(energy | {Fact.ROOTS_LEFT})
-        return PointVerdict(drifting(found, constant_momenta=False), polynomial, roots)
+        decaying = concluded(energy | {Fact.ROOTS_LEFT})
+        return PointVerdict(drifting(decaying, constant_momenta=False), polynomial, roots)
     there = _settled(system, at)  # a damper of coefficient 0 changes no momentum
     if only_momenta(there):
         return PointVerdict(coasting(), polynomial, roots)
@@ -211,21 +211,21 @@ def _verdict_over(system: LinearSystem, at: ExactPoint) -> PointVerdict:
     return PointVerdict(undecided(Because.CYCLIC_ZERO_ROOTS), polynomial, roots)
 
 
-def _of_linear_equations(system: LinearSystem, at: ExactPoint, found: Verdict) -> Verdict:
+def _of_linear_equations(system: LinearSystem, at: ExactPoint, first_verdict: Verdict) -> Verdict:
     """A verdict by the first approximation, where that is all there is."""
-    if not is_open(found) and Flaw.CYCLIC not in found.flawed:
-        return exactly(found)
+    if not is_open(first_verdict) and Flaw.CYCLIC not in first_verdict.flawed:
+        return exactly(first_verdict)
     m, d, g, k, n = (evaluated(matrix, at) for matrix in system.matrices)
     a = state_matrix(at.matrix, m.tolist(), (d + g).tolist(), (k + n).tolist(), system.following)
-    if not is_open(found):
-        return exactly(found, Ground.IDLE not in found.laid and is_calm(a))
+    if not is_open(first_verdict):
+        return exactly(first_verdict, Ground.IDLE not in first_verdict.laid and is_calm(a))
     if system.leaf and a.charpoly().coeffs()[0] == 0:  # what changes the relations acts like a constant force
-        return found
+        return first_verdict
     always = evaluated(system.shifts, at).tolist() if system.shifts else []
     there = kernel_of(k + n, g).tolist() if system.free else []
     shifts = _independent(type(m), [*always, *there]) if always or there else None
     facts = frozenset[Fact]() if system.nonholonomic is not None else _facts(m, d, g, k, n, system.conservative)
-    verdict = exactly(decided(found, a, shifts, facts))
+    verdict = exactly(decided(first_verdict, a, shifts, facts))
     return here(verdict) if shifts is not None and shifts.nrows() > len(always) else verdict
 
 
@@ -301,12 +301,12 @@ def _facts(m: Numbers, d: Numbers, g: Numbers, k: Numbers, n: Numbers, conservat
 
 def observed(a: Numbers, d: Numbers) -> list[list[Any]]:
     """The rows of (0 D), (0 D) A, (0 D) A^2, ...: what D x' = 0 at all times says of (x, x')' = A (x, x')."""
-    n, found = d.nrows(), list[list[Any]]()
+    n, observability = d.nrows(), list[list[Any]]()
     rows = type(d)(n, 2 * n, [x for line in d.tolist() for x in [fmpq(0)] * n + line])
     for _ in range(2 * n):
-        found += rows.tolist()
+        observability += rows.tolist()
         rows = rows * a
-    return found
+    return observability
 
 
 def _undamped(a: Numbers, d: Numbers) -> list[int]:

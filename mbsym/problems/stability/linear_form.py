@@ -103,22 +103,22 @@ class LinearSystem:
     @property
     def kinetic(self) -> Matrix:
         """M without the zero rows and columns of what follows."""
-        kept = [i for i in range(self.size) if i not in self.following]
-        return tuple(tuple(self.M[i][j] for j in kept) for i in kept)
+        moving = [i for i in range(self.size) if i not in self.following]
+        return tuple(tuple(self.M[i][j] for j in moving) for i in moving)
 
     @property
     def facts(self) -> frozenset[Fact]:
         """What the pattern of zeros shows, and what is presumed: M > 0, as the matrix of a kinetic energy."""
-        told = {Fact.EXACTLY_LINEAR} if self.exact else set()
+        exactness = {Fact.EXACTLY_LINEAR} if self.exact else set()
         if self.nonholonomic is not None:
-            return frozenset({Fact.MASS_POSITIVE, *told})
+            return frozenset({Fact.MASS_POSITIVE, *exactness})
         zero = [
             fact
             for matrix, fact in ((self.D, Fact.UNDAMPED), (self.G, Fact.NOT_GYROSCOPIC), (self.N, Fact.POTENTIAL))
             if is_zero(matrix)
         ]
         known = [Fact.ENERGY_NEVER_GROWS] if self.conservative else []
-        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *told})
+        return frozenset({Fact.MASS_POSITIVE, *zero, *known, *exactness})
 
     def name(self, i: int) -> str:
         return self.names[i] if self.names else f"coordinate {i + 1}"
@@ -155,14 +155,14 @@ def null_rows(matrix: Matrix, normal: Callable[[Polynomial], Polynomial]) -> Mat
     """
     zero = matrix[0][0] * 0
     try:
-        found = null_space_of_polynomials(_Normal(zero, zero + 1, normal), matrix, len(matrix), most=_MOST_TERMS)
+        basis = null_space_of_polynomials(_Normal(zero, zero + 1, normal), matrix, len(matrix), most=_MOST_TERMS)
     except TooLargeError:
         return ()
-    if any(len(x) > _MOST_TERMS for v in found for x in v):
+    if any(len(x) > _MOST_TERMS for v in basis for x in v):
         return ()
-    if any(normal(dot(row, v)) != 0 for row in matrix for v in found):
+    if any(normal(dot(row, v)) != 0 for row in matrix for v in basis):
         return ()
-    return tuple(map(tuple, found))
+    return tuple(map(tuple, basis))
 
 
 #: The kind of a system with no other forces than those of K.

@@ -58,9 +58,9 @@ def besides_outside(form: NonholonomicForm, verdict: Verdict) -> Verdict:
 def at_rationals(form: NonholonomicForm, first_order: Any) -> Verdict:
     """The exact verdict; ``first_order`` is the exact matrix of ``state_matrix``."""
     size = first_order.nrows()
-    kept = [i for i in range(size) if i not in form.idle]
+    remaining = [i for i in range(size) if i not in form.idle]
     entries = first_order.tolist()
-    reduced = type(first_order)(len(kept), len(kept), [entries[i][j] for i in kept for j in kept])
+    reduced = type(first_order)(len(remaining), len(remaining), [entries[i][j] for i in remaining for j in remaining])
     roots = counted(reduced.charpoly())
     if roots.right:
         return concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_ROOTS, (roots.right,)))

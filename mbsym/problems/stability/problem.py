@@ -173,7 +173,9 @@ def because(found: Stability, code: Because, *data: object) -> Stability:
     reason = Reason(code, data)
 
     def more(verdict: Verdict) -> Verdict:
-        return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda one: one.rank)))
+        return replace(
+            verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda explanation: explanation.rank))
+        )
 
     parts = tuple(
         replace(part, theory=replace(part.theory, verdict=more(part.theory.verdict))) for part in found.subsystems
@@ -204,13 +206,13 @@ def stability(
     if numerical is None and values is not None:
         spectra = tuple(x for part in judged if (x := _spectrum(scene, linear, part, values)) is not None)
         there = [
-            _at_irrational(scene, linear, part, values, balance, found.theory, equilibrium)
-            if found.theory.at_point is None
-            else (found.theory.at_point.verdict, False)
-            for part, found in zip(prepared, judged, strict=True)
+            _at_irrational(scene, linear, part, values, balance, subsystem.theory, equilibrium)
+            if subsystem.theory.at_point is None
+            else (subsystem.theory.at_point.verdict, False)
+            for part, subsystem in zip(prepared, judged, strict=True)
         ]
         enclosed = any(by_enclosures for _, by_enclosures in there)
-        numerical = combine((found for found, _ in there), balance.at(values).law.bounded)
+        numerical = combine((point_verdict for point_verdict, _ in there), balance.at(values).law.bounded)
     verdict = combine((part.theory.verdict for part in judged), balance.law.bounded)
     if verdict.word is Word.DEPENDS and len(judged) > 1:
         verdict = _whole(scene.ring, judged, signs, balance.law.bounded)
@@ -523,19 +525,23 @@ def _displaced(
     every = [
         [x + y for x, y in zip(*rows, strict=True)] for rows in zip(part.K.polynomials, part.N.polynomials, strict=True)
     ]
-    told: tuple[Displacements, Basis] | None = None
+    best: tuple[Displacements, Basis] | None = None
     most = (len(cyclic), free)
     for looked_for in (balance.displacements, *(() if turned else (balance.symmetries,))):
-        found = looked_for(part.coordinates)
-        chosen = basis_of(scene.ring, found, signs) if (len(found.directions), found.constant) > most else None
+        displacements = looked_for(part.coordinates)
+        chosen = (
+            basis_of(scene.ring, displacements, signs)
+            if (len(displacements.directions), displacements.constant) > most
+            else None
+        )
         if chosen is None:
             continue
-        told = found, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images))
-        most, count = (len(found.directions), found.constant), len(found.directions)
-        left = [row[count:] for row in told[1].congruent(scene.ring, every)[count:]]
+        best = displacements, chosen.through(scene.ring, lambda x: scene.ring.substitute(x, images))
+        most, count = (len(displacements.directions), displacements.constant), len(displacements.directions)
+        left = [row[count:] for row in best[1].congruent(scene.ring, every)[count:]]
         if _somewhere_regular(scene, left):
             break
-    return told
+    return best
 
 
 def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bool:
@@ -544,10 +550,10 @@ def _somewhere_regular(scene: Scene, rows: Sequence[Sequence[Polynomial]]) -> bo
     with ctx.workprec(PRECISION):
         try:
             entries = [scene.ring.evaluate(x, numbers) for row in rows for x in row]
-            found = arb_mat(len(rows), len(rows), entries).det()
+            determinant = arb_mat(len(rows), len(rows), entries).det()
         except Failure:
             return False
-        return bool(found.is_finite() and not found.contains(0))
+        return bool(determinant.is_finite() and not determinant.contains(0))
 
 
 class ExactVerdicts:
@@ -614,13 +620,15 @@ def in_parameters(ring: Ring, rows: Sequence[Sequence[Sequence[Polynomial]]], si
     if any(ring.generators[k].kind != "parameter" for k in used):
         return ring, replace(signs, normal=ring.reduce)
     small = ParameterRing(ring, sorted(used))
-    kept = [
+    assumptions = [
         (small.project(assumption), relation)
         for assumption, relation in signs.assumptions
         if used.issuperset(occurring([assumption]))
     ]
     numbers = {at: signs.numbers[k] for at, k in enumerate(small.indices) if k in signs.numbers}
-    return small, Signs(small.context, tuple(signs.words[k] for k in small.indices), tuple(kept), numbers=numbers)
+    return small, Signs(
+        small.context, tuple(signs.words[k] for k in small.indices), tuple(assumptions), numbers=numbers
+    )
 
 
 def elimination_of(scene: Scene) -> Elimination:
@@ -640,16 +648,18 @@ def _polynomial(
 ) -> tuple[tuple[Matrix, Matrix, Matrix, Matrix, Matrix], Formula]:
     """The matrices in the user's symbols, times a positive factor that clears denominators and common factors."""
     ring = scene.ring
-    given = [[[elimination(x) for x in row] for row in m.polynomials] for m in (part.M, part.D, part.G, part.K, part.N)]
+    eliminated = [
+        [[elimination(x) for x in row] for row in m.polynomials] for m in (part.M, part.D, part.G, part.K, part.N)
+    ]
     factor = ring.one
     powers: list[tuple[Polynomial, int]] = []
-    for x in (x for matrix in given for row in matrix for x in row):
+    for x in (x for matrix in eliminated for row in matrix for x in row):
         for bottom, exponent in ring.fraction(ring.reduce(ring.times(x, factor)))[1]:
             powers.append((bottom, exponent))
             factor = ring.reduce(ring.times(factor, ring.power(bottom, exponent)))
     if signs.sign(factor) != "positive":
         factor = _even(ring, signs, factor, powers)
-    scaled = [[[ring.fraction(ring.reduce(ring.times(x, factor)))[0] for x in row] for row in m] for m in given]
+    scaled = [[[ring.fraction(ring.reduce(ring.times(x, factor)))[0] for x in row] for row in m] for m in eliminated]
     common = ring.zero
     for x in (x for matrix in scaled for row in matrix for x in row):
         common = ring.common_factor(common, x)
@@ -682,33 +692,33 @@ def parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] |
 
 
 def _parameter_values(scene: Scene, equilibrium: Equilibrium) -> dict[str, Any] | None:
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     constants = {"pi": arb.pi()}
     for parameter in scene.system.parameters:
         if parameter.value is not None:
             value = rational(parameter.value)
-            given[parameter.name] = Lowering(Balls(constants), constants)(parameter.value) if value is None else value
-    solved = {name: value.polynomial for name, value in equilibrium.solved if name not in given}
+            values[parameter.name] = Lowering(Balls(constants), constants)(parameter.value) if value is None else value
+    solved = {name: value.polynomial for name, value in equilibrium.solved if name not in values}
     for name, polynomial in (solved | dependent(scene, relations(scene))).items():
         try:
-            given[name] = _value_of(scene, polynomial, given)
+            values[name] = _value_of(scene, polynomial, values)
         except Failure:
             return None
     used = {name for x in expressions(scene.system) for name in names(x)}
-    known = all(p.name in given for p in scene.system.parameters if p.name in used)
-    finite = all(isinstance(x, Fraction) or x.is_finite() for x in given.values())
-    return given if known and finite else None
+    known = all(p.name in values for p in scene.system.parameters if p.name in used)
+    finite = all(isinstance(x, Fraction) or x.is_finite() for x in values.values())
+    return values if known and finite else None
 
 
-def _value_of(scene: Scene, x: Polynomial, given: Mapping[str, Any]) -> Any:
+def _value_of(scene: Scene, x: Polynomial, values: Mapping[str, Any]) -> Any:
     """A formula in parameters, exactly where it is rational, else enclosed.  Raises Failure where one has no value."""
     carried = Rationals({}, {})
-    exact = {name: carried.number(value) for name, value in given.items() if isinstance(value, Fraction)}
+    exact = {name: carried.number(value) for name, value in values.items() if isinstance(value, Fraction)}
     try:
-        found = Carrier(scene.ring, carried, exact)(x)
-        return rationals.fraction(found)
+        exact_value = Carrier(scene.ring, carried, exact)(x)
+        return rationals.fraction(exact_value)
     except Failure:
-        balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in given.items()}
+        balls = {"pi": arb.pi()} | {name: arb(_number(value)) for name, value in values.items()}
         return Carrier(scene.ring, Balls(balls), balls)(x)
 
 

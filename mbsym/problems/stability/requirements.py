@@ -322,7 +322,7 @@ def joined(
             return depends()
         for part in parts:
             crossed = [(there & cell.where, (*verdicts, cell.verdict)) for there, verdicts in left for cell in part]
-            left = [one for one in crossed if not _is_empty(one[0], signs)]
+            left = [candidate for candidate in crossed if not _is_empty(candidate[0], signs)]
             if len(left) > MOST_CELLS:
                 return depends()
     except Failure:
@@ -334,7 +334,7 @@ def _differ(parts: Sequence[Sequence[Cell]], signs: Signs, one_energy: bool, wit
     """Whether points are known at which the verdicts differ, not all of them stable."""
     if signs.numbers or signs.normal is not None:
         return False
-    found: dict[Word, bool] = {}
+    stable_by_word: dict[Word, bool] = {}
     for point in signs.witnesses:
         if not within.holds(point):
             continue
@@ -342,8 +342,8 @@ def _differ(parts: Sequence[Sequence[Cell]], signs: Signs, one_energy: bool, wit
         verdicts = [cell.verdict for cell in there if cell is not None]
         if len(verdicts) == len(parts):
             verdict = combine(verdicts, one_energy)
-            found[verdict.word] = verdict.stable
-            if len(found) > 1 and not all(found.values()):
+            stable_by_word[verdict.word] = verdict.stable
+            if len(stable_by_word) > 1 and not all(stable_by_word.values()):
                 return True
     return False
 

@@ -71,12 +71,12 @@ def ignoring_cyclic(system: LinearSystem) -> LinearSystem:
 
 def with_constant_momenta(system: LinearSystem) -> tuple[int, ...]:
     """The cyclic coordinates on which nothing acts; () where G is between them."""
-    found = tuple(
+    conserved = tuple(
         i
         for i in system.cyclic
         if i not in system.driven and all(x == 0 for matrix in (system.D, system.N) for x in matrix[i])
     )
-    return () if any(system.G[i][j] != 0 for i in found for j in found) else found
+    return () if any(system.G[i][j] != 0 for i in conserved for j in conserved) else conserved
 
 
 def momenta_are_constant(system: LinearSystem) -> bool:

@@ -227,10 +227,12 @@ _SENTENCES: dict[Because, str | Callable[..., Message]] = {
 
 
 def sentence(reason: Reason) -> Message:
-    found = _SENTENCES[reason.code]
-    if not isinstance(found, str):
-        return found(*reason.data)
-    return Message(found, **{str(k): datum for k, datum in enumerate(reason.data, start=1) if f"[[{k}]]" in found})
+    template = _SENTENCES[reason.code]
+    if not isinstance(template, str):
+        return template(*reason.data)
+    return Message(
+        template, **{str(k): datum for k, datum in enumerate(reason.data, start=1) if f"[[{k}]]" in template}
+    )
 
 
 def explanation(reasons: Iterable[Reason]) -> Message:

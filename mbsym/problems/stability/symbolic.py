@@ -203,20 +203,20 @@ def analyse(
     return theory if point is None else replace(theory, at_point=verdict_at(system, point))
 
 
-def _without_further_zeros(found: Theory, signs: Signs, case: Case | None) -> bool:
+def _without_further_zeros(theory: Theory, signs: Signs, case: Case | None) -> bool:
     """Whether the lowest coefficient is known not to vanish, by the signs or by what the case requires.
 
     Where it vanishes more roots are zero than lambda^z tells, and they may have Jordan blocks: x'' = g y', y'' = -g x'.
     """
-    if not found.polynomial or signs.never_zero(found.polynomial[0]):
+    if not theory.polynomial or signs.never_zero(theory.polynomial[0]):
         return True
     if case is None:
         return False
-    if all(r in case.all_of for r in found.requirements if not r.always):
+    if all(r in case.all_of for r in theory.requirements if not r.always):
         return True
     try:
         known = signs.assuming((r.polynomial, r.relation) for r in case.all_of if not r.always)
-        return known.never_zero(found.polynomial[0])
+        return known.never_zero(theory.polynomial[0])
     except (ContradictionError, NoClosedForm):
         return False
 
@@ -389,11 +389,11 @@ def _with_equality(
     apart = tuple(x for x in condition.nonzero)
     places = []
     for polynomials in ((condition.polynomial,) if condition.kind == "inequality" else (), apart):
-        found: set[Place | None] = set()
+        candidates: set[Place | None] = set()
         for x in polynomials:
             beside = [*others, *((y, "!=") for y in apart if y is not x)]
-            found.add(_place_of_equality(system, x, known, beside, even))
-        places.append(found.pop() if len(found) == 1 else None)
+            candidates.add(_place_of_equality(system, x, known, beside, even))
+        places.append(candidates.pop() if len(candidates) == 1 else None)
     return replace(requirement, place=places[0] or requirement.place, strict=places[1] or requirement.strict)
 
 
@@ -667,27 +667,27 @@ def _is_semisimple(system: LinearSystem, factor: Factor) -> bool:
     return is_semisimple(system.M, c, k, in_lambda, factor.multiplicity)
 
 
-def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
-    stiff, requirements, facts = found.stiffness.requirements, found.requirements, system.facts
+def _cases(system: LinearSystem, theory: Theory, known: Signs) -> tuple[Case, ...]:
+    stiff, requirements, facts = theory.stiffness.requirements, theory.requirements, system.facts
     unstable = _unstable(requirements, known)
-    if not is_zero(system.N) or found.dissipation is not None:
-        if found.variable == "lambda^2":
+    if not is_zero(system.N) or theory.dissipation is not None:
+        if theory.variable == "lambda^2":
             why = Reason(Because.IMAGINARY_SIMPLE), Reason(Because.HIGHER_ORDER)
             return Case(requirements, (), bounded(facts & {Fact.EXACTLY_LINEAR}, *why)), *unstable
-        if found.dissipation is None:
-            odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(found.polynomial) if i % 2 and c != 0)
+        if theory.dissipation is None:
+            odd = tuple(differs(f"a{i}", c, known) for i, c in enumerate(theory.polynomial) if i % 2 and c != 0)
             return (Case((), odd, concluded({Fact.ROOT_RIGHT}, Reason(Because.RIGHT_BY_TRACE))),)
-        if not is_zero(system.N) or found.dissipation.word is not Definite.POSITIVE:
-            held = _semidefinite(system, known) if is_zero(system.N) and not found.turned else facts
+        if not is_zero(system.N) or theory.dissipation.word is not Definite.POSITIVE:
+            held = _semidefinite(system, known) if is_zero(system.N) and not theory.turned else facts
             minimum = held | {Fact.STIFFNESS_POSITIVE}
             if Ground.ENERGY in applying(minimum):
                 # With D >= 0 and N = 0 roots are all to the left only where K > 0 (Kelvin-Chetaev).
                 decaying = concluded(minimum | {Fact.ROOTS_LEFT})
                 return Case(requirements, (), decaying), Case(stiff, (), concluded(minimum)), *unstable
-            return Case(requirements, (), _all_left(found.turned)), *unstable
+            return Case(requirements, (), _all_left(theory.turned)), *unstable
     negative = against(stiff, known)
     minimum = facts | {Fact.STIFFNESS_POSITIVE}
-    if found.dissipation is not None:
+    if theory.dissipation is not None:
         nonsingular = differs("det K", stiff[-1].polynomial, known)
         complete = facts | {Fact.DAMPING_POSITIVE}
         destroyed = complete | {Fact.STIFFNESS_NEGATIVE_SOMEWHERE, Fact.STIFFNESS_NONSINGULAR}
@@ -704,49 +704,49 @@ def _cases(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...
     )
 
 
-def _cases_of_roots(system: LinearSystem, form: NonholonomicForm, found: Theory, known: Signs) -> tuple[Case, ...]:
+def _cases_of_roots(system: LinearSystem, form: NonholonomicForm, theory: Theory, known: Signs) -> tuple[Case, ...]:
     """Of a nonholonomic system: by the roots alone."""
-    unstable, zeros = _unstable(found.requirements, known), form.zeros(found.zero_power)
-    even = found.variable == "lambda^2" or not found.factors
-    if even and form.pairs == sum(len(f.coefficients) - 1 for f in found.factors):
-        return Case(_wanted(found), (), nonholonomic.one_oscillates(form)), *unstable
-    if found.variable == "lambda^2" and found.factors:
+    unstable, zeros = _unstable(theory.requirements, known), form.zeros(theory.zero_power)
+    even = theory.variable == "lambda^2" or not theory.factors
+    if even and form.pairs == sum(len(f.coefficients) - 1 for f in theory.factors):
+        return Case(_wanted(theory), (), nonholonomic.one_oscillates(form)), *unstable
+    if theory.variable == "lambda^2" and theory.factors:
         best = undecided(Because.MORE_ZERO_ROOTS, zeros, form.family)
         if zeros in (0, form.family):  # the family's are in the kernel: no blocks
             best = bounded(system.facts & {Fact.EXACTLY_LINEAR}, *nonholonomic.OPEN)
-        return Case(found.requirements, (), best), *unstable
-    return Case(_wanted(found), (), nonholonomic.all_left(form, zeros)), *unstable
+        return Case(theory.requirements, (), best), *unstable
+    return Case(_wanted(theory), (), nonholonomic.all_left(form, zeros)), *unstable
 
 
-def _cases_of_linear(system: LinearSystem, found: Theory, known: Signs) -> tuple[Case, ...]:
+def _cases_of_linear(system: LinearSystem, theory: Theory, known: Signs) -> tuple[Case, ...]:
     """Of exactly linear equations with lambda^z for a factor: by the r null directions of K + N.
 
     These make r zero roots without Jordan blocks.  Where z = r there are no others, and the zero roots do no harm; else
     there are blocks wherever K + N has no further null directions.  Where everything may be shifted along the null
     directions V at constant velocity, (D + G) V = 0, z = 2 r, they are drifts, and nothing but drifts.
     """
-    unstable = _unstable(found.requirements, known)
+    unstable = _unstable(theory.requirements, known)
     places, rates = added(system.K, system.N), added(system.D, system.G)
     null = null_rows(places, known.normalised)
     if not null:
         return ()
     drifts = system.shifts or (system.free and _no_gyroscopic(system, null, known))
-    requirements = _wanted(found)
-    decays = found.variable == "lambda" and bool(found.factors)
+    requirements = _wanted(theory)
+    decays = theory.variable == "lambda" and bool(theory.factors)
     calm = bounded({Fact.EXACTLY_LINEAR})
-    if found.zero_power == len(null):
+    if theory.zero_power == len(null):
         if decays and drifts:
             calm = drifting(_all_left(False), constant_momenta=False)
         return Case(requirements, (), calm), *unstable
     still = all(known.normalised(dot(row, v)) == 0 for row in rates for v in null)
-    if drifts and still and found.zero_power == 2 * len(null):
-        calm = drifting(_all_left(False) if decays else calm) if found.factors else coasting()
+    if drifts and still and theory.zero_power == 2 * len(null):
+        calm = drifting(_all_left(False) if decays else calm) if theory.factors else coasting()
         calm = here(calm) if len(null) > len(system.shifts) else calm
         return Case(requirements, (), calm), *unstable
     if system.shifts:
         return ()
     grows = concluded({Fact.EXACTLY_LINEAR, Fact.JORDAN_BLOCK})
-    if still and found.zero_power == 2 * len(null) and not decays and all(r.always for r in requirements):
+    if still and theory.zero_power == 2 * len(null) and not decays and all(r.always for r in requirements):
         return (Case(requirements, (), only_drifts(grows)),)
     letter = "A" if system.of_first_order else "K + N"
     return (Case(_of_full_rank(places, letter, len(null), known), (), grows),)
@@ -756,10 +756,10 @@ def _no_gyroscopic(system: LinearSystem, rows: Matrix, known: Signs) -> bool:
     return all(known.normalised(dot(row, v)) == 0 for row in system.G for v in rows)
 
 
-def _wanted(found: Theory) -> tuple[Requirement, ...]:
+def _wanted(theory: Theory) -> tuple[Requirement, ...]:
     """What a case requires by which nothing is wrong with the roots: M > 0, or nothing, where they are all zero."""
-    by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
-    return found.requirements or by_mass or (holds_always(found.removed),)
+    by_mass = tuple(replace(r, by_mass=True) for r in theory.mass.requirements)
+    return theory.requirements or by_mass or (holds_always(theory.removed),)
 
 
 def _of_full_rank(matrix: Matrix, letter: str, null: int, known: Signs) -> tuple[Requirement, ...]:
@@ -791,29 +791,31 @@ def _semidefinite(system: LinearSystem, known: Signs) -> frozenset[Fact]:
     return system.facts | {Fact.DAMPING_SEMIDEFINITE}
 
 
-def _cases_with_zero_roots(system: LinearSystem, found: Theory, known: Signs) -> tuple[tuple[Case, ...], Theory | None]:
+def _cases_with_zero_roots(
+    system: LinearSystem, theory: Theory, known: Signs
+) -> tuple[tuple[Case, ...], Theory | None]:
     """Cyclic coordinates: ignore them (Routh) or strike their roots; other zero roots are a border."""
-    unstable = _unstable(found.requirements, known)
+    unstable = _unstable(theory.requirements, known)
     if not system.cyclic:
         standing = bool(system.turned) and system.turned[1] == 0  # in any direction of space: two zero roots
-        if standing and found.zero_power == 2 and found.variable == "lambda":
-            return (Case(found.requirements, (), _all_left(True)), *unstable), None
+        if standing and theory.zero_power == 2 and theory.variable == "lambda":
+            return (Case(theory.requirements, (), _all_left(True)), *unstable), None
         null = null_rows(added(system.K, system.N), known.normalised)
-        if len(null) != found.zero_power:  # Jordan blocks
+        if len(null) != theory.zero_power:  # Jordan blocks
             return unstable, None
         why = Reason(Because.ZERO_ROOT), Reason(Because.HIGHER_ORDER)
-        return (Case(_wanted(found), (), concluded({Fact.BOUNDED}, *why)), *unstable), None
+        return (Case(_wanted(theory), (), concluded({Fact.BOUNDED}, *why)), *unstable), None
     if only_momenta(system):
-        by_mass = tuple(replace(r, by_mass=True) for r in found.mass.requirements)
+        by_mass = tuple(replace(r, by_mass=True) for r in theory.mass.requirements)
         return (Case(by_mass, (), coasting()),), None
     if momenta_are_constant(system):
         reduced = analyse(ignoring_cyclic(system), known)
         return tuple(replace(c, verdict=drifting(c.verdict)) for c in reduced.cases), reduced
     lasting = _energy_besides(system, known)
-    if found.zero_power == len(system.cyclic) and found.variable == "lambda":
+    if theory.zero_power == len(system.cyclic) and theory.variable == "lambda":
         energy = ENERGY_BESIDES if any(case.always for case in lasting) else frozenset()
         verdict = drifting(concluded(energy | {Fact.ROOTS_LEFT}), constant_momenta=False)
-        return (Case(found.requirements, (), verdict), *lasting, *unstable), None
+        return (Case(theory.requirements, (), verdict), *lasting, *unstable), None
     return (*lasting, *unstable), None
 
 
@@ -868,7 +870,7 @@ def _without_known_factor(p: Coefficients, known: Signs) -> tuple[Coefficients, 
     """p = removed * q, with ``removed`` > 0 proved; common factors of unknown sign stay in q."""
     q, common = primitive(p)
     unit, powers = irreducible_factors(common)
-    removed, kept = common * 0 + abs(unit), common * 0 + (1 if unit > 0 else -1)
+    removed, remaining = common * 0 + abs(unit), common * 0 + (1 if unit > 0 else -1)
     for factor, multiplicity in powers:
         power = factor**multiplicity
         word = known.sign(power)
@@ -876,15 +878,15 @@ def _without_known_factor(p: Coefficients, known: Signs) -> tuple[Coefficients, 
             removed *= power
         elif word == "negative":
             removed *= -power
-            kept = -kept
+            remaining = -remaining
         else:
-            kept *= power
-    return tuple(c * kept for c in q), removed
+            remaining *= power
+    return tuple(c * remaining for c in q), removed
 
 
 def _factors(p: Coefficients) -> tuple[Factor, ...]:
     """Irreducible factors; what is free of lambda and not a number stays with a single simple factor."""
-    found = factor_in_lambda(p)[1]
-    if len(found) == 1 and found[0][1] == 1:
+    powers = factor_in_lambda(p)[1]
+    if len(powers) == 1 and powers[0][1] == 1:
         return (Factor(p, 1),)
-    return tuple(Factor(coefficients, multiplicity) for coefficients, multiplicity in found)
+    return tuple(Factor(coefficients, multiplicity) for coefficients, multiplicity in powers)

@@ -65,11 +65,11 @@ _ANY = frozenset(Flaw)
 
 @dataclass(frozen=True)
 class Row:
-    """``word`` where ``ground`` is there, all flaws of ``wanted``, and no others than those ``allowed``."""
+    """``word`` where ``ground`` is there, all flaws of ``required``, and no others than those ``allowed``."""
 
     word: Word
     ground: Ground | None = None
-    wanted: frozenset[Flaw] = frozenset()
+    required: frozenset[Flaw] = frozenset()
     allowed: frozenset[Flaw] = _ANY
 
 
@@ -79,23 +79,23 @@ _FAMILY = frozenset({Flaw.STEADY})
 
 #: The first row that fits gives the word.  Every combination of grounds and flaws fits one.
 LAW = (
-    Row(Word.UNDECIDED, wanted=frozenset({Flaw.SINGULAR})),
-    Row(Word.UNSTABLE, wanted=frozenset({Flaw.UNSTABLE})),
-    Row(Word.UNSTABLE_BUT_BORDERS, wanted=frozenset({Flaw.INSIDE})),
-    Row(Word.DEPENDS, wanted=frozenset({Flaw.DEPENDS})),
-    Row(Word.UNDECIDED, wanted=frozenset({Flaw.OPEN})),
+    Row(Word.UNDECIDED, required=frozenset({Flaw.SINGULAR})),
+    Row(Word.UNSTABLE, required=frozenset({Flaw.UNSTABLE})),
+    Row(Word.UNSTABLE_BUT_BORDERS, required=frozenset({Flaw.INSIDE})),
+    Row(Word.DEPENDS, required=frozenset({Flaw.DEPENDS})),
+    Row(Word.UNDECIDED, required=frozenset({Flaw.OPEN})),
     Row(Word.ASYMPTOTIC, Ground.DECAYS, allowed=frozenset()),
-    Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, wanted=_DRIFT, allowed=_DRIFT),
-    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT, allowed=_DRIFT),
-    Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, wanted=_FAMILY, allowed=_FAMILY),
-    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, wanted=_DRIFT | _FAMILY, allowed=_DRIFT | _FAMILY),  # on a leaf
+    Row(Word.STABLE_BUT_CYCLIC, Ground.IDLE, required=_DRIFT, allowed=_DRIFT),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, required=_DRIFT, allowed=_DRIFT),
+    Row(Word.ASYMPTOTIC_BUT_STEADY, Ground.DECAYS, required=_FAMILY, allowed=_FAMILY),
+    Row(Word.ASYMPTOTIC_BUT_CYCLIC, Ground.DECAYS, required=_DRIFT | _FAMILY, allowed=_DRIFT | _FAMILY),  # on a leaf
     Row(Word.ASYMPTOTIC_BUT_TURNED, Ground.DECAYS, allowed=_SOUND),
     Row(Word.STABLE, Ground.ENERGY, allowed=frozenset()),
-    Row(Word.STABLE, Ground.ENERGY, wanted=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
+    Row(Word.STABLE, Ground.ENERGY, required=_FAMILY, allowed=_FAMILY),  # of a leaf, beside parts that decay
     Row(Word.STABLE, Ground.LINEAR, allowed=_DRIFT | _FAMILY),  # what may drift by itself stays near, too
-    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
-    Row(Word.STABLE_BUT_CYCLIC, Ground.SHIFTED, wanted=_DRIFT, allowed=_DRIFT | _FAMILY),
-    Row(Word.GYROSCOPIC, Ground.UNDAMPED, wanted=frozenset({Flaw.INDEFINITE})),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.ENERGY, required=_DRIFT, allowed=_DRIFT | _FAMILY),
+    Row(Word.STABLE_BUT_CYCLIC, Ground.SHIFTED, required=_DRIFT, allowed=_DRIFT | _FAMILY),
+    Row(Word.GYROSCOPIC, Ground.UNDAMPED, required=frozenset({Flaw.INDEFINITE})),
     Row(Word.CRITICAL),
 )
 
@@ -120,7 +120,7 @@ def row_of(grounds: Set[Ground], flaws: Set[Flaw]) -> Row:
     """The row of the table."""
     flaws = flaws - {Flaw.HERE}
     return next(
-        row for row in LAW if row.wanted <= flaws <= row.allowed and (row.ground is None or row.ground in grounds)
+        row for row in LAW if row.required <= flaws <= row.allowed and (row.ground is None or row.ground in grounds)
     )
 
 
@@ -145,11 +145,15 @@ class Verdict:
             object.__setattr__(self, "flaws", frozenset(flaws))
         if self.grounds is None:
             decisive = row_of(grounds, flaws).ground
-            given = {ground: self.theorems if ground is decisive else () for ground in grounds}
+            theorems_by_ground = {ground: self.theorems if ground is decisive else () for ground in grounds}
         else:
-            given = dict(self.grounds)
-        object.__setattr__(self, "grounds", tuple((ground, given[ground]) for ground in Ground if ground in given))
-        if row_of({*given}, self.flawed).word != self.word:
+            theorems_by_ground = dict(self.grounds)
+        object.__setattr__(
+            self,
+            "grounds",
+            tuple((ground, theorems_by_ground[ground]) for ground in Ground if ground in theorems_by_ground),
+        )
+        if row_of({*theorems_by_ground}, self.flawed).word != self.word:
             raise ValueError(f"these are not the grounds of '{self.word}'")
 
     def __repr__(self) -> str:
@@ -218,14 +222,22 @@ def unstable_inside(unstable: Verdict) -> Verdict:
 
 def weakest(verdicts: Sequence[Verdict]) -> Verdict:
     """What is true of one system at all parameters, each of which has one of these verdicts."""
-    if len({(one.word, one.theorems, one.reasons, one.grounds, one.flaws) for one in verdicts}) == 1:
+    if (
+        len(
+            {
+                (candidate.word, candidate.theorems, candidate.reasons, candidate.grounds, candidate.flaws)
+                for candidate in verdicts
+            }
+        )
+        == 1
+    ):
         return verdicts[0]
     kept_grounds = set.intersection(*({*verdict.laid} for verdict in verdicts))
     grounds = {ground: tuple(sorted({name for x in verdicts for name in x.laid[ground]})) for ground in kept_grounds}
     flaws = frozenset[Flaw]().union(*(verdict.flawed for verdict in verdicts))
     row = row_of(kept_grounds, flaws)
     if not row.word.stable and all(verdict.stable for verdict in verdicts):
-        last = max(verdicts, key=lambda one: [*Word].index(one.word))
+        last = max(verdicts, key=lambda candidate: [*Word].index(candidate.word))
         if last.flawed >= flaws - {Flaw.HERE}:  # stable everywhere, though no one theorem says so
             names = tuple(sorted({name for verdict in verdicts for name in verdict.theorems}))
             return replace(last, theorems=names, flaws=flaws)
@@ -267,9 +279,9 @@ def concluded(shown: Set[Fact], *reasons: Reason, why_not: Because = Because.BOR
         flaws.add(Flaw.INDEFINITE)
     row = row_of({*grounds}, flaws)
     theorem = theorems.get(row.ground)
-    told = reasons or ((reason_of(theorem),) if theorem is not None else ())
+    explanations = reasons or ((reason_of(theorem),) if theorem is not None else ())
     names = () if row.ground is None else grounds[row.ground]
-    return Verdict(row.word, names, told, tuple(grounds.items()), frozenset(flaws))
+    return Verdict(row.word, names, explanations, tuple(grounds.items()), frozenset(flaws))
 
 
 class Extremum(Enum):
@@ -299,10 +311,10 @@ def bounded(shown: Set[Fact], *reasons: Reason) -> Verdict:
     every = implied(shown)
     if Fact.EXACTLY_LINEAR not in every:
         return concluded(shown | {Fact.BOUNDED}, *reasons)
-    told = [Reason(Because.LINEAR_BOUNDED)]
+    explanations = [Reason(Because.LINEAR_BOUNDED)]
     if every >= {Fact.UNDAMPED, Fact.POTENTIAL, Fact.STIFFNESS_NONSINGULAR, Fact.STIFFNESS_NEGATIVE_SOMEWHERE}:
-        told.append(Reason(Because.LINEAR_GYROSCOPIC))
-    return concluded(shown | {Fact.BOUNDED}, *told)
+        explanations.append(Reason(Because.LINEAR_GYROSCOPIC))
+    return concluded(shown | {Fact.BOUNDED}, *explanations)
 
 
 def exactly(verdict: Verdict, calm: bool = False) -> Verdict:
@@ -337,10 +349,16 @@ def drifting(verdict: Verdict, constant_momenta: bool = True) -> Verdict:
     row = row_of({*grounds}, flaws)
     names = verdict.theorems if row.ground is None else grounds[row.ground]
     without = _BESIDE_ZERO_ROOTS | _BUT_CYCLIC
-    told = (Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in verdict.reasons)
-    reasons = dict.fromkeys([*(without.get(reason, reason) for reason in told), Reason(drift)])
+    explanations = (Reason(Because.RIGHT_ROOT) if x.code in _OF_ONE_PART else x for x in verdict.reasons)
+    reasons = dict.fromkeys([*(without.get(reason, reason) for reason in explanations), Reason(drift)])
     said = _telling(set(reasons))
-    return Verdict(row.word, names, tuple(one for one in reasons if one in said), tuple(grounds.items()), flaws)
+    return Verdict(
+        row.word,
+        names,
+        tuple(explanation for explanation in reasons if explanation in said),
+        tuple(grounds.items()),
+        flaws,
+    )
 
 
 def here(verdict: Verdict) -> Verdict:
@@ -361,10 +379,10 @@ def only_drifts(verdict: Verdict) -> Verdict:
 
 def displaced(verdict: Verdict, basis: Basis | None) -> Verdict:
     """The verdict, which says of a drift in which displacements of the user's coordinates it is."""
-    told = () if basis is None else basis.together
-    if not told or Flaw.CYCLIC not in verdict.flawed:
+    displacements = () if basis is None else basis.together
+    if not displacements or Flaw.CYCLIC not in verdict.flawed:
         return verdict
-    reason = Reason(Because.DISPLACEMENTS, (joined(told, ", "),))
+    reason = Reason(Because.DISPLACEMENTS, (joined(displacements, ", "),))
     return replace(verdict, reasons=tuple(sorted((*verdict.reasons, reason), key=lambda reason: reason.rank)))
 
 
@@ -447,7 +465,7 @@ def combine(verdicts: Iterable[Verdict], one_energy: bool = False) -> Verdict:
             grounds[Ground.ENERGY] = _at_constant_momenta(grounds[Ground.ENERGY])
         names = grounds[row.ground]
     else:  # those of the parts that have the flaw which decides
-        names = tuple(sorted({name for part in parts if row.wanted <= part.flawed for name in part.theorems}))
+        names = tuple(sorted({name for part in parts if row.required <= part.flawed for name in part.theorems}))
         names = names if row.word in (Word.UNSTABLE, Word.UNSTABLE_BUT_BORDERS) else ()
     return Verdict(row.word, names, _reasons(parts, row), tuple(grounds.items()), flaws)
 
@@ -464,11 +482,11 @@ _MINIMUM, _WITH_DISSIPATION = Because.MINIMUM, Because.MINIMUM_AND_DISSIPATION
 def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
     """Those of the parts that decide; what is counted in one part is not counted in the whole."""
     parts = tuple(replace(part, reasons=tuple(_OF_ALL.get(x, x) for x in part.reasons)) for part in parts)
-    alike = [part for part in parts if part.word == row.word and row.wanted <= part.flawed]
+    alike = [part for part in parts if part.word == row.word and row.required <= part.flawed]
     idle = [part for part in parts if Ground.IDLE in part.laid]
     moving = [part for part in parts if part not in idle]
     reasons: set[Reason] = set()
-    if row.wanted - _SOUND or len(alike) == len(parts) or (alike and row.ground in (Ground.UNDAMPED, None)):
+    if row.required - _SOUND or len(alike) == len(parts) or (alike and row.ground in (Ground.UNDAMPED, None)):
         verdicts = [part for part in alike if part in moving] or alike
         reasons = {reason for part in verdicts for reason in part.reasons}
     elif row.ground is None:
@@ -488,7 +506,7 @@ def _reasons(parts: tuple[Verdict, ...], row: Row) -> tuple[Reason, ...]:
             reasons.add(Reason(Because.PARTLY_CYCLIC))
     if not all(part.stable or part.because(Because.LINEAR_DRIFTS) for part in parts):
         reasons.discard(_DRIFTS)  # of a part: others grow otherwise
-    if Flaw.CYCLIC in row.wanted:
+    if Flaw.CYCLIC in row.required:
         reasons |= {reason for part in parts for reason in part.reasons if reason.code is Because.DISPLACEMENTS}
     if idle and moving and row.ground is Ground.DECAYS:
         reasons.add(Reason(Because.CONSTANT_MOMENTA))

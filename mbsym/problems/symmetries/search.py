@@ -137,7 +137,12 @@ def blocks(form: SpeedForm, scene: Scene, energy: Energy, equations: Equations, 
 
     replaced = [name for body in form.by_vectors for name in body.own_angles]
     norms = tuple(body.orientation[0].components for body in form.by_quaternion)
-    variables = [*form.coordinates, *replaced, *(name for one in norms for name in one), *(u.name for u in form.speeds)]
+    variables = [
+        *form.coordinates,
+        *replaced,
+        *(name for components in norms for name in components),
+        *(u.name for u in form.speeds),
+    ]
 
     def put(listed: Iterable[Polynomial]) -> tuple[Polynomial, ...]:
         return tuple(put_in(ring, x, images) for x in listed)
@@ -193,15 +198,15 @@ def symmetries(system: System, blocks: Blocks, known: Sequence[Integral] | None)
     vectors = kernel(blocks.ring, columns) if able else []
     compared = bound is None and independent(blocks.ring, columns)
     most = len(vectors) if compared else most
-    found = []
+    candidates = []
     right = len(vectors)
     for vector in vectors:
         made = _symmetry(blocks, unknowns, {able[k]: c for k, c in vector.items()})
         if made is None:
             right -= 1
         else:
-            found.append(made)
-    judged = _told_apart(system, blocks, found, known)
+            candidates.append(made)
+    judged = _told_apart(system, blocks, candidates, known)
     bound_by_images = {blocks.ring.generators[k].name for k in blocks.images}
     symbols = any(name not in bound_by_images for name in system.parameter_names)
     return Symmetries(tuple(judged), right == most, len(unknowns), blocks.in_speeds, symbols, compared)
@@ -276,11 +281,11 @@ def _exponentials(ring: Ring, source: Random) -> dict[int, fmpq]:
     With positions and parameters beside they fulfil what all states do, and nothing else: exponentials of such
     monomials are algebraically independent (J. Ax, Ann. of Math. 93 (1971), 252).
     """
-    found = [(k, g.argument) for k, g in enumerate(ring.generators) if g.kind == "function" and g.name == "exp"]
-    found = [(k, a) for k, a in found if all(map(partial(_moves, ring), a.monoms()))]
-    common = lcm(*(int(c.q) for _, a in found for c in a.coeffs()))
-    bases = {m: fmpq(source.randint(2, 99), source.randint(2, 99)) for _, a in found for m in a.monoms()}
-    return {k: prod((bases[m] ** int(c * common) for m, c in a.terms()), start=fmpq(1)) for k, a in found}
+    exponentials = [(k, g.argument) for k, g in enumerate(ring.generators) if g.kind == "function" and g.name == "exp"]
+    exponentials = [(k, a) for k, a in exponentials if all(map(partial(_moves, ring), a.monoms()))]
+    common = lcm(*(int(c.q) for _, a in exponentials for c in a.coeffs()))
+    bases = {m: fmpq(source.randint(2, 99), source.randint(2, 99)) for _, a in exponentials for m in a.monoms()}
+    return {k: prod((bases[m] ** int(c * common) for m, c in a.terms()), start=fmpq(1)) for k, a in exponentials}
 
 
 def _moves(ring: Ring, monomial: Sequence[int]) -> bool:
@@ -321,7 +326,7 @@ def _row(carry: Carrier, blocks: _Plain, unknowns: Sequence[Unknown]) -> list[in
     p, rates = at(blocks.momenta), at(blocks.rates)
     s, changes = at(blocks.positions), at(blocks.changes)
     (power,) = at([blocks.power])
-    found = []
+    entries = []
     for unknown in unknowns:
         if unknown.time:
             value = power
@@ -333,8 +338,8 @@ def _row(carry: Carrier, blocks: _Plain, unknowns: Sequence[Unknown]) -> list[in
             value = s[j] * rates[unknown.direction] + changes[j] * p[unknown.direction]
         else:
             value = rates[unknown.direction]
-        found.append(value % prime)
-    return found
+        entries.append(value % prime)
+    return entries
 
 
 def _residue(x: fmpq) -> int:
@@ -377,21 +382,23 @@ def _symmetry(blocks: Blocks, unknowns: Sequence[Unknown], vector: dict[int, Pol
 
 
 def _told_apart(
-    system: System, blocks: Blocks, found: Sequence[Symmetry], known: Sequence[Integral] | None
+    system: System, blocks: Blocks, candidates: Sequence[Symmetry], known: Sequence[Integral] | None
 ) -> list[Symmetry]:
     """Without those whose integral is a constant; which are known, and how that is."""
-    listed = [(one.name, put_in(blocks.ring, one.formula.polynomial, blocks.images)) for one in known or ()]
+    listed = [
+        (integral.name, put_in(blocks.ring, integral.formula.polynomial, blocks.images)) for integral in known or ()
+    ]
     of_known, of_all = Gradients(system, blocks), Gradients(system, blocks)
     for _, x in listed:
         of_known.add(x)
         of_all.add(x)
     moving = [
-        replace(one, name=_multiple(blocks, one.integral.polynomial, listed))
-        for one in found
-        if not _constant(blocks, one.integral.polynomial)
+        replace(candidate, name=_multiple(blocks, candidate.integral.polynomial, listed))
+        for candidate in candidates
+        if not _constant(blocks, candidate.integral.polynomial)
     ]
     judged = []
-    for symmetry in sorted(moving, key=lambda one: (not one.name, one.integral.terms)):
+    for symmetry in sorted(moving, key=lambda moved: (not moved.name, moved.integral.terms)):
         x = symmetry.integral.polynomial
         if symmetry.name:
             judged.append(replace(symmetry, certainty=Certainty.PROVED))

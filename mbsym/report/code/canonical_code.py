@@ -68,7 +68,7 @@ def canonical_code(analysis: Analysis, problems: Sequence[int], writer: Function
         reason = missing if code is None else "inputs are not taken into account there"
         there = [title for name, title in _TITLES.items() if getattr(forms, name) is not None]
         return FormsCode(None, None, (*lacking, *(f"There is no code of {title}: {reason}" for title in there)))
-    names = {name for one in (forms.hamilton, forms.routh) if one is not None for name in one.momenta}
+    names = {name for form in (forms.hamilton, forms.routh) if form is not None for name in form.momenta}
     taken = {*writer.reserved, *writer.names.values()}
     writer.names |= injective(sorted(names), lambda name: name + "_" if name in taken else name, taken)
     return _Code(analysis, writer).forms(forms, tuple(lacking))
@@ -89,32 +89,32 @@ class _Code:
             lacking,
         )
 
-    def _hamilton(self, found: Hamilton) -> HamiltonCode:
+    def _hamilton(self, hamilton: Hamilton) -> HamiltonCode:
         return HamiltonCode(
-            names=found.momenta,
-            unpacked=self._called((*self.system.coordinates, *found.momenta)),
+            names=hamilton.momenta,
+            unpacked=self._called((*self.system.coordinates, *hamilton.momenta)),
             momenta=self._momenta(self.system.coordinates),
-            hamiltonian=self._function([found.hamiltonian], found.momenta),
-            rates=self._function([*found.velocities, *found.rates], found.momenta),
+            hamiltonian=self._function([hamilton.hamiltonian], hamilton.momenta),
+            rates=self._function([*hamilton.velocities, *hamilton.rates], hamilton.momenta),
         )
 
-    def _routh(self, found: Routh) -> RouthCode:
-        m, names = len(found.coordinates), self.system.coordinates
+    def _routh(self, routh: Routh) -> RouthCode:
+        m, names = len(routh.coordinates), self.system.coordinates
         upper = tuple((i, j) for i in range(m) for j in range(i, m))
-        velocities = [self.system.velocities[names.index(name)] for name in found.coordinates]
-        entries = [found.mass_matrix[i, j] for i, j in upper]
+        velocities = [self.system.velocities[names.index(name)] for name in routh.coordinates]
+        entries = [routh.mass_matrix[i, j] for i, j in upper]
         return RouthCode(
-            coordinates=found.coordinates,
-            ignored=found.ignored,
-            names=found.momenta,
-            unpacked=self._called((*found.coordinates, *velocities)),
-            constants=self._called(found.momenta),
-            kept=tuple(names.index(name) for name in found.coordinates),
-            momenta=self._momenta(found.ignored),
+            coordinates=routh.coordinates,
+            ignored=routh.ignored,
+            names=routh.momenta,
+            unpacked=self._called((*routh.coordinates, *velocities)),
+            constants=self._called(routh.momenta),
+            kept=tuple(names.index(name) for name in routh.coordinates),
+            momenta=self._momenta(routh.ignored),
             upper=upper,
-            function=self._function([*entries, *found.forcing], found.momenta),
-            potential=self._function([found.reduced_potential], found.momenta),
-            ignored_rates=self._function(found.ignored_rates, found.momenta),
+            function=self._function([*entries, *routh.forcing], routh.momenta),
+            potential=self._function([routh.reduced_potential], routh.momenta),
+            ignored_rates=self._function(routh.ignored_rates, routh.momenta),
         )
 
     def _called(self, names: Iterable[str]) -> tuple[str, ...]:

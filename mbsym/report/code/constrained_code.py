@@ -150,7 +150,7 @@ def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, P
     program, jacobian = tied.code.tree.program, tied.jacobian
     places = entries(program, jacobian)
     system = analysis.system
-    given = given_of(system)
+    fixed = given_of(system)
     code = TiedCode(
         tied.labels,
         tied.positions,
@@ -161,8 +161,8 @@ def tied_code(analysis: Analysis, writer: Functions) -> tuple[TiedCode | None, P
         writer.function(program, [jacobian[k][j] for k, j in places]),
         writer.function(program, tied.gamma),
         places,
-        given,
-        tuple(name for name, stays in zip((*system.coordinates, *system.velocities), given, strict=True) if stays),
+        fixed,
+        tuple(name for name, stays in zip((*system.coordinates, *system.velocities), fixed, strict=True) if stays),
     )
     return code, tied.code.tree, ""
 

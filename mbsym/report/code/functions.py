@@ -106,9 +106,9 @@ class Functions:
         lower = Lowering(program, program_environment(self.system, program))
         prescribeds = [item for item in self.system.prescribed if item.name in used]
         values = [lower(prescribed_value(item)) for item in prescribeds]
-        found = listing(program, values, self.names, self.dialect, self.reserved | taken)
-        named = tuple((self.names[item.name], x) for item, x in zip(prescribeds, found.results, strict=True))
-        return Listing((*found.assignments, *named), (), found.inputs)
+        listed = listing(program, values, self.names, self.dialect, self.reserved | taken)
+        named = tuple((self.names[item.name], x) for item, x in zip(prescribeds, listed.results, strict=True))
+        return Listing((*listed.assignments, *named), (), listed.inputs)
 
 
 # Tables in generated code: a search among the knots and a polynomial, one function for each derivative that is used.
@@ -127,7 +127,7 @@ def identifier(name: Tabulated) -> str:
 def identifiers(system: System) -> frozenset[str]:
     """What no other name may be: those of up to four derivatives of all tables, and of their numbers."""
     own = [f"lookup__{table.name}__{order}" for table in system.tables for order in range(5)]
-    return frozenset(own + [f"{one}_{part}" for one in own for part in ("at", "rows")])
+    return frozenset(own + [f"{lookup}_{part}" for lookup in own for part in ("at", "rows")])
 
 
 def _numbers(name: Tabulated) -> tuple[list[str], list[list[str]]]:
@@ -146,13 +146,13 @@ def _horner(terms: list[str]) -> str:
 
 def _lines(items: Iterable[str], indent: str, width: int = 108) -> list[str]:
     """Items with commas behind them, as many on a line as fit."""
-    found, line = [], indent
+    lines, line = [], indent
     for item in items:
         if len(line) + len(item) + 2 > width and line.strip():
-            found.append(line.rstrip())
+            lines.append(line.rstrip())
             line = indent
         line += f"{item}, "
-    return [*found, line.rstrip()]
+    return [*lines, line.rstrip()]
 
 
 def c_definition(name: Tabulated) -> str:

@@ -178,11 +178,11 @@ def _reactions(
     moved = {acceleration_name(q): x for q, x in zip(system.coordinates, forward.accelerations, strict=True)}
     try:
         scene = Scene(system, forward.program, {**forward.environment, **moved}, analysis.ring)
-        found = reactions(scene, system.reactions, rows)
+        joint_reactions = reactions(scene, system.reactions, rows)
     except Failure as reason:
         return (), str(reason)
     totals = []
-    for reaction in found:
+    for reaction in joint_reactions:
         total = [*reaction.force, *reaction.moment]
         for weight, (force, moment) in zip(multipliers, reaction.per_multiplier, strict=True):
             total = [x + weight * y for x, y in zip(total, [*force, *moment], strict=True)]
@@ -261,7 +261,7 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
     code, no_code = programs_of(analysis)
     if code is None:
         return (), (f"There is no code for the equations of motion: {no_code}",)
-    n, program, found = len(analysis.system.coordinates), code.program, solved(analysis)
+    n, program, solution = len(analysis.system.coordinates), code.program, solved(analysis)
     pairs: dict[Place, Node] = {(i, j): code.mass_matrix[i][j] for i in range(n) for j in range(n)}
     forces: dict[Place, Node] = {(i,): node for i, node in enumerate(code.forcing)}
     energies = generalized_energy(code, analysis.system)
@@ -275,30 +275,30 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
     lacking = []
     if analysis.system.constraints:
         made.extend(_rows(analysis))
-    if found.forward is None:
-        lacking.append(f"There are no accelerations: {found.no_forward}")
+    if solution.forward is None:
+        lacking.append(f"There are no accelerations: {solution.no_forward}")
     else:
-        own = found.forward.program
-        columns: dict[Place, Node] = {(i,): node for i, node in enumerate(found.forward.accelerations)}
+        own = solution.forward.program
+        columns: dict[Place, Node] = {(i,): node for i, node in enumerate(solution.forward.accelerations)}
         words = "q'' = M^-1 f, by factorisation"
         if analysis.system.constraints:
             words = "q'' with M q'' = f + J^T lambda and J q'' = -gamma, by factors of M and of J M^-1 J^T"
         made.append(Part("accelerations", words, (n,), own, _nonzero(own, columns)))
-        if found.slopes is None:
-            lacking.append(f"There is no Jacobian: {found.no_slopes}")
+        if solution.slopes is None:
+            lacking.append(f"There is no Jacobian: {solution.no_slopes}")
         else:
             slopes: dict[Place, Node] = {
-                (n + i, j): node for i, row in enumerate(found.slopes) for j, node in enumerate(row)
+                (n + i, j): node for i, row in enumerate(solution.slopes) for j, node in enumerate(row)
             }
             slopes |= {(i, n + i): own.one for i in range(n)}
             words = "d(q', q'')/d(q, q'), exact: by the chain rule"
             made.append(Part("jacobian", words, (2 * n, 2 * n), own, _nonzero(own, slopes)))
         if analysis.system.constraints:
             made.extend(_corrections(analysis))
-        if found.no_reactions:
-            lacking.append(f"There are no reactions: {found.no_reactions}")
-        if found.reactions:
-            made.append(_reaction_part(analysis, found))
+        if solution.no_reactions:
+            lacking.append(f"There are no reactions: {solution.no_reactions}")
+        if solution.reactions:
+            made.append(_reaction_part(analysis, solution))
     conserved = first_integrals(analysis, problems)
     if conserved.reason:
         lacking.append(f"There are no first integrals: {conserved.reason}")
@@ -314,27 +314,29 @@ def parts(analysis: Analysis, problems: Sequence[int], named: bool = True) -> tu
     return tuple(made), tuple(lacking)
 
 
-def _named_parts(found: NamedDynamics, n: int, tied: bool) -> Iterator[Part]:
+def _named_parts(dynamics: NamedDynamics, n: int, tied: bool) -> Iterator[Part]:
     """What robotics calls by name."""
     forward = "q'' with M q'' = f + tau + J^T lambda and J q'' = -gamma" if tied else "q'' = M^-1 (f + tau)"
     balance = "M q'' + c + g = generalised forces of other loads"
-    for name, words, one, argument in (
-        ("coriolis", f"c of {balance}: C(q, q') q' where nothing moves as prescribed", found.coriolis, ""),
-        ("gravity", f"g of {balance}, of the fields of gravity", found.gravity, ""),
+    for name, words, quantity, argument in (
+        ("coriolis", f"c of {balance}: C(q, q') q' where nothing moves as prescribed", dynamics.coriolis, ""),
+        ("gravity", f"g of {balance}, of the fields of gravity", dynamics.gravity, ""),
         (
             "inverse_dynamics",
             "The generalised forces tau = M q'' - f that q'' needs besides the loads, inputs being zero",
-            found.inverse,
+            dynamics.inverse,
             "qdd",
         ),
-        ("forward_dynamics", f"{forward}, inputs being zero", found.forward, "tau"),
+        ("forward_dynamics", f"{forward}, inputs being zero", dynamics.forward, "tau"),
     ):
-        if one is not None:
-            column: dict[Place, Node] = {(i,): x for i, x in enumerate(one.nodes)}
-            nodes = _nonzero(one.program, column)
-            yield Part(name, words, (n,), one.program, nodes, argument, bool(argument))
-    called = injective([one.name for one in found.frames], lambda name: re.sub(r"\W", "_", name, flags=re.ASCII))
-    for frame in found.frames:
+        if quantity is not None:
+            column: dict[Place, Node] = {(i,): x for i, x in enumerate(quantity.nodes)}
+            nodes = _nonzero(quantity.program, column)
+            yield Part(name, words, (n,), quantity.program, nodes, argument, bool(argument))
+    called = injective(
+        [frame_code.name for frame_code in dynamics.frames], lambda name: re.sub(r"\W", "_", name, flags=re.ASCII)
+    )
+    for frame in dynamics.frames:
         for stem, words, computed, shape in (
             ("pose", "[[R, r], [0, 1]]: inertial axes from its own are R, its origin is r", frame.pose, (4, 4)),
             (
@@ -355,32 +357,32 @@ def undetermined(analysis: Analysis) -> str:
     system = analysis.system
     if not (system.reactions and system.constraints):
         return ""
-    found = analysis.optional("reactions")
-    if found is None:
+    reactions = analysis.optional("reactions")
+    if reactions is None:
         return "Where constraints follow from others, forces of these are the least that do."
-    told = [
-        f"{one.body}: " + ", ".join(f"{'force' if k < 3 else 'moment'} {k % 3 + 1}" for k in one.undetermined)
-        for one in found
-        if one.undetermined
+    components = [
+        f"{reaction.body}: " + ", ".join(f"{'force' if k < 3 else 'moment'} {k % 3 + 1}" for k in reaction.undetermined)
+        for reaction in reactions
+        if reaction.undetermined
     ]
-    if not told:
+    if not components:
         return ""
     return (
-        f"Statically indeterminate, so not determined by the equations, are {'; '.join(told)}: given are those without "
-        "forces that constraints may have in balance, or with the least of them."
+        f"Statically indeterminate, so not determined by the equations, are {'; '.join(components)}: given are those "
+        "without forces that constraints may have in balance, or with the least of them."
     )
 
 
-def _reaction_part(analysis: Analysis, found: Solved) -> Part:
-    assert found.forward is not None
-    values: dict[Place, Node] = {(i, k): x for i, row in enumerate(found.reactions) for k, x in enumerate(row)}
+def _reaction_part(analysis: Analysis, solution: Solved) -> Part:
+    assert solution.forward is not None
+    values: dict[Place, Node] = {(i, k): x for i, row in enumerate(solution.reactions) for k, x in enumerate(row)}
     joints = "; ".join(analysis.system.reactions)
     words = f"Force and moment in the joints of {joints}: a row for each, about its connection point, in its axes"
     open_ones = undetermined(analysis)
     if open_ones:
         words += f". {open_ones.removesuffix('.')}"
-    program = found.forward.program
-    return Part("reactions", words, (len(found.reactions), 6), program, _nonzero(program, values))
+    program = solution.forward.program
+    return Part("reactions", words, (len(solution.reactions), 6), program, _nonzero(program, values))
 
 
 def _rows(analysis: Analysis) -> tuple[Part, ...]:

@@ -62,8 +62,8 @@ class FrameCode:
     def entries(self, columns: int) -> tuple[list[tuple[int, int]], list[Node]]:
         """Places and nodes of the entries of the Jacobian that need not be zero."""
         found = [(divmod(k, columns), x) for k, x in enumerate(self.jacobian.nodes)]
-        kept = [(place, x) for place, x in found if not self.jacobian.program.vanishes(x)]
-        return [place for place, _ in kept], [x for _, x in kept]
+        nonzero = [(place, x) for place, x in found if not self.jacobian.program.vanishes(x)]
+        return [place for place, _ in nonzero], [x for _, x in nonzero]
 
 
 @dataclass(frozen=True)
@@ -99,18 +99,20 @@ class Bodies:
     frames: list[tuple[str, Function, Function, list[tuple[int, int]]]]
 
 
-def bodies(found: NamedDynamics, writer: Functions, plain: Callable[[str], str]) -> Bodies:
+def bodies(dynamics: NamedDynamics, writer: Functions, plain: Callable[[str], str]) -> Bodies:
     """In a language; names of frames may stand in its strings and comments when they are ``plain``."""
 
     def body(computed: Computed | None) -> Function | None:
         return None if computed is None else writer.function(computed.program, computed.nodes)
 
     frames = []
-    for frame in found.frames:
+    for frame in dynamics.frames:
         places, nodes = frame.entries(len(writer.system.coordinates))
         pose = writer.function(frame.pose.program, frame.pose.nodes)
         frames.append((plain(frame.name), pose, writer.function(frame.jacobian.program, nodes), places))
-    return Bodies(body(found.inverse), body(found.forward), body(found.coriolis), body(found.gravity), frames)
+    return Bodies(
+        body(dynamics.inverse), body(dynamics.forward), body(dynamics.coriolis), body(dynamics.gravity), frames
+    )
 
 
 #: Several files are written of one analysis, one after the other.
@@ -158,7 +160,7 @@ def _unforced(system: System, program: Program) -> dict[str, Node]:
 def _forward(analysis: Analysis) -> Computed | None:
     system, ring = analysis.system, analysis.ring
     pushed = dict(zip(system.coordinates, force_names(system), strict=True))
-    found: ForwardDynamics | ConstrainedDynamics
+    dynamics: ForwardDynamics | ConstrainedDynamics
     if system.constraints:
         from mbsym.mechanics.constraints.dynamics import constrained_dynamics  # few systems have constraints
         from mbsym.report.code.constrained_code import tied_of
@@ -166,12 +168,12 @@ def _forward(analysis: Analysis) -> Computed | None:
         tied = tied_of(analysis)
         if isinstance(tied, str):
             return None
-        found = constrained_dynamics(system, ring, tied.chosen, pushed=pushed)
+        dynamics = constrained_dynamics(system, ring, tied.chosen, pushed=pushed)
     else:
-        found = forward_dynamics(system, ring, pushed=pushed)
+        dynamics = forward_dynamics(system, ring, pushed=pushed)
     program = Program()
     nodes = _unforced(system, program) | {force: program.input(force) for force in pushed.values()}
-    return Computed(program, tuple(found.program.evaluate(list(found.accelerations), nodes, program)))
+    return Computed(program, tuple(dynamics.program.evaluate(list(dynamics.accelerations), nodes, program)))
 
 
 def _coriolis(system: System, ring: Ring) -> Computed:
@@ -199,7 +201,7 @@ def _frames(system: System, ring: Ring) -> tuple[tuple[FrameCode, ...], tuple[st
     carrying = {body.attached_to for body in system.bodies}
     made: dict[str, FrameCode] = {}
     spent = 0
-    for name in sorted(scene.motions, key=lambda one: one in carrying):
+    for name in sorted(scene.motions, key=lambda body_name: body_name in carrying):
         if spent > MOST_OPERATIONS:
             break
         frame_code = placed.frame(name)
@@ -264,5 +266,5 @@ class _Placed:
         return columns
 
     @staticmethod
-    def _add(found: dict[str, list[Node]], name: str, column: list[Node]) -> None:
-        found[name] = [a + b for a, b in zip(found[name], column, strict=True)] if name in found else column
+    def _add(columns: dict[str, list[Node]], name: str, column: list[Node]) -> None:
+        columns[name] = [a + b for a, b in zip(columns[name], column, strict=True)] if name in columns else column

@@ -121,7 +121,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     conserved = first_integrals(analysis, problems)
     parameters = parameters_of(system, writer)
     linear = analysis.stage(5) if 5 in problems else None
-    told = told_units(system)
+    units = told_units(system)
     matrices = gains = None
     if linear is not None and linear.failure is None:
         matrices, gains = writer.linear(analysis, linear.value), writer.gains(analysis, linear.value)
@@ -139,7 +139,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         n=n,
         defaults=[(item.name, default(item.value)) for item in system.parameters],
         meanings=[(item.name, plain(item.told)) for item in parameters if item.told],
-        units=wrap(f"Units: {', '.join(told)}.", 110, break_long_words=False) if told else [],
+        units=wrap(f"Units: {', '.join(units)}.", 110, break_long_words=False) if units else [],
         axes=[
             (name, unit) for name in ("t", *system.coordinates, *system.velocities) if (unit := unit_of(system, name))
         ],
@@ -148,7 +148,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         no_code=plain(no_code),
         tied=tied,
         speeds=speeds,
-        quaternions=any(isinstance(one, Quaternion) for body in system.bodies for one in body.orientation),
+        quaternions=any(isinstance(rotation, Quaternion) for body in system.bodies for rotation in body.orientation),
         forms=forms,
         lacking=[plain(line) for line in forms.lacking] if forms else [],
         upper=upper,
@@ -160,8 +160,10 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         example=f"{next(iter(system.parameter_names), next(iter(system.coordinates), 'x'))}=2",
         integrals=conserved,
         formulas=[
-            replace(one, results=tuple((plain(key), x) for key, x in one.results), missing=plain(one.missing))
-            for one in formula_functions(analysis, problems, writer)
+            replace(
+                function, results=tuple((plain(key), x) for key, x in function.results), missing=plain(function.missing)
+            )
+            for function in formula_functions(analysis, problems, writer)
         ],
         titles={number: PROBLEMS[number].title for number in problems},
         named=named and bodies(named, writer, plain),
@@ -182,7 +184,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         following=following,
         gains=gains,
         held=writer.held(),
-        input_meanings=[(one.name, plain(one.meaning)) for one in system.inputs if one.meaning],
+        input_meanings=[(signal.name, plain(signal.meaning)) for signal in system.inputs if signal.meaning],
         lookups=[python_definition(table, "np", typed=True) for table in writer.tables],
         unavailable="" if linear is None or linear.failure is None else plain(linear.failure.reason),
     )
@@ -256,12 +258,12 @@ class _Module(Functions):
             reserved |= IN_MOMENTA
         super().__init__(system, DIALECT, reserved, lambda name: name + "_" if name in reserved else name, "np.pi")
 
-    def linear(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
+    def linear(self, analysis: Analysis, linearisation: Linearisation) -> tuple[Function, list[tuple[str, int, int]]]:
         """M, D, G, K, N entry by entry, zeros left out."""
         program = Program()
         carry = Carrier(analysis.ring, program, program_environment(self.system, program))
         places, nodes = [], []
-        for name, matrix in zip("MDGKN", found.matrices, strict=True):
+        for name, matrix in zip("MDGKN", linearisation.matrices, strict=True):
             for i, row in enumerate(matrix):
                 for j, entry in enumerate(row):
                     if not entry.is_zero:
@@ -269,13 +271,13 @@ class _Module(Functions):
                         nodes.append(carry(entry.polynomial))
         return self.function(program, nodes), places
 
-    def gains(self, analysis: Analysis, found: Linearisation) -> tuple[Function, list[tuple[int, int]]] | None:
+    def gains(self, analysis: Analysis, linearisation: Linearisation) -> tuple[Function, list[tuple[int, int]]] | None:
         """B entry by entry, zeros left out; None without inputs."""
-        if found.B is None:
+        if linearisation.B is None:
             return None
         program = Program()
         carry = Carrier(analysis.ring, program, program_environment(self.system, program))
-        entries = [(i, k, x) for i, row in enumerate(found.B) for k, x in enumerate(row) if not x.is_zero]
+        entries = [(i, k, x) for i, row in enumerate(linearisation.B) for k, x in enumerate(row) if not x.is_zero]
         return self.function(program, [carry(x.polynomial) for _, _, x in entries]), [(i, k) for i, k, _ in entries]
 
     def held(self) -> Function | None:
@@ -284,7 +286,7 @@ class _Module(Functions):
             return None
         program = Program()
         lower = Lowering(program, program_environment(self.system, program))
-        return self.function(program, [lower(one.held) for one in self.system.inputs])
+        return self.function(program, [lower(signal.held) for signal in self.system.inputs])
 
 
 # Problems 9 to 12 in ``model.py``: a function for each, with every formula of its result by what it is.
@@ -309,7 +311,7 @@ class FormulaFunction:
     assignments: tuple[tuple[str, str], ...] = ()
     results: tuple[tuple[str, str], ...] = ()
     missing: str = ""
-    told: str = "formulas"
+    contents: str = "formulas"
     of_time: bool = False
 
 
@@ -323,37 +325,37 @@ def formula_functions(analysis: Analysis, problems: Sequence[int], writer: Funct
         if stage.failure is not None:
             functions.append(FormulaFunction(number, name, missing=stage.failure.reason))
             continue
-        told = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
-        if not told:
+        formulas = list(section_of(PROBLEMS[number]).formulas(stage.value, analysis.system))
+        if not formulas:
             continue
         sums = getattr(section_of(PROBLEMS[number]), "functions", None)
         try:
-            functions.append(_function(number, name, told, writer))
-            functions += [_of_sums(number, one, writer) for one in (sums(stage.value) if sums else ())]
+            functions.append(_function(number, name, formulas, writer))
+            functions += [_of_sums(number, series, writer) for series in (sums(stage.value) if sums else ())]
         except Failure as reason:
             functions.append(FormulaFunction(number, name, missing=str(reason)))
     return functions
 
 
-def _function(number: int, name: str, told: Sequence[Told], writer: Functions) -> FormulaFunction:
-    return _written(number, name, [(key, ((0, formula),)) for key, formula in told], writer)
+def _function(number: int, name: str, formulas: Sequence[Told], writer: Functions) -> FormulaFunction:
+    return _written(number, name, [(key, ((0, formula),)) for key, formula in formulas], writer)
 
 
-def _of_sums(number: int, told: Sums, writer: Functions) -> FormulaFunction:
+def _of_sums(number: int, sums: Sums, writer: Functions) -> FormulaFunction:
     """Sums in powers of the small parameter; where they are of the time, with the phase before them, and told."""
-    series = dict(told.series)
-    if not told.phase:
-        return replace(_written(number, told.name, [*series.items()], writer, told.small), told="series, summed")
-    rate = _written(number, told.name, [(told.phase, series.pop(told.phase))], writer, told.small)
-    function = _written(number, told.name, [*series.items()], writer, told.small)
-    phase = dict(function.unpacked).pop(told.phase, told.phase)
-    unpacked = dict(rate.unpacked) | {x: called for x, called in function.unpacked if x != told.phase}
+    series = dict(sums.series)
+    if not sums.phase:
+        return replace(_written(number, sums.name, [*series.items()], writer, sums.small), contents="series, summed")
+    rate = _written(number, sums.name, [(sums.phase, series.pop(sums.phase))], writer, sums.small)
+    function = _written(number, sums.name, [*series.items()], writer, sums.small)
+    phase = dict(function.unpacked).pop(sums.phase, sums.phase)
+    unpacked = dict(rate.unpacked) | {x: called for x, called in function.unpacked if x != sums.phase}
     return replace(
         function,
         unpacked=tuple(unpacked.items()),
         assignments=(*rate.assignments, (phase, f"({rate.results[0][1]})*t"), *function.assignments),
-        results=((told.phase, phase), *function.results),
-        told="series, summed, at the time t",
+        results=((sums.phase, phase), *function.results),
+        contents="series, summed, at the time t",
         of_time=True,
     )
 
@@ -361,7 +363,7 @@ def _of_sums(number: int, told: Sums, writer: Functions) -> FormulaFunction:
 def _written(
     number: int,
     name: str,
-    told: Sequence[tuple[str, Sequence[tuple[int, Formula]]]],
+    sums: Sequence[tuple[str, Sequence[tuple[int, Formula]]]],
     writer: Functions,
     small: str = "",
 ) -> FormulaFunction:
@@ -370,7 +372,7 @@ def _written(
     carriers: dict[int, Carrier] = {}
     nodes: list[Node] = []
     names: dict[str, None] = {small: None} if small else {}
-    for _, parts in told:
+    for _, parts in sums:
         total = program.zero
         for power, formula in parts:
             ring = formula.ring
@@ -387,7 +389,7 @@ def _written(
     called = writer.names | injective(own, _plain, taken={*writer.names.values(), *writer.reserved})
     body = listing(program, nodes, called, writer.dialect, writer.reserved)
     unpacked = tuple((x, called[x]) for x in body.inputs if x != "pi")
-    keys = [key for key, _ in told]
+    keys = [key for key, _ in sums]
     assert len(set(keys)) == len(keys), keys
     return FormulaFunction(number, name, unpacked, body.assignments, tuple(zip(keys, body.results, strict=True)))
 

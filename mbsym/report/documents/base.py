@@ -45,10 +45,10 @@ def version() -> str:
     return __version__
 
 
-def headed(found: Mapping[str, T]) -> dict[str, T]:
+def headed(document: Mapping[str, T]) -> dict[str, T]:
     """The same with the head of a file before all else: what is derived from a part of another file has it last."""
-    first = _HEAD if "format" in found and next(iter(found)) != "format" else ()
-    return {key: found[key] for key in first if key in found} | dict(found)
+    first = _HEAD if "format" in document and next(iter(document)) != "format" else ()
+    return {key: document[key] for key in first if key in document} | dict(document)
 
 
 def plain(value: object) -> Any:
@@ -224,7 +224,9 @@ class Named(str):
 
 def words(*of: type[Enum] | str | int) -> Meta:
     """It is one of these; of an enumeration, one of its names in small letters."""
-    listed = [word for one in of for word in ([x.name.lower() for x in one] if isinstance(one, type) else [one])]
+    listed = [
+        word for choice in of for word in ([x.name.lower() for x in choice] if isinstance(choice, type) else [choice])
+    ]
     return Meta(extra_json_schema={"enum": list(dict.fromkeys(listed))})
 
 

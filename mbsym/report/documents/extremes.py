@@ -86,12 +86,12 @@ class Compensated(Part, frozen=True):
 
     subject: Annotated[str, "the parameter that is extreme, or empty"]
     size: Annotated[float, "the factor"]
-    operations_in_pairs: Annotated[int, "how many operations", From("found.sensitive")]
+    operations_in_pairs: Annotated[int, "how many operations", From("compensation.sensitive")]
     digits_without: Annotated[
-        float, "fewest digits of the plain kernel at the states looked at", From("found.before", _rounded)
+        float, "fewest digits of the plain kernel at the states looked at", From("compensation.before", _rounded)
     ]
-    digits_with: Annotated[float, "fewest digits of the kernel that is used", From("found.after", _rounded)]
-    cost: Annotated[float, "operations, as a multiple of the plain kernel's", From("found.cost", _rounded_to_3)]
+    digits_with: Annotated[float, "fewest digits of the kernel that is used", From("compensation.after", _rounded)]
+    cost: Annotated[float, "operations, as a multiple of the plain kernel's", From("compensation.cost", _rounded_to_3)]
 
 
 class Row(Part, frozen=True):
@@ -101,14 +101,14 @@ class Row(Part, frozen=True):
     subject: Annotated[str, "what is extreme"]
     size: Annotated[float, "how extreme"]
     quantity: Annotated[str, "the quantity"]
-    digits: Annotated[dict[str, float], "correct digits, by arithmetic", From("found.digits", _rounded)]
-    digits_of_worst_entry: Annotated[dict[str, float], "correct digits, by arithmetic", From("found.worst", _rounded)]
+    digits: Annotated[dict[str, float], "correct digits, by arithmetic", From("digits.digits", _rounded)]
+    digits_of_worst_entry: Annotated[dict[str, float], "correct digits, by arithmetic", From("digits.worst", _rounded)]
     formula_digits: Annotated[
-        float, "digits that the formula loses beyond the question, float64", From("found.formula", _rounded)
+        float, "digits that the formula loses beyond the question, float64", From("digits.formula", _rounded)
     ]
-    condition: Annotated[float | None, "condition of the question; null where it is infinite", From("found.condition")]
-    verdict: Annotated[str, "what loses the digits: question, formula, none", From("found.verdict")]
-    bits: Annotated[int, "precision of the reference", From("found.bits")]
+    condition: Annotated[float | None, "condition of the question; null where it is infinite", From("digits.condition")]
+    verdict: Annotated[str, "what loses the digits: question, formula, none", From("digits.verdict")]
+    bits: Annotated[int, "precision of the reference", From("digits.bits")]
 
 
 class StabilityAt(Part, frozen=True):

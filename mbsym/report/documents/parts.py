@@ -64,7 +64,7 @@ class Number(Part, frozen=True):
     """an exact number"""
 
     @classmethod
-    def from_result(cls, source: Any, write: Write = str, /, **given: Any) -> Number:
+    def from_result(cls, source: Any, write: Write = str, /, **fields: Any) -> Number:
         """A rational number as text, an algebraic one by its minimal polynomial and an interval with no other root."""
         from mbsym.algebra.plane.numbers import AlgebraicNumber, enclosure
 

@@ -115,7 +115,7 @@ class Variable:
 def compiler() -> str | None:
     """The C compiler that makes binaries, where this platform has a place in an FMU."""
     known = (sys.platform, platform.machine()) in _PLATFORMS
-    return next((found for name in ("cc", "gcc", "clang") if (found := shutil.which(name))), None) if known else None
+    return next((path for name in ("cc", "gcc", "clang") if (path := shutil.which(name))), None) if known else None
 
 
 def remark() -> str:
@@ -220,9 +220,9 @@ def _variables(analysis: Analysis, model: Export) -> Iterator[Variable]:
     jacobi = "T2 - T0 - U: the energy where nothing moves as prescribed"
     for place, (name, words) in enumerate((("energy", "T - U"), ("generalized_energy", jacobi))):
         yield Variable(free_name(name, taken), first + place, words, "local", "continuous", "calculated")
-    for place, one in enumerate(system.inputs):
-        start = _start(one.held, numbers, "0.0")
-        yield Variable(one.name, first + 2 + place, one.meaning, "input", "continuous", start=start)
+    for place, signal in enumerate(system.inputs):
+        start = _start(signal.held, numbers, "0.0")
+        yield Variable(signal.name, first + 2 + place, signal.meaning, "input", "continuous", start=start)
 
 
 def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Variable], list[Unit]]:
@@ -231,7 +231,7 @@ def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Varia
     orders |= {rate: (name, 1) for name, rate in zip(system.coordinates, system.velocities, strict=True)}
     orders |= {f"der({known})": (name, order + 1) for known, (name, order) in orders.items()}
     time, energy = time_and_energy(system)
-    found, units = [], dict[str, Unit]()
+    measured, units = [], dict[str, Unit]()
     energies = range(len(variables) - len(system.inputs) - 2, len(variables) - len(system.inputs))
     for place, item in enumerate(variables):
         if item.causality == "independent":
@@ -242,8 +242,8 @@ def _measured(system: System, variables: Sequence[Variable]) -> tuple[list[Varia
             unit = variable_unit(system, *orders[item.name])
         if unit is not None:
             units[unit.name] = unit
-        found.append(replace(item, unit=unit.name if unit is not None else ""))
-    return found, list(units.values())
+        measured.append(replace(item, unit=unit.name if unit is not None else ""))
+    return measured, list(units.values())
 
 
 def _numbers(model: Export) -> dict[str, Fraction]:
@@ -287,8 +287,8 @@ def attribute(words: str) -> str:
 
 def _library(analysis: Analysis, files: Mapping[str, bytes], version: int) -> dict[str, bytes]:
     """The binary by its path in the FMU; nothing where there is no compiler.  Raises RuntimeError if it refuses."""
-    found = compiler()
-    if found is None:
+    compiler_path = compiler()
+    if compiler_path is None:
         return {}
     *folders, ending = _PLATFORMS[sys.platform, platform.machine()]
     name = f"{c_source.prefix_of(analysis.system.name)}.{ending}"
@@ -298,7 +298,7 @@ def _library(analysis: Analysis, files: Mapping[str, bytes], version: int) -> di
         for path, content in files.items():
             if path.endswith((".c", ".h")):
                 (folder / Path(path).name).write_bytes(content)
-        command = [found, *options, "-o", name, f"fmi{version}.c", "model.c", "-lm"]
+        command = [compiler_path, *options, "-o", name, f"fmi{version}.c", "model.c", "-lm"]
         done = subprocess.run(
             command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=_PATIENCE, check=False
         )

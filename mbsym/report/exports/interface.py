@@ -144,7 +144,7 @@ class Export:
     @property
     def held(self) -> str:
         """The values of the inputs on the unperturbed motion, as the description writes them."""
-        return ", ".join(f"{one.name} = {text(one.held)}" for one in self.system.inputs)
+        return ", ".join(f"{signal.name} = {text(signal.held)}" for signal in self.system.inputs)
 
     @property
     def type_name(self) -> str:
@@ -204,9 +204,9 @@ def export(
     parameters = parameters_of(system, writer)
     further_functions: list[Written] = []
     if shared is None:
-        functions = [one for part in made if not part.further for one in _written(writer, [part])]
+        functions = [function for part in made if not part.further for function in _written(writer, [part])]
         if further_too:
-            further_functions = [one for part in made if part.further for one in _written(writer, [part])]
+            further_functions = [function for part in made if part.further for function in _written(writer, [part])]
     else:
         functions = list(_in_one_scope(writer, [part for part in made if part.name in shared]))
     return Export(
@@ -243,6 +243,6 @@ def _written(writer: Functions, made: Sequence[Part]) -> list[Written]:
 
 def _in_one_scope(writer: Functions, made: Sequence[Part]) -> Iterator[Written]:
     for program in dict.fromkeys(part.program for part in made):
-        found = _written(writer, [part for part in made if part.program is program])
-        writer.reserved |= {name for name, _ in found[0].body.assignments}
-        yield from found
+        functions = _written(writer, [part for part in made if part.program is program])
+        writer.reserved |= {name for name, _ in functions[0].body.assignments}
+        yield from functions

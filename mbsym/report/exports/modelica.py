@@ -66,13 +66,13 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
     model = export(analysis, problems, LANGUAGE, shared=SHOWN)
     shown = model.functions
     auxiliary: dict[str, str] = {}
-    for one in shown:
-        for name, value in one.body.assignments:
+    for function in shown:
+        for name, value in function.body.assignments:
             assert auxiliary.get(name, value) == value  # prescribed quantities are the same everywhere
             auxiliary[name] = value
     loose, closing = _at_the_start(analysis, shown)
     results = list(_results(model, shown, _labels(analysis), {*RESERVED, *model.names.values(), *auxiliary}))
-    slopes = next((one.rows("0.0") for one in shown if one.name == "accelerations"), [])
+    slopes = next((function.rows("0.0") for function in shown if function.name == "accelerations"), [])
     return rendered(
         "exports/model.mo.j2",
         {"string": string},
@@ -84,7 +84,7 @@ def render(analysis: Analysis, problems: Sequence[int]) -> str:
         unit=_units(model),
         loose=loose,
         closing=closing,
-        kept=any(one.name == "constraints" for one in shown) and not loose & {*analysis.system.coordinates},
+        kept=any(function.name == "constraints" for function in shown) and not loose & {*analysis.system.coordinates},
     )
 
 
@@ -109,7 +109,7 @@ def _at_the_start(analysis: Analysis, shown: Sequence[Written]) -> tuple[set[str
 
     Dependent velocities always; dependent coordinates where every constraint is one on positions.
     """
-    if not any(one.name == "multipliers" for one in shown):
+    if not any(function.name == "multipliers" for function in shown):
         return set(), []
     constraints, tied = analysis.constraints, _tied(analysis)
     assert tied is not None
@@ -148,26 +148,31 @@ def _results(
     """(name, unit, words, value or three components) of energies, integrals, places of bodies."""
     known = model.system.units if _in_seconds(model.system) else Units()
     energy, length = modelica(known.text(ENERGY)), modelica(known.text(LENGTH))
-    for one in shown:
-        rows = one.rows("0.0") if one.shape else []
-        if not one.shape:
-            yield _free(one.name, used), energy, one.words, one.entries[0][1] if one.entries else "0.0"
-        elif one.name == "integrals":
+    for function in shown:
+        rows = function.rows("0.0") if function.shape else []
+        if not function.shape:
+            yield (
+                _free(function.name, used),
+                energy,
+                function.words,
+                function.entries[0][1] if function.entries else "0.0",
+            )
+        elif function.name == "integrals":
             for item, row in zip(model.integrals, rows, strict=True):
                 yield _free(f"integral_{item.name}", used), "", f"{item.title}: constant ({item.status})", row[0]
-        elif one.name in ("constraints", "constraint_velocity", "multipliers"):
-            stem = {"constraints": "constraint_position", "multipliers": "multiplier"}.get(one.name, one.name)
-            what = "lambda" if one.name == "multipliers" else "zero"
+        elif function.name in ("constraints", "constraint_velocity", "multipliers"):
+            stem = {"constraints": "constraint_position", "multipliers": "multiplier"}.get(function.name, function.name)
+            what = "lambda" if function.name == "multipliers" else "zero"
             for place, (label, row) in enumerate(zip(labels, rows, strict=False), 1):
                 yield _free(f"{stem}_{place}", used), "", f"{what}: {label}", row[0]
-        elif one.name == "reactions":
+        elif function.name == "reactions":
             for place, (joint, row) in enumerate(zip(model.system.reactions, rows, strict=True), 1):
                 for what, part in (("force", row[:3]), ("moment", row[3:])):
                     yield _free(f"{what}_in_joint{place}", used), "", f"{what} in the joint of {joint}", part
-        elif one.name in ("joints", "mass_centres"):
-            words = "connection point" if one.name == "joints" else "mass centre"
+        elif function.name in ("joints", "mass_centres"):
+            words = "connection point" if function.name == "joints" else "mass centre"
             for place, (body, row) in enumerate(zip(model.system.bodies, rows, strict=True), 1):
-                name = _free(f"{'joint' if one.name == 'joints' else 'centre'}{place}", used)
+                name = _free(f"{'joint' if function.name == 'joints' else 'centre'}{place}", used)
                 yield name, length, f"{words} of {body.name}, in inertial axes", row
 
 

@@ -75,10 +75,10 @@ def thinned(times: Any, values: Any) -> tuple[Any, Any]:
     if len(times) <= 2 * INTERVALS:
         return times, values
     edges = np.linspace(0, len(times), INTERVALS + 1).astype(int)
-    kept = {0, len(times) - 1}
+    selected = {0, len(times) - 1}
     for start, end in pairwise(edges):
-        kept |= {start + int(np.argmin(values[start:end])), start + int(np.argmax(values[start:end]))}
-    places = np.array(sorted(kept))
+        selected |= {start + int(np.argmin(values[start:end])), start + int(np.argmax(values[start:end]))}
+    places = np.array(sorted(selected))
     return times[places], values[places]
 
 
@@ -139,13 +139,13 @@ def styled() -> Iterator[None]:
 
 def pictures(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
     """Every figure in every format, by file name; equal figures give equal bytes (with one version of matplotlib)."""
-    found: dict[str, bytes] = {}
+    images: dict[str, bytes] = {}
     with styled():
         for stem, draw in drawings.items():
             figure = draw()
-            found |= saved(stem, figure, formats)
+            images |= saved(stem, figure, formats)
             figure.clear()  # a figure and its axes hold each other
-    return found
+    return images
 
 
 def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]:
@@ -162,7 +162,7 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
         with _measured_once(figure.axes if free else []):
             engine.execute(figure)
         figure.set_layout_engine("none")
-    found = {}
+    images = {}
     for kind in formats:
         stream = BytesIO()
         if kind == "svg":
@@ -177,8 +177,8 @@ def saved(stem: str, figure: Figure, formats: Sequence[str]) -> dict[str, bytes]
         else:
             canvas.draw()
             _png(np.asarray(canvas.buffer_rgba()), stream)
-        found[f"{stem}.{kind}"] = stream.getvalue()
-    return found
+        images[f"{stem}.{kind}"] = stream.getvalue()
+    return images
 
 
 @contextmanager

@@ -30,15 +30,15 @@ _MATRICES = "#999999"
 MOST_PANELS = 12
 
 
-def extremes_figure(found: Extremes, formats: Sequence[str]) -> dict[str, bytes]:
+def extremes_figure(extremes: Extremes, formats: Sequence[str]) -> dict[str, bytes]:
     """``extremes.svg`` and ``.png``; solid: float64, dotted: float32."""
-    return pictures({"extremes": lambda: _drawn(found)}, formats)
+    return pictures({"extremes": lambda: _drawn(extremes)}, formats)
 
 
-def _drawn(found: Extremes) -> Figure:
-    say = spoken(found.system)
-    chosen = sorted(found.ladders, key=lambda ladder: _least(found, ladder))[:MOST_PANELS]
-    chosen = [ladder for ladder in found.ladders if ladder in chosen]
+def _drawn(extremes: Extremes) -> Figure:
+    say = spoken(extremes.system)
+    chosen = sorted(extremes.ladders, key=lambda ladder: _least(extremes, ladder))[:MOST_PANELS]
+    chosen = [ladder for ladder in extremes.ladders if ladder in chosen]
     columns = min(3, max(1, len(chosen)))
     lines = max(1, ceil(len(chosen) / columns))
     figure = Figure(figsize=(4.3 * columns, 2.7 * lines + 0.9), layout="constrained")
@@ -49,14 +49,14 @@ def _drawn(found: Extremes) -> Figure:
             axes.set_axis_off()
             continue
         kind, subject = chosen[place]
-        for quantity in found.quantities:
-            rows = sorted(found.of(kind, subject, quantity), key=lambda row: row.size)
-            rows = [row for row in rows if row.found.bits]
+        for quantity in extremes.quantities:
+            rows = sorted(extremes.of(kind, subject, quantity), key=lambda row: row.size)
+            rows = [row for row in rows if row.digits.bits]
             if not rows:
                 continue
             colour = _COLOURS.get(quantity, _MATRICES)
             for scalar, dash in ((FLOAT64, "-"), (FLOAT32, ":")):
-                sizes, digits = [row.size for row in rows], [row.found.digits[scalar] for row in rows]
+                sizes, digits = [row.size for row in rows], [row.digits.digits[scalar] for row in rows]
                 (curve,) = axes.plot(sizes, digits, dash, marker=".", markersize=4, color=colour)
                 if scalar == FLOAT64:
                     seen.setdefault(quantity if quantity in _COLOURS else "M, D, G, K, N", curve)
@@ -71,7 +71,7 @@ def _drawn(found: Extremes) -> Figure:
         axes.set_title(say(title), loc="left", fontsize=9.5)
         if place % columns == 0:
             axes.set_ylabel(say("digits kept"))
-    title = Message("[[name]]: digits kept in float64 (solid) and float32 (dotted)", name=found.system.name)
+    title = Message("[[name]]: digits kept in float64 (solid) and float32 (dotted)", name=extremes.system.name)
     figure.suptitle(say(title), x=0.01, ha="left")
     if seen:
         figure.legend(
@@ -80,6 +80,6 @@ def _drawn(found: Extremes) -> Figure:
     return figure
 
 
-def _least(found: Extremes, ladder: tuple[str, str]) -> float:
-    rows = [row for row in found.rows if (row.kind, row.subject) == ladder and row.found.bits]
-    return min((row.found.digits[FLOAT64] for row in rows), default=FULL[FLOAT64])
+def _least(extremes: Extremes, ladder: tuple[str, str]) -> float:
+    rows = [row for row in extremes.rows if (row.kind, row.subject) == ladder and row.digits.bits]
+    return min((row.digits.digits[FLOAT64] for row in rows), default=FULL[FLOAT64])

@@ -51,20 +51,20 @@ CORNER, CLOSE, MOST_PIECES = np.radians(4), 2e-3, 24
 
 @dataclass(frozen=True)
 class Curve:
-    """A motion to be drawn, ``told`` beside others.
+    """A motion to be drawn, ``label`` beside others.
 
     ``rates`` are the accelerations, of shape (n, m): with them phase planes are drawn as smooth curves through the
     samples, without them as lines from one to the next.  Of a run in declared variables they are the rates of all of
     these; without them it has no phase planes.
     """
 
-    found: Trajectory
+    trajectory: Trajectory
     rates: Any = None
-    told: str = ""
+    label: str = ""
 
 
 def figures(
-    found: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True, rates: Any = None
+    trajectory: Trajectory, formats: Sequence[str], note: str = "", conserved: bool = True, rates: Any = None
 ) -> dict[str, bytes]:
     """Every figure in every format, by file name.
 
@@ -72,11 +72,11 @@ def figures(
     not whole must say so); ``conserved`` says whether the
     energy ought to be constant, so that what it changes by is an error.  A single state gives no figures.
     """
-    if len(found.times) < 2:
+    if len(trajectory.times) < 2:
         return {}
-    images = curves([Curve(found, rates)], formats, note)
+    images = curves([Curve(trajectory, rates)], formats, note)
     with styled():
-        return images | saved("drift", _drift(found, note, conserved), formats)
+        return images | saved("drift", _drift(trajectory, note, conserved), formats)
 
 
 def curves(drawn: Sequence[Curve], formats: Sequence[str], note: str = "") -> dict[str, bytes]:
@@ -84,7 +84,7 @@ def curves(drawn: Sequence[Curve], formats: Sequence[str], note: str = "") -> di
     images: dict[str, bytes] = {}
     with styled():
         # One page after the other: a hundred coordinates have fifty of them, and a page in memory is some 20 MB.
-        histories = _variables if isinstance(drawn[0].found.system, InStates) else _histories
+        histories = _variables if isinstance(drawn[0].trajectory.system, InStates) else _histories
         for stem, figure in chain(histories(drawn, note), _planes(drawn, note)):
             images |= saved(stem, figure, formats)
             figure.clear()  # a figure and its axes hold each other
@@ -94,20 +94,22 @@ def curves(drawn: Sequence[Curve], formats: Sequence[str], note: str = "") -> di
 def _page_of(drawn: Sequence[Curve], axis: Any, figure: Figure) -> Figure:
     """The page with what tells several curves apart."""
     if len(drawn) > 1:
-        handles, told = axis.get_legend_handles_labels()
-        widest = SAMPLE + LETTER * max(len(one.replace("$", "")) for one in told)
-        columns = max(1, min(len(told), int(figure.get_figwidth() / widest)))
-        figure.legend(handles, told, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
+        handles, labels = axis.get_legend_handles_labels()
+        widest = SAMPLE + LETTER * max(len(label.replace("$", "")) for label in labels)
+        columns = max(1, min(len(labels), int(figure.get_figwidth() / widest)))
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
     return figure
 
 
 def _over_time(axis: Any, drawn: Sequence[Curve], place: int) -> None:
     for colour, curve in zip(COLOURS, drawn, strict=False):
-        axis.plot(*thinned(curve.found.times, curve.found.states[place]), color=colour, label=curve.told or None)
+        axis.plot(
+            *thinned(curve.trajectory.times, curve.trajectory.states[place]), color=colour, label=curve.label or None
+        )
 
 
 def _longest(drawn: Sequence[Curve]) -> Any:
-    return max((curve.found.times for curve in drawn), key=lambda times: times[-1])
+    return max((curve.trajectory.times for curve in drawn), key=lambda times: times[-1])
 
 
 def _page(width: float, height: float, title: str, note: str) -> Figure:
@@ -142,7 +144,7 @@ def coordinate_labels(system: System, between: str = " ") -> tuple[dict[str, str
 
 def _histories(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
     """q(t) on the left, q'(t) on the right, a row a coordinate."""
-    system = drawn[0].found.system
+    system = drawn[0].trajectory.system
     positions, velocities = coordinate_labels(system, "\n")
     place = {name: i for i, name in enumerate(system.coordinates)}
     for file, names, title in _pages("histories", system.coordinates, HISTORY_ROWS, system):
@@ -162,7 +164,7 @@ def _histories(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]
 
 def _variables(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
     """Each variable of a run in declared ones over the time, positions, then speeds."""
-    system = drawn[0].found.system
+    system = drawn[0].trajectory.system
     states = (*system.coordinates, *system.velocities)
     labels, place = _labels(states), {name: i for i, name in enumerate(states)}
     for file, shown, title in _pages("histories", states, 2 * HISTORY_ROWS, system):
@@ -212,13 +214,13 @@ def _span(axis: Any, times: Any) -> None:
 def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
     """q' over q, one plane a coordinate, or variable; initial points are marked.  An angle that winds is shown modulo
     2 pi."""
-    system = drawn[0].found.system
+    system = drawn[0].trajectory.system
     if isinstance(system, InStates):
-        if any(one.rates is None for one in drawn):
+        if any(drawn_curve.rates is None for drawn_curve in drawn):
             return
         states, turning = (*system.coordinates, *system.velocities), {}
-        positions = {x: told[0] + labelled("", unit_of(system, x)) for x, told in _labels(states).items()}
-        velocities = {x: told[1] for x, told in _labels(states).items()}
+        positions = {x: labels[0] + labelled("", unit_of(system, x)) for x, labels in _labels(states).items()}
+        velocities = {x: labels[1] for x, labels in _labels(states).items()}
     else:
         states, turning = system.coordinates, angle_denominators(system)
         positions, velocities = coordinate_labels(system)[0], coordinate_labels(system, "\n")[1]
@@ -232,7 +234,7 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
         for axis in axes[len(names) :]:
             axis.set_visible(False)
         for axis, name in zip(axes, names, strict=False):
-            both = [_curve(one, place[name]) for one in drawn]
+            both = [_curve(drawn_curve, place[name]) for drawn_curve in drawn]
             label = positions[name]
             if turning.get(name) == 1 and any(np.ptp(q) > 3 * np.pi for q, _ in both):
                 both = [_wrapped(q, v) for q, v in both]
@@ -243,7 +245,7 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
                     ["\u2212\u03c0", "\u2212\u03c0/2", "0", "\u03c0/2", "\u03c0"],
                 )
             for colour, curve, (q, v) in zip(COLOURS, drawn, both, strict=False):
-                axis.plot(q, v, color=colour, linewidth=0.9, rasterized=len(q) > MOST_POINTS, label=curve.told or None)
+                axis.plot(q, v, color=colour, linewidth=0.9, rasterized=len(q) > MOST_POINTS, label=curve.label or None)
                 axis.plot(q[:1], v[:1], "o", color=RED if len(drawn) == 1 else colour, markersize=4)
             axis.set_xlabel(label, fontsize=12)
             _label(axis, velocities[name])
@@ -254,7 +256,7 @@ def _planes(drawn: Sequence[Curve], note: str) -> Iterator[tuple[str, Figure]]:
 
 def _curve(drawn: Curve, i: int) -> tuple[Any, Any]:
     """q and q' of one coordinate, between the samples too where the curve turns; a variable and its rate."""
-    trajectory, rates = drawn.found, drawn.rates
+    trajectory, rates = drawn.trajectory, drawn.rates
     if isinstance(trajectory.system, InStates):
         return np.asarray(trajectory.states[i], dtype=float), rates[i]
     state = np.asarray(trajectory.states[[i, i + len(trajectory.states) // 2]], dtype=float)
@@ -265,8 +267,8 @@ def _curve(drawn: Curve, i: int) -> tuple[Any, Any]:
         direction = np.arctan2(rates[i] / size[1], state[1] / size[0])
         turn = np.abs((np.diff(direction) + np.pi) % (2 * np.pi) - np.pi)
         chord = np.hypot(*(np.diff(state, axis=1) / size[:, None]))
-        wanted = np.minimum(np.ceil(turn / CORNER), np.ceil(chord / CLOSE))
-    pieces = np.clip(np.nan_to_num(wanted, nan=1.0), 1, MOST_PIECES).astype(int)
+        subdivisions = np.minimum(np.ceil(turn / CORNER), np.ceil(chord / CLOSE))
+    pieces = np.clip(np.nan_to_num(subdivisions, nan=1.0), 1, MOST_PIECES).astype(int)
     _, (q, v) = between(trajectory.times, state, rates[i : i + 1], pieces)
     return q, v
 
@@ -278,26 +280,26 @@ def _wrapped(q: Any, v: Any) -> tuple[Any, Any]:
     return np.insert(q - 2 * np.pi * turns, breaks, np.nan), np.insert(v, breaks, np.nan)
 
 
-def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
+def _drift(trajectory: Trajectory, note: str, conserved: bool) -> Figure:
     """|h - h(0)| over the largest kinetic energy on a logarithmic scale, or h itself where it may well change.
 
     h is the generalised energy, which is the energy where nothing is prescribed.
     """
-    figure = _page(10, 3.4 + (0.3 if note else 0), title_of(found.system), note)
-    say = spoken(found.system)
+    figure = _page(10, 3.4 + (0.3 if note else 0), title_of(trajectory.system), note)
+    say = spoken(trajectory.system)
     axis = figure.subplots(1, 1)
-    axis.set_xlabel(labelled("$t$", time_unit(found.system)))
-    energy = "energy" if found.generalized_energy is found.energy else "generalised energy"
+    axis.set_xlabel(labelled("$t$", time_unit(trajectory.system)))
+    energy = "energy" if trajectory.generalized_energy is trajectory.energy else "generalised energy"
     if not conserved:
-        axis.plot(*thinned(found.times, found.generalized_energy), color=BLUE)
+        axis.plot(*thinned(trajectory.times, trajectory.generalized_energy), color=BLUE)
         axis.set_title(say(energy))
-        _label(axis, labelled("$h$", energy_unit(found.system)).replace(" ", "\n", 1))
-        _span(axis, found.times)
+        _label(axis, labelled("$h$", energy_unit(trajectory.system)).replace(" ", "\n", 1))
+        _span(axis, trajectory.times)
         return figure
-    drift = np.maximum(np.abs(np.asarray(found.drift, dtype=float)), FLOOR)
+    drift = np.maximum(np.abs(np.asarray(trajectory.drift, dtype=float)), FLOOR)
     axis.set_yscale("log")
     # At the start it is zero by definition.
-    axis.plot(*thinned(found.times[1:], drift[1:]), color=BLUE, linewidth=0.9)
+    axis.plot(*thinned(trajectory.times[1:], drift[1:]), color=BLUE, linewidth=0.9)
     axis.set_ylim(FLOOR, max(float(np.max(drift)), ROUNDING) * 5)
     axis.axhline(ROUNDING, color=GREY, linewidth=0.8, linestyle="--")
     axis.annotate(
@@ -313,60 +315,60 @@ def _drift(found: Trajectory, note: str, conserved: bool) -> Figure:
     )
     axis.yaxis.set_major_locator(LogLocator(numticks=8))
     axis.yaxis.set_minor_locator(NullLocator())
-    axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(found.kinetic) else "$|h-h_0|$")
+    axis.set_ylabel(r"$|h-h_0|\,/\,\max T$" if np.any(trajectory.kinetic) else "$|h-h_0|$")
     axis.set_title(say(Message("relative drift of the [[energy]]", energy=Message(energy))))
-    _span(axis, found.times)
+    _span(axis, trajectory.times)
     return figure
 
 
 # Fan charts: how the members of an ensemble are spread over time, a panel a coordinate or velocity.
 
 
-def fan_charts(found: Ensemble, formats: Sequence[str]) -> dict[str, bytes]:
+def fan_charts(ensemble: Ensemble, formats: Sequence[str]) -> dict[str, bytes]:
     """``fan.svg`` and ``.png``; further pages, ``fan-2.svg``, where there are many coordinates."""
-    system = found.members.dynamics.system
+    system = ensemble.members.dynamics.system
     names = system.coordinates
     count = -(-len(names) // HISTORY_ROWS)
     images: dict[str, bytes] = {}
     for page in range(count):
         part = range(page * len(names) // count, (page + 1) * len(names) // count)
         stem = "fan" + (f"-{page + 1}" if page else "")
-        images |= pictures({stem: lambda part=part: _ensemble_figure_page(found, part)}, formats)  # type: ignore[misc]
+        images |= pictures({stem: lambda part=part: _ensemble_figure_page(ensemble, part)}, formats)  # type: ignore[misc]
     return images
 
 
-def _ensemble_figure_page(found: Ensemble, part: range) -> Figure:
-    system = found.members.dynamics.system
+def _ensemble_figure_page(ensemble: Ensemble, part: range) -> Figure:
+    system = ensemble.members.dynamics.system
     positions, velocities = coordinate_labels(system, "\n")
     figure = Figure(figsize=(10, 1.4 + 1.9 * len(part)), layout="constrained")
     axes = figure.subplots(len(part), 2, squeeze=False, sharex=True)
     say = spoken(system)
-    what = {"name": system.name, "count": found.count, "varied": ", ".join(found.members.names)}
+    what = {"name": system.name, "count": ensemble.count, "varied": ", ".join(ensemble.members.names)}
     text = "[[name]]: members: [[count]], ended early: [[lost]], varied: [[varied]]"
     whole = Message("[[name]]: members: [[count]], varied: [[varied]]", **what)
-    title = say(Message(text, **what, lost=len(found.fates)) if found.fates else whole)
+    title = say(Message(text, **what, lost=len(ensemble.fates)) if ensemble.fates else whole)
     figure.suptitle(title if len(title) <= 100 else title[:97] + "...", fontsize=12, parse_math=False)
     drawn: dict[str, Any] = {}
     left = ScaledTranslation(-0.6, 0, figure.dpi_scale_trans)
     for row, place in zip(axes, part, strict=True):
         name = system.coordinates[place]
         for side, (axis, label) in enumerate(zip(row, (positions[name], velocities[name]), strict=True)):
-            drawn |= _fan(axis, found, place + side * len(system.coordinates))
+            drawn |= _fan(axis, ensemble, place + side * len(system.coordinates))
             axis.set_ylabel(label, rotation=0, ha="right", va="center", labelpad=8, fontsize=13)
             axis.yaxis.set_label_coords(0, 0.5, axis.transAxes + left)
     for axis in axes[-1]:
         axis.set_xlabel(labelled("$t$", time_unit(system)))
-        if found.times[-1] > 0:
-            axis.set_xlim(0, found.times[-1])
+        if ensemble.times[-1] > 0:
+            axis.set_xlim(0, ensemble.times[-1])
     figure.legend(
         list(drawn.values()), list(map(say, drawn)), loc="outside lower center", ncols=5, frameon=False, fontsize=9
     )
     return figure
 
 
-def _fan(axis: Any, found: Ensemble, place: int) -> dict[str, Any]:
+def _fan(axis: Any, ensemble: Ensemble, place: int) -> dict[str, Any]:
     """A panel, and its curves by name."""
-    spread, times = found.statistics, found.times
+    spread, times = ensemble.statistics, ensemble.times
     rows = {chance: row[:, place] for chance, row in zip(QUANTILES, spread.quantiles, strict=True)}
     wide = axis.fill_between(times, rows[0.05], rows[0.95], color=BLUE, alpha=0.18, linewidth=0)
     narrow = axis.fill_between(times, rows[0.25], rows[0.75], color=BLUE, alpha=0.30, linewidth=0)

@@ -28,11 +28,11 @@ def made_figures(simulation: str, description: str, present: Collection[str]) ->
     system, or of this one before it was changed, would be a false statement.
     """
     try:
-        found: dict[str, Any] = json.loads(simulation)
-        if found["description_sha256"] != description:
+        record: dict[str, Any] = json.loads(simulation)
+        if record["description_sha256"] != description:
             return ()
-        until, method = f"{float(found['reached']['time']):.6g}", str(found["method"]["title"])
-        whole, names = found["status"] == "whole", [str(name) for name in found["files"]]
+        until, method = f"{float(record['reached']['time']):.6g}", str(record["method"]["title"])
+        whole, names = record["status"] == "whole", [str(name) for name in record["files"]]
     except (ValueError, KeyError, TypeError):
         return ()
     stems = dict.fromkeys(name.rpartition(".")[0] for name in names if name.rpartition(".")[2] in _KINDS)

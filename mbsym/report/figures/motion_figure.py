@@ -44,26 +44,26 @@ ROWS = 6
 
 
 def motion_figures(
-    found: Positions, formats: Sequence[str], note: str = "", shapes: Sequence[Outline] = ()
+    positions: Positions, formats: Sequence[str], note: str = "", shapes: Sequence[Outline] = ()
 ) -> dict[str, bytes]:
     """``motion`` and, where a mass centre moves, ``mass-centres`` in every format, by file name.
 
     ``shapes`` are outlines of bodies at the same times, in the same frame.
     """
-    if len(found.times) < 2:
+    if len(positions.times) < 2:
         return {}
-    drawings = {"motion": lambda: _motion(found.readable(), note, float(found.times[-1]), shapes)}
-    pages = _pages(found)
+    drawings = {"motion": lambda: _motion(positions.readable(), note, float(positions.times[-1]), shapes)}
+    pages = _pages(positions)
     for number, page in enumerate(pages):
         name = "mass-centres" + (f"-{number + 1}" if number else "")
-        title = title_of(found.system, number + 1, len(pages))
-        drawings[name] = lambda page=page, title=title: _histories(found, page, title, note)  # type: ignore[misc]
+        title = title_of(positions.system, number + 1, len(pages))
+        drawings[name] = lambda page=page, title=title: _histories(positions, page, title, note)  # type: ignore[misc]
     return pictures(drawings, formats)
 
 
-def view(found: Positions) -> View:
+def view(positions: Positions) -> View:
     """The first look: into the plane of a plane motion, else from above."""
-    return looked_at(found.up, None if found.plane is None else found.plane - 1)
+    return looked_at(positions.up, None if positions.plane is None else positions.plane - 1)
 
 
 # --- the picture ---
@@ -84,16 +84,16 @@ class _View:
         return np.tensordot(places, self.towards, (-2, 0))
 
 
-def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
-    view, say = _View(found), spoken(found.system)
-    flat = view(found.places)
+def _motion(positions: Positions, note: str, end: float, shapes: Sequence[Outline] = ()) -> Figure:
+    view, say = _View(positions), spoken(positions.system)
+    flat = view(positions.places)
     low, high = np.min(flat, axis=(0, 2)), np.max(flat, axis=(0, 2))
     for shape in shapes:
-        whole = view(shape.places[:, : len(found.times)])
+        whole = view(shape.places[:, : len(positions.times)])
         low = np.minimum(low, np.min(whole, axis=1) - shape.reach)
         high = np.maximum(high, np.max(whole, axis=1) + shape.reach)
-    if found.tips:
-        for centre, radius in _spheres(found, flat):  # the whole sphere on which the tips move
+    if positions.tips:
+        for centre, radius in _spheres(positions, flat):  # the whole sphere on which the tips move
             low, high = np.minimum(low, centre - radius), np.maximum(high, centre + radius)
     spread = np.maximum(high - low, 0.25 * float(np.max(high - low)))
     centre = (low + high) / 2
@@ -104,20 +104,22 @@ def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] =
     axis.set_aspect("equal")
     axis.set_xlim(low[0], high[0])
     axis.set_ylim(low[1], high[1])
-    step = _step(found.times)
-    shown = _snapshots(found.times, step)
-    time = Normalize(float(found.times[0]), float(found.times[-1]))
-    if found.tips:
-        _tips(axis, found, view, flat, shown, time)
-    if found.bodied:
-        _paths(axis, found, view, flat)
-        _bodies(axis, found, flat, shown, time)
-        _outlines(axis, found, view, shapes, shown, time)
-    _scale(axis, found, view)
+    step = _step(positions.times)
+    shown = _snapshots(positions.times, step)
+    time = Normalize(float(positions.times[0]), float(positions.times[-1]))
+    if positions.tips:
+        _tips(axis, positions, view, flat, shown, time)
+    if positions.bodied:
+        _paths(axis, positions, view, flat)
+        _bodies(axis, positions, flat, shown, time)
+        _outlines(axis, positions, view, shapes, shown, time)
+    _scale(axis, positions, view)
     from matplotlib.cm import ScalarMappable
 
     bar = figure.colorbar(ScalarMappable(time, _TIME), ax=axis, shrink=0.75, pad=0.02, aspect=28)
-    bar.set_label(labelled("$t$", time_unit(found.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8)
+    bar.set_label(
+        labelled("$t$", time_unit(positions.system)).replace(" ", "\n", 1), rotation=0, fontsize=13, labelpad=8
+    )
     bar.outline.set_visible(False)
     handles, labels = axis.get_legend_handles_labels()
     if handles:
@@ -129,23 +131,25 @@ def _motion(found: Positions, note: str, end: float, shapes: Sequence[Outline] =
             ncols=min(columns, len(handles)),
             frameon=False,
             fontsize=9,
-            title=None if found.tips else say("paths of the mass centres"),
+            title=None if positions.tips else say("paths of the mass centres"),
             title_fontsize=9,
         )
-    lines = [title_of(found.system), *_caption(found, step, end), note]
+    lines = [title_of(positions.system), *_caption(positions, step, end), note]
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure
 
 
-def _caption(found: Positions, step: float, end: float) -> list[str]:
-    last, unit = float(found.times[-1]), pretty(time_unit(found.system))
-    say = spoken(found.system)
+def _caption(positions: Positions, step: float, end: float) -> list[str]:
+    last, unit = float(positions.times[-1]), pretty(time_unit(positions.system))
+    say = spoken(positions.system)
     reached, whole, every = (with_unit(_rounded(x), unit) for x in (last, end, step))
     span = Message("t = 0 to [[last]] (of [[end]])", last=reached, end=whole)
     shown = [say(Message("t = 0 to [[last]]", last=reached) if last == end else span)]
-    if found.bodied:
+    if positions.bodied:
         shown.append(say(Message("a snapshot every [[step]]", step=every)))
-    frame = [] if found.frame == INERTIAL else [say(Message("seen in the frame '[[frame]]'", frame=found.frame))]
+    frame = (
+        [] if positions.frame == INERTIAL else [say(Message("seen in the frame '[[frame]]'", frame=positions.frame))]
+    )
     return [", ".join(shown), *frame]
 
 
@@ -162,9 +166,9 @@ def _paper(spread: Any) -> tuple[float, float]:
 
 def _step(times: Any) -> float:
     """A round distance of about SNAPSHOTS snapshots."""
-    wanted = float(times[-1] - times[0]) / SNAPSHOTS
-    power = 10.0 ** floor(log10(wanted))
-    return min((factor * power for factor in (1, 2, 2.5, 5, 10)), key=lambda x: abs(log10(x / wanted)))
+    ideal = float(times[-1] - times[0]) / SNAPSHOTS
+    power = 10.0 ** floor(log10(ideal))
+    return min((factor * power for factor in (1, 2, 2.5, 5, 10)), key=lambda x: abs(log10(x / ideal)))
 
 
 def _snapshots(times: Any, step: float) -> list[int]:
@@ -173,73 +177,75 @@ def _snapshots(times: Any, step: float) -> list[int]:
     return sorted({int(np.argmin(np.abs(times - (times[0] + k * step)))) for k in range(count)})
 
 
-def _paths(axis: Any, found: Positions, view: _View, flat: Any) -> None:
+def _paths(axis: Any, positions: Positions, view: _View, flat: Any) -> None:
     """The paths of the mass centres, one colour a body; where two coincide the first is drawn."""
-    moving, say = found.moving(found.centres.values()), spoken(found.system)
-    for place, (body, i) in enumerate(found.centres.items()):
+    moving, say = positions.moving(positions.centres.values()), spoken(positions.system)
+    for place, (body, i) in enumerate(positions.centres.items()):
         if i in moving:
             colour = _PATHS[place % len(_PATHS)]
-            label = say(Message("mass centre of [[body]]", body=body)) if found.tips else body
+            label = say(Message("mass centre of [[body]]", body=body)) if positions.tips else body
             axis.plot(*flat[i], color=colour, linewidth=0.9, alpha=0.85, label=label, zorder=2)
 
 
-def _bodies(axis: Any, found: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
-    thin = max(0.5, 1.0 - 0.02 * len(found.points))
+def _bodies(axis: Any, positions: Positions, flat: Any, shown: Sequence[int], time: Normalize) -> None:
+    thin = max(0.5, 1.0 - 0.02 * len(positions.points))
     for k in shown:
-        colour = _TIME(time(found.times[k]))
-        zorder = 3 + k / len(found.times)
-        for pairs, width, dash in ((found.links, 2.0 * thin, "solid"), (found.slides, 1.2, (0, (3, 1.5)))):
-            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in found.tips]
+        colour = _TIME(time(positions.times[k]))
+        zorder = 3 + k / len(positions.times)
+        for pairs, width, dash in ((positions.links, 2.0 * thin, "solid"), (positions.slides, 1.2, (0, (3, 1.5)))):
+            ends = [(flat[i, :, k], flat[j, :, k]) for i, j in pairs if j not in positions.tips]
             axis.add_collection(LineCollection(ends, colors=[colour], linewidths=width, linestyles=dash, zorder=zorder))
-        joints = [i for i, point in enumerate(found.points) if i not in found.centres.values() and point.kind != AXIS]
+        joints = [
+            i for i, point in enumerate(positions.points) if i not in positions.centres.values() and point.kind != AXIS
+        ]
         axis.plot(*flat[joints, :, k].T, "o", color=colour, markersize=3.2, markerfacecolor="white", zorder=zorder)
-        for place, i in enumerate(found.centres.values()):
+        for place, i in enumerate(positions.centres.values()):
             edge = _PATHS[place % len(_PATHS)] if k in (shown[0], shown[-1]) else colour
             size = 5 * thin
             axis.plot(*flat[i, :, k], "o", color=colour, markeredgecolor=edge, markersize=size, zorder=zorder + 0.01)
 
 
 def _outlines(
-    axis: Any, found: Positions, view: _View, shapes: Sequence[Outline], shown: Sequence[int], time: Normalize
+    axis: Any, positions: Positions, view: _View, shapes: Sequence[Outline], shown: Sequence[int], time: Normalize
 ) -> None:
     """The bodies' shapes, thinner than their links, and in every second or third snapshot."""
     every = -(-len(shown) // OUTLINED)
     for k in shown[::-1][::every]:
-        colour, zorder = _TIME(time(found.times[k])), 3 + k / len(found.times)
+        colour, zorder = _TIME(time(positions.times[k])), 3 + k / len(positions.times)
         lines = [view(line).T for shape in shapes for line in shape.at(k)]
         axis.add_collection(LineCollection(lines, colors=[colour], linewidths=0.8, zorder=zorder))
 
 
-def _spheres(found: Positions, flat: Any) -> list[tuple[Any, float]]:
+def _spheres(positions: Positions, flat: Any) -> list[tuple[Any, float]]:
     """(centre on the paper, radius) of the spheres on which tips of axes move, where these are at rest."""
-    joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
-    still = set(joints.values()) - set(found.moving(joints.values()))
+    joints = {point.body: i for i, point in enumerate(positions.points) if point.kind == JOINT}
+    still = set(joints.values()) - set(positions.moving(joints.values()))
     spheres = []
     for body, joint in joints.items():
-        own = [i for i in found.tips if found.points[i].body == body]
+        own = [i for i in positions.tips if positions.points[i].body == body]
         if own and joint in still:
-            radius = float(np.linalg.norm(found.places[own[0], :, 0] - found.places[joint, :, 0]))
+            radius = float(np.linalg.norm(positions.places[own[0], :, 0] - positions.places[joint, :, 0]))
             spheres.append((flat[joint, :, 0], radius))
     return spheres
 
 
-def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[int], time: Normalize) -> None:
+def _tips(axis: Any, positions: Positions, view: _View, flat: Any, shown: Sequence[int], time: Normalize) -> None:
     """Paths of the tips of the axes, dimmed behind the sphere; the axes themselves at the start and at the end."""
-    joints = {point.body: i for i, point in enumerate(found.points) if point.kind == JOINT}
-    around, say = np.linspace(0, 2 * np.pi, 361), spoken(found.system)
-    for centre, radius in _spheres(found, flat):
+    joints = {point.body: i for i, point in enumerate(positions.points) if point.kind == JOINT}
+    around, say = np.linspace(0, 2 * np.pi, 361), spoken(positions.system)
+    for centre, radius in _spheres(positions, flat):
         circle = centre[:, None] + radius * np.array([np.cos(around), np.sin(around)])
         axis.plot(*circle, color="#bbbbbb", linewidth=0.8, zorder=1)
-    first = len(found.centres) if found.extended else 0  # colours that no path of a mass centre has
+    first = len(positions.centres) if positions.extended else 0  # colours that no path of a mass centre has
     for body, joint in joints.items():
-        own = [i for i in found.tips if found.points[i].body == body]
+        own = [i for i in positions.tips if positions.points[i].body == body]
         for i in own:
-            number = found.points[i].axis
+            number = positions.points[i].axis
             colour = _PATHS[(first + number - 1) % len(_PATHS)]
-            behind = view.depth(found.places[i] - found.places[joint]) < 0
+            behind = view.depth(positions.places[i] - positions.places[joint]) < 0
             front = np.where(behind, np.nan, flat[i])
             back = np.where(behind, flat[i], np.nan)
-            several = found.extended or len(joints) > 1
+            several = positions.extended or len(joints) > 1
             text = Message("axis [[number]] of the body", number=number)
             label = say(Message("axis [[number]] of [[body]]", number=number, body=body) if several else text)
             axis.plot(*front, color=colour, linewidth=1.1, label=label, zorder=3)
@@ -247,22 +253,22 @@ def _tips(axis: Any, found: Positions, view: _View, flat: Any, shown: Sequence[i
             for k in (shown[0], shown[-1]):
                 ends = np.array([flat[joint, :, k], flat[i, :, k]]).T
                 dash = "--" if k == shown[0] else "-"
-                axis.plot(*ends, dash, color=_TIME(time(found.times[k])), linewidth=1.3, zorder=4)
+                axis.plot(*ends, dash, color=_TIME(time(positions.times[k])), linewidth=1.3, zorder=4)
                 axis.plot(*flat[i, :, k], "o", color=colour, markersize=4, zorder=5)
 
 
-def _length(found: Positions) -> str | None:
+def _length(positions: Positions) -> str | None:
     """The unit of places; none where only tips of unit vectors are drawn."""
-    return length_unit(found.system) if found.bodied else None
+    return length_unit(positions.system) if positions.bodied else None
 
 
-def _scale(axis: Any, found: Positions, view: _View) -> None:
+def _scale(axis: Any, positions: Positions, view: _View) -> None:
     """Numbers along axes that lie in the paper; else the directions of the axes, and a length."""
     if view.plane is not None:
         for label, direction in ((axis.set_xlabel, view.right), (axis.set_ylabel, view.up)):
             number = int(np.argmax(np.abs(direction))) + 1
             text = "axis [[number]]" if direction[number - 1] > 0 else "against axis [[number]]"
-            label(labelled(spoken(found.system)(Message(text, number=number)), _length(found)))
+            label(labelled(spoken(positions.system)(Message(text, number=number)), _length(positions)))
         axis.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         axis.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 2.5, 5, 10]))
         return
@@ -288,14 +294,14 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
             fontsize=9,
             color="#444444",
         )
-    if not found.bodied:
+    if not positions.bodied:
         return
     bar = 10.0 ** floor(log10(0.3 * float(high[0] - low[0])))
     bar = max(x * bar for x in (1, 2, 5) if x * bar <= 0.3 * float(high[0] - low[0]))
     start = np.array([high[0] - bar, low[1]])
     axis.plot([start[0], start[0] + bar], [start[1], start[1]], color="#444444", linewidth=1.6, clip_on=False)
     axis.annotate(
-        with_unit(f"{bar:g}", pretty(_length(found))),
+        with_unit(f"{bar:g}", pretty(_length(positions))),
         (start[0] + bar / 2, start[1]),
         (0, 4),
         textcoords="offset points",
@@ -307,23 +313,23 @@ def _scale(axis: Any, found: Positions, view: _View) -> None:
 # --- places over time ---
 
 
-def _pages(found: Positions) -> list[list[tuple[str, int]]]:
-    moving = found.moving(found.centres.values())
-    rows = [(body, i) for body, i in found.centres.items() if i in moving]
+def _pages(positions: Positions) -> list[list[tuple[str, int]]]:
+    moving = positions.moving(positions.centres.values())
+    rows = [(body, i) for body, i in positions.centres.items() if i in moving]
     count = ceil(len(rows) / ROWS)
     return [rows[k * len(rows) // count : (k + 1) * len(rows) // count] for k in range(count)]
 
 
-def _histories(found: Positions, rows: Sequence[tuple[str, int]], title: str, note: str) -> Figure:
+def _histories(positions: Positions, rows: Sequence[tuple[str, int]], title: str, note: str) -> Figure:
     """The coordinates of each mass centre over time, in the axes of the frame, a row a body."""
     figure = Figure(figsize=(8, 0.9 + 1.75 * len(rows) + (0.3 if note else 0)), layout="constrained")
     grid = figure.subplots(len(rows), 1, squeeze=False, sharex=True)[:, 0]
-    drawn, say = [number for number in (1, 2, 3) if number != found.plane], spoken(found.system)
+    drawn, say = [number for number in (1, 2, 3) if number != positions.plane], spoken(positions.system)
     for axis, (body, i) in zip(grid, rows, strict=True):
         for number in drawn:
             style = ("-", (0, (5, 2)), (0, (1.5, 1.5)))[number - 1]
             axis.plot(
-                *thinned(found.times, found.places[i, number - 1]),
+                *thinned(positions.times, positions.places[i, number - 1]),
                 color=_PATHS[number - 1],
                 linestyle=style,
                 label=say(Message("axis [[number]]", number=number)),
@@ -331,12 +337,12 @@ def _histories(found: Positions, rows: Sequence[tuple[str, int]], title: str, no
         axis.set_title(body, loc="left", fontsize=10, parse_math=False)
         axis.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10], min_n_ticks=3))
     grid[0].legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, fontsize=9, borderaxespad=0.1)
-    grid[-1].set_xlabel(labelled("$t$", time_unit(found.system)))
-    grid[-1].set_xlim(0, float(found.times[-1]))
+    grid[-1].set_xlabel(labelled("$t$", time_unit(positions.system)))
+    grid[-1].set_xlim(0, float(positions.times[-1]))
     text = "places of the mass centres"
-    if found.frame != INERTIAL:
-        text = Message("places of the mass centres in the frame '[[frame]]'", frame=found.frame)
-    what = labelled(say(text), length_unit(found.system))
+    if positions.frame != INERTIAL:
+        text = Message("places of the mass centres in the frame '[[frame]]'", frame=positions.frame)
+    what = labelled(say(text), length_unit(positions.system))
     lines = (title, what, note)
     figure.suptitle("\n".join(filter(None, lines)), fontsize=11, parse_math=False)
     return figure

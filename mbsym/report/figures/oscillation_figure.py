@@ -24,16 +24,16 @@ STEMS = ("oscillation", "oscillation-planes", "oscillation-angles")
 
 
 def oscillation_figures(
-    system: System, found: Paths, told: Oscillation, formats: Sequence[str], language: Language | None = None
+    system: System, paths: Paths, oscillation: Oscillation, formats: Sequence[str], language: Language | None = None
 ) -> dict[str, bytes]:
     """``oscillation`` (over time), ``oscillation-planes`` (rates over variables) and ``oscillation-angles``."""
     spoken = language or Language()
     series, simulated = spoken.say(SERIES_LINE), spoken.say(MOTION_LINE)
-    values = {"order": told.order, "small": told.small, "value": f"{found.small:.4g}"}
+    values = {"order": oscillation.order, "small": oscillation.small, "value": f"{paths.small:.4g}"}
     title = spoken.say(Message(FIGURE, system=system.name, **values))
-    if not found.angles and found.no_angles:
-        title += "\n" + spoken.say(Message(NO_ANGLES, why=found.no_angles))
-    names = LatexNames(["t", *found.names, *found.angles])
+    if not paths.angles and paths.no_angles:
+        title += "\n" + spoken.say(Message(NO_ANGLES, why=paths.no_angles))
+    names = LatexNames(["t", *paths.names, *paths.angles])
 
     def label(name: str, rate: bool = False) -> str:
         symbol = names[name]
@@ -45,10 +45,10 @@ def oscillation_figures(
         return labelled("", unit_of(system, name)) if name in system.coordinates or name in system.variables else ""
 
     def over_time(curves: Sequence[tuple[str, Any, Any]]) -> Figure:
-        def draw(axes: Axes, one: tuple[str, Any, Any]) -> None:
-            name, expanded, motion = one
-            axes.plot(found.times, motion, color=BLUE, label=simulated)
-            axes.plot(found.times, expanded, color=RED, linestyle="--", label=series)
+        def draw(axes: Axes, traces: tuple[str, Any, Any]) -> None:
+            name, expanded, motion = traces
+            axes.plot(paths.times, motion, color=BLUE, label=simulated)
+            axes.plot(paths.times, expanded, color=RED, linestyle="--", label=series)
             axes.set_ylabel(label(name) + unit(name))
             axes.set_xlabel(labelled("$t$", time_unit(system)))
 
@@ -56,22 +56,22 @@ def oscillation_figures(
 
     def planes() -> Figure:
         def draw(axes: Axes, name: str) -> None:
-            for curve, colour, style, told in (
-                (found.motion[name], BLUE, "-", simulated),
-                (found.series[name], RED, "--", series),
+            for curve, colour, style, caption in (
+                (paths.motion[name], BLUE, "-", simulated),
+                (paths.series[name], RED, "--", series),
             ):
-                axes.plot(*curve, color=colour, linestyle=style, label=told, linewidth=1.0)
+                axes.plot(*curve, color=colour, linestyle=style, label=caption, linewidth=1.0)
             axes.set_xlabel(label(name) + unit(name))
             axes.set_ylabel(label(name, True))
 
-        return _page(title, found.names, draw)
+        return _page(title, paths.names, draw)
 
     drawings = {
-        STEMS[0]: lambda: over_time([(x, found.series[x][0], found.motion[x][0]) for x in found.names]),
+        STEMS[0]: lambda: over_time([(x, paths.series[x][0], paths.motion[x][0]) for x in paths.names]),
         STEMS[1]: planes,
     }
-    if found.angles:
-        drawings[STEMS[2]] = lambda: over_time([(x, *both) for x, both in found.angles.items()])
+    if paths.angles:
+        drawings[STEMS[2]] = lambda: over_time([(x, *both) for x, both in paths.angles.items()])
     return pictures(drawings, formats)
 
 

@@ -23,25 +23,25 @@ MOST_POINTS = 5_000
 LARGE, SMALL = 4.0, 0.8
 
 
-def section_figure(found: SectionPoints, system: System, note: str, formats: Sequence[str]) -> dict[str, bytes]:
+def section_figure(crossings: SectionPoints, system: System, note: str, formats: Sequence[str]) -> dict[str, bytes]:
     """``section.svg`` and others; nothing of a section without points."""
-    if not len(found.times):
+    if not len(crossings.times):
         return {}
-    return pictures({"section": lambda: _drawn(found, system, note)}, formats)
+    return pictures({"section": lambda: _drawn(crossings, system, note)}, formats)
 
 
-def _drawn(found: SectionPoints, system: System, note: str) -> Figure:
-    planes = list(pairwise(range(len(found.section.axes))))
+def _drawn(crossings: SectionPoints, system: System, note: str) -> Figure:
+    planes = list(pairwise(range(len(crossings.section.axes))))
     figure = Figure(figsize=(1.4 + 5.4 * len(planes), 5.6), layout="constrained")
-    count = len(found.times)
-    text, condition = "[[name]]: [[condition]], points: [[count]]", found.section.condition.text[:60]
+    count = len(crossings.times)
+    text, condition = "[[name]]: [[condition]], points: [[count]]", crossings.section.condition.text[:60]
     title = spoken(system)(Message(text, name=system.name[:60], condition=condition, count=count))
     figure.suptitle(title + (f"\n{note}" if note else ""), fontsize=12, parse_math=False)
     size = max(SMALL, LARGE * min(1.0, (300 / count) ** 0.5))
     for axes, (across, up) in zip(figure.subplots(1, len(planes), squeeze=False)[0], planes, strict=True):
         axes.plot(
-            found.points[across],
-            found.points[up],
+            crossings.points[across],
+            crossings.points[up],
             linestyle="none",
             marker="o",
             markersize=size,
@@ -49,16 +49,16 @@ def _drawn(found: SectionPoints, system: System, note: str) -> Figure:
             color=BLUE,
             rasterized=count > MOST_POINTS,
         )
-        axes.set_xlabel(_label(found.section.axes[across], system))
-        axes.set_ylabel(_label(found.section.axes[up], system), rotation=0, ha="right", va="center")
-        _limits(found, across, axes.set_xlim)
-        _limits(found, up, axes.set_ylim)
+        axes.set_xlabel(_label(crossings.section.axes[across], system))
+        axes.set_ylabel(_label(crossings.section.axes[up], system), rotation=0, ha="right", va="center")
+        _limits(crossings, across, axes.set_xlim)
+        _limits(crossings, up, axes.set_ylim)
     return figure
 
 
-def _limits(found: SectionPoints, row: int, limit: Callable[[float, float], object]) -> None:
+def _limits(crossings: SectionPoints, row: int, limit: Callable[[float, float], object]) -> None:
     """A quantity that stays what it is but for rounding is drawn as a constant."""
-    low, high = float(found.points[row].min()), float(found.points[row].max())
+    low, high = float(crossings.points[row].min()), float(crossings.points[row].max())
     size = max(abs(low), abs(high))
     if high - low < 1e-9 * size or size == 0:
         room = 0.05 * size or 1.0

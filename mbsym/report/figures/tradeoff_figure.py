@@ -35,23 +35,28 @@ OLIVE = "#777700"
 
 
 def work_precision(
-    system: System, until: float, found: Tradeoff, target: float, models: Sequence[ModelError], formats: Sequence[str]
+    system: System,
+    until: float,
+    tradeoff: Tradeoff,
+    target: float,
+    models: Sequence[ModelError],
+    formats: Sequence[str],
 ) -> dict[str, bytes]:
     """``work-precision.svg`` and ``.png``: what each digit costs; errors of simpler models as vertical lines.
 
     ``until`` is the last time of the runs.  None where no run came to the end, in time or at all.
     """
-    if not any(row.error < WORST for row in found.rows):
+    if not any(row.error < WORST for row in tradeoff.rows):
         return {}
-    return pictures({"work-precision": lambda: _drawn(system, until, found, target, models)}, formats)
+    return pictures({"work-precision": lambda: _drawn(system, until, tradeoff, target, models)}, formats)
 
 
-def _drawn(system: System, until: float, found: Tradeoff, target: float, models: Sequence[ModelError]) -> Figure:
+def _drawn(system: System, until: float, tradeoff: Tradeoff, target: float, models: Sequence[ModelError]) -> Figure:
     say = spoken(system)
     figure = Figure(figsize=(9.6, 6.0), layout="constrained")
     axes = figure.subplots()
     ladders: dict[tuple[str, str], list[Measured]] = {}
-    for row in found.rows:
+    for row in tradeoff.rows:
         if isfinite(row.error) and row.error < WORST:
             ladders.setdefault((row.method.traits.name, row.scalar), []).append(row)
     styles = _styles(dict.fromkeys(name for name, _ in ladders))
@@ -67,7 +72,7 @@ def _drawn(system: System, until: float, found: Tradeoff, target: float, models:
             color=styles[name][0],
             label=label,
         )
-    front = sorted((row for row in found.rows if row.front and row.error < WORST), key=lambda row: row.error)
+    front = sorted((row for row in tradeoff.rows if row.front and row.error < WORST), key=lambda row: row.error)
     axes.plot(
         [max(row.error, 1e-17) for row in front],
         [row.seconds for row in front],
@@ -88,9 +93,9 @@ def _drawn(system: System, until: float, found: Tradeoff, target: float, models:
     last = with_unit(f"{until:g}", pretty(time_unit(system)))
     axes.set_title(f"{system.name}, {say(Message('t = 0 to [[last]]', last=last))}", loc="left")
     _line(axes, target, RED, say(Message("target [[error]]", error=f"{target:.0e}")))
-    finest = min((row.error for row in found.rows), default=1.0)
-    if found.smallest_judged > finest / 100:
-        _line(axes, found.smallest_judged, GREY, say("limit of the reference"))
+    finest = min((row.error for row in tradeoff.rows), default=1.0)
+    if tradeoff.smallest_judged > finest / 100:
+        _line(axes, tradeoff.smallest_judged, GREY, say("limit of the reference"))
     for model in _drawable(models):
         _line(axes, model.error, OLIVE, say(Message("model [[label]]", label=model.model)))
     # Patterns of lines need some length to be told apart.

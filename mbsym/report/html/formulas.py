@@ -41,12 +41,12 @@ RELATIONS = {"!=": "\u2260", ">=": "\u2265", "<=": "\u2264", "+-": "\u00b1", "-"
 LONGEST_SPELLED = 1500
 
 
-def spellings(value: Formula | Matrix, wanted: bool) -> str:
+def spellings(value: Formula | Matrix, copyable: bool) -> str:
     """The attributes data-latex, data-wolfram and data-python, which an editor copies; a report goes without.
 
     Where a line says ``name = value`` it is the value that they spell.  "" also of what is too long.
     """
-    if not wanted or value.terms > LONGEST_SPELLED:
+    if not copyable or value.terms > LONGEST_SPELLED:
         return ""
     wolfram = value.wolfram() if isinstance(value, Formula) else _nested(value)
     written = {"latex": value.latex(), "wolfram": wolfram, "python": str(value)}
@@ -184,7 +184,7 @@ def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Ca
 
     Instead of a coefficient that nobody would read there is its ``length``.
     """
-    found: list[str] = []
+    all_pieces: list[str] = []
     for degree, coefficient in reversed(list(enumerate(coefficients))):
         if coefficient.is_zero:
             continue
@@ -202,13 +202,13 @@ def polynomial_pieces(coefficients: Sequence[Formula], variable: str, length: Ca
                 pieces[0] = pieces[0].removeprefix(sign("\u2212"))
         if raised:
             pieces = [raised] if pieces == [mn(1)] else [*pieces[:-1], pieces[-1] + TIMES + raised]
-        if found:
+        if all_pieces:
             shown = "\u2212" if negative else "+"
             pieces[0] = mo(shown, first=True) + pieces[0]
         elif negative:
             pieces[0] = sign("\u2212") + pieces[0]
-        found += pieces
-    return found or [mn(0)]
+        all_pieces += pieces
+    return all_pieces or [mn(0)]
 
 
 def is_readable(value: Formula) -> bool:

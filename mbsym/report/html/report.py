@@ -60,7 +60,7 @@ def context(
     system = analysis.system
     names = mathml_names(analysis.ring)
     about = results(analysis, problems)
-    counted = [about.found[number] for number in COUNTED if number in about.found]
+    counted = [about.by_problem[number] for number in COUNTED if number in about.by_problem]
     long = withheld([*counted, *about.forms.forms.results], PAPER)
     writer = Writer(names, Language(analysis.language or system.language), long, spelled)
     sections = contents(about, writer.document)
@@ -124,27 +124,27 @@ INERTIAL = Message("inertial frame")
 
 def diagram(system: System, language: Language) -> Markup:
     """An ``<svg>`` with a title and a description for those who cannot see it."""
-    found = interconnection(system, most_columns=COLUMNS)
-    beside = max((7 * len(_beside(joint)) - WIDE / 2 for joint in found.joints), default=0)
-    width = (found.columns - 1) * ACROSS + WIDE + MARGIN + max(MARGIN, beside)
-    height = (found.rows - 1) * DOWN + TALL + 2 * MARGIN
+    graph = interconnection(system, most_columns=COLUMNS)
+    beside = max((7 * len(_beside(joint)) - WIDE / 2 for joint in graph.joints), default=0)
+    width = (graph.columns - 1) * ACROSS + WIDE + MARGIN + max(MARGIN, beside)
+    height = (graph.rows - 1) * DOWN + TALL + 2 * MARGIN
     say = language.say
-    body = "".join([*_lines(found), *_loads(found), *(_node(node, say(INERTIAL)) for node in found.nodes)])
+    body = "".join([*_lines(graph), *_loads(graph), *(_node(node, say(INERTIAL)) for node in graph.nodes)])
     said = say(Message("Interconnection of bodies: [[count]]", count=len(system.bodies)))
-    told = "; ".join(map(say, _told(found)))
+    description = "; ".join(map(say, _told(graph)))
     return Markup(
         f'<svg class="diagram" role="img" aria-labelledby="diagram-title diagram-text" width="{width:g}" '
         f'height="{height:g}" viewBox="0 0 {width:g} {height:g}"><title id="diagram-title">{escape(said)}</title>'
-        f'<desc id="diagram-text">{escape(told)}</desc>{body}</svg>'
+        f'<desc id="diagram-text">{escape(description)}</desc>{body}</svg>'
     )
 
 
-def _told(found: Interconnection) -> Iterator[Message]:
-    for joint in found.joints:
-        ends = {"after": found.nodes[joint.after].name, "before": _named(found.nodes[joint.before])}
+def _told(graph: Interconnection) -> Iterator[Message]:
+    for joint in graph.joints:
+        ends = {"after": graph.nodes[joint.after].name, "before": _named(graph.nodes[joint.before])}
         yield Message("[[after]] on [[before]]: [[joint]]", joint=_joint_words(joint), **ends)
-    for load in found.interactions:
-        first, second = (_named(found.nodes[k]) for k in (load.first, load.second))
+    for load in graph.interactions:
+        first, second = (_named(graph.nodes[k]) for k in (load.first, load.second))
         yield Message("[[load]] between [[first]] and [[second]]", load=worded(load.kind), first=first, second=second)
 
 
@@ -194,9 +194,9 @@ def _cut(words: str, most: int) -> str:
     return words if len(words) <= most else words[: most - 1] + "\u2026"
 
 
-def _lines(found: Interconnection) -> Iterator[str]:
-    for joint in found.joints:
-        (x0, y0), (x1, y1) = _place(found.nodes[joint.before]), _place(found.nodes[joint.after])
+def _lines(graph: Interconnection) -> Iterator[str]:
+    for joint in graph.joints:
+        (x0, y0), (x1, y1) = _place(graph.nodes[joint.before]), _place(graph.nodes[joint.after])
         y0, y1 = y0 + TALL / 2, y1 - TALL / 2
         slides = ' class="slides"' if joint.slides else ""
         yield f'<path d="M{x0:g} {y0:g}L{x1:g} {y1:g}"{slides}/>'
@@ -214,9 +214,9 @@ def _beside(joint: Joint) -> str:
     return _cut("; ".join(filter(None, (turns, others))), ANGLES)
 
 
-def _loads(found: Interconnection) -> Iterator[str]:
-    for load in found.interactions:
-        (x0, y0), (x1, y1) = _place(found.nodes[load.first]), _place(found.nodes[load.second])
+def _loads(graph: Interconnection) -> Iterator[str]:
+    for load in graph.interactions:
+        (x0, y0), (x1, y1) = _place(graph.nodes[load.first]), _place(graph.nodes[load.second])
         bend = -DOWN / 2 if y0 == y1 else 0
         side = -ACROSS / 3 if x0 == x1 else 0
         middle = (x0 + x1) / 2 + side, (y0 + y1) / 2 + bend
@@ -228,7 +228,7 @@ def _loads(found: Interconnection) -> Iterator[str]:
 def _readable(words: str) -> str:
     """An expression with Greek letters, indices that are numbers below the line, and a proper minus."""
     return (
-        re.sub(r"[A-Za-z_]\w*", lambda found: spelled_name(found[0]), words)
+        re.sub(r"[A-Za-z_]\w*", lambda match: spelled_name(match[0]), words)
         .replace("-", "\u2212")
         .replace("*", "\u2009")
     )

@@ -471,8 +471,8 @@ class Writer:
     def _joined(self, parts: Iterable[Inline]) -> Markup:
         return Markup("").join(map(self.inline, parts))
 
-    def _length(self, value: Formula, kept: bool = True) -> str:
-        return mtext(f"({self.said(length(value, kept)).unescape()})")
+    def _length(self, value: Formula, in_full: bool = True) -> str:
+        return mtext(f"({self.said(length(value, in_full)).unescape()})")
 
     def _pieces(self, value: content.Polynomial) -> list[str]:
         variable = letter(value.variable) if greek(value.variable) else value.variable
@@ -487,10 +487,10 @@ def _anchor(key: str) -> str:
     return f"formula-{key.replace(':', '-')}"
 
 
-def told_passages(told: Told[Any], found: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
+def told_passages(listing: Told[Any], passages: Iterable[Passage], say: Callable[[str], Markup] = escape) -> Markup:
     """A phrase, then the definitions that it introduces, for every passage."""
-    names = mathml_names(told.ring)
-    return Markup("").join(_passage(passage, names, say) for passage in found)
+    names = mathml_names(listing.ring)
+    return Markup("").join(_passage(passage, names, say) for passage in passages)
 
 
 def _passage(passage: Passage, names: MathNames, say: Callable[[str], Markup]) -> Markup:
@@ -514,21 +514,21 @@ SCALE, MARGIN = 46, 6
 WIDE, TALL = 120, 26
 
 
-def svg(found: Sketch, title: Markup, letter: Callable[[Any], Markup]) -> Markup:
+def svg(sketch: Sketch, title: Markup, letter: Callable[[Any], Markup]) -> Markup:
     """An ``<svg>``; ``letter`` writes what stands beside the lines."""
 
     def on(place: Place) -> Place:
         x, y = place
-        return SCALE * (x - found.low[0]) + MARGIN, SCALE * (found.high[1] - y) + MARGIN
+        return SCALE * (x - sketch.low[0]) + MARGIN, SCALE * (sketch.high[1] - y) + MARGIN
 
-    wide, tall = (SCALE * (b - a) + 2 * MARGIN for a, b in zip(found.low, found.high, strict=True))
-    drawn = Markup("\n").join(_mark(mark, on) for mark in found.marks)
+    wide, tall = (SCALE * (b - a) + 2 * MARGIN for a, b in zip(sketch.low, sketch.high, strict=True))
+    drawn = Markup("\n").join(_mark(mark, on) for mark in sketch.marks)
     letters = Markup("\n").join(
         Markup(
             '<foreignObject x="{:.0f}" y="{:.0f}" width="{}" height="{}">'
             '<div xmlns="http://www.w3.org/1999/xhtml" class="letter">{}</div></foreignObject>'
-        ).format(on(one.place)[0] - WIDE / 2, on(one.place)[1] - TALL / 2, WIDE, TALL, letter(one.text))
-        for one in found.letters
+        ).format(on(label.place)[0] - WIDE / 2, on(label.place)[1] - TALL / 2, WIDE, TALL, letter(label.text))
+        for label in sketch.letters
     )
     return Markup(
         '<svg class="drawing" role="img" aria-label="{}" width="{:.0f}" height="{:.0f}" '

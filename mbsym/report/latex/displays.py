@@ -147,10 +147,10 @@ def _broken(parts: Sequence[str], penalties: Sequence[int]) -> list[str]:
         return [whole] if whole else []
     least = min(penalties)
     places = [k + 1 for k, penalty in enumerate(penalties) if penalty == least]
-    found = []
+    lines = []
     for start, end in pairwise([0, *places, len(parts)]):
-        found += _broken(parts[start:end], penalties[start : end - 1])
-    return found
+        lines += _broken(parts[start:end], penalties[start : end - 1])
+    return lines
 
 
 def _plain(formula: str) -> str:

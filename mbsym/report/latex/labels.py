@@ -61,11 +61,11 @@ class Labels:
         return self._free(f"{self.prefix}sec:{key}" if key else f"{self.prefix}sec")
 
     def _free(self, label: str) -> str:
-        found, count = label, 2
-        while found in self._taken:
-            found, count = f"{label}:{count}", count + 1
-        self._taken.add(found)
-        return found
+        free_label, count = label, 2
+        while free_label in self._taken:
+            free_label, count = f"{label}:{count}", count + 1
+        self._taken.add(free_label)
+        return free_label
 
 
 _LABEL = re.compile(r"\\(label|ref|eqref|pageref)\{([^{}]*)\}")
@@ -85,10 +85,10 @@ def with_prefix(text: str, old: str, new: str) -> str:
 
 def free_prefix(prefix: str, taken: Collection[str]) -> str:
     """The prefix, or one like it that is not taken."""
-    found, count = prefix, 2
-    while found in taken:
-        found, count = f"{prefix.rstrip(':')}-{count}:", count + 1
-    return found
+    free, count = prefix, 2
+    while free in taken:
+        free, count = f"{prefix.rstrip(':')}-{count}:", count + 1
+    return free
 
 
 # Where a LaTeX text is to stand, and what follows from that: its width, its headings, what surrounds it.

@@ -62,16 +62,18 @@ LONG_BRACKET = 120
 
 def abbreviated(text: str) -> str:
     r"""The text with long parts of its ``\longformula`` told before they are used."""
-    letter = next((one for one in LETTERS if not re.search(re.escape(one) + r"(?![A-Za-z])", text)), None)
+    letter = next(
+        (candidate for candidate in LETTERS if not re.search(re.escape(candidate) + r"(?![A-Za-z])", text)), None
+    )
     if letter is None:
         return text
     parts = _Parts(letter)
     pieces, last = [], 0
     for start, label, formula, end in long_formulas(text):
-        told = parts.told(formula)
-        if told != formula:
+        shortened = parts.told(formula)
+        if shortened != formula:
             named = f"[{label}]" if label else ""
-            pieces += [text[last:start], *parts.taken(), f"\\longformula{named}{{{loosened(told)}}}"]
+            pieces += [text[last:start], *parts.taken(), f"\\longformula{named}{{{loosened(shortened)}}}"]
             last = end
     return "".join([*pieces, text[last:]])
 
@@ -86,9 +88,9 @@ class _Parts:
 
     def taken(self) -> list[str]:
         """The formulas that tell what is new since the last call."""
-        found = [f"\\longformula{{{letter} = {_breakable(part)}}}\n" for letter, part in self._new]
+        definitions = [f"\\longformula{{{letter} = {_breakable(part)}}}\n" for letter, part in self._new]
         self._new = []
-        return found
+        return definitions
 
     def told(self, formula: str) -> str:
         """The formula with its long radicands, numerators and denominators as letters, inner ones first."""
@@ -156,8 +158,8 @@ class Printed:
         key = function, id(value), angles_or("shorter"), letters(), *more
         if key not in self._made:
             self._made[key] = value, function(value, *more)
-        found: T = self._made[key][1]
-        return found
+        printed: T = self._made[key][1]
+        return printed
 
 
 _PRINTED: WeakKeyDictionary[Analysis, Printed] = WeakKeyDictionary()
@@ -170,9 +172,9 @@ def shown(analysis: Analysis, problems: Sequence[int], form: Form) -> tuple[Filt
     tongue = Language(analysis.language or system.language)
     labels = Labels(prefix_of(system))
     known = results(analysis, problems, apart=form is Form.FRAGMENT)
-    long = withheld([known.found[number] for number in COUNTED if number in known.found], PAPER)
+    long = withheld([known.by_problem[number] for number in COUNTED if number in known.by_problem], PAPER)
     long |= withheld(known.forms.forms.results, PAPER_FORMS)
-    cited = references(known.found.get(6), escaped(system.source)) if form is not Form.FRAGMENT else ()
+    cited = references(known.by_problem.get(6), escaped(system.source)) if form is not Form.FRAGMENT else ()
     writer = Writer(names, tongue, labels, form, long, lambda value: once(measured_matrix, value))
     values = {
         "tr": lambda text, **gaps: writer.said(Said(text, gaps)),
@@ -230,14 +232,14 @@ def diagram(
     system: System, names: LatexNames, escaped: Callable[[str], str], inertial: str, width: float = 15.0
 ) -> str:
     """A ``tikzpicture`` of at most ``width`` cm; ``inertial`` is what the inertial frame is called."""
-    found = interconnection(system)
-    scale = _Scale(min(MOST_ACROSS, width / max(1.0, found.columns)), min(MOST_DOWN, HEIGHT / max(1, found.rows)))
+    graph = interconnection(system)
+    scale = _Scale(min(MOST_ACROSS, width / max(1.0, graph.columns)), min(MOST_DOWN, HEIGHT / max(1, graph.rows)))
     size = r"\small" if scale.named else r"\scriptsize"
     lines = [
         f"\\begin{{tikzpicture}}[x={scale.across:.2f}cm, y=-{scale.down:.2f}cm, font={size}]",
-        *(_node(k, node, scale, escaped, inertial) for k, node in enumerate(found.nodes)),
-        *(_joint(joint, found, scale, names) for joint in found.joints),
-        *_interactions(found),
+        *(_node(k, node, scale, escaped, inertial) for k, node in enumerate(graph.nodes)),
+        *(_joint(joint, graph, scale, names) for joint in graph.joints),
+        *_interactions(graph),
         "\\end{tikzpicture}",
     ]
     return "\n".join(lines)
@@ -253,20 +255,20 @@ def _node(k: int, node: Node, scale: _Scale, escaped: Callable[[str], str], iner
     return f"\\node[{style}, inner sep={inner}{room}] (n{k}) at ({node.column:g}, {node.row}) {{{text}}};"
 
 
-def _joint(joint: Joint, found: Interconnection, scale: _Scale, names: LatexNames) -> str:
+def _joint(joint: Joint, graph: Interconnection, scale: _Scale, names: LatexNames) -> str:
     label = ""
     if scale.labelled:
         turns = [f"{axis}\\colon {expression(angle, names)}" for axis, angle in joint.turns]
         shifts = [str(names[name]) for name in joint.others]
         written = ",\\; ".join([*turns, *shifts])
         if written and len(turns) + len(shifts) <= 4:
-            upright = found.nodes[joint.before].column == found.nodes[joint.after].column
+            upright = graph.nodes[joint.before].column == graph.nodes[joint.after].column
             place = "right" if upright else "fill=white, inner sep=1pt"
             label = f" node[midway, {place}, font=\\scriptsize] {{${written}$}}"
     style = "double, double distance=1.2pt" if joint.slides else "-"
     return f"\\draw[{style}] (n{joint.before}) --{label} (n{joint.after});"
 
 
-def _interactions(found: Interconnection) -> list[str]:
-    pairs = dict.fromkeys((min(i.first, i.second), max(i.first, i.second)) for i in found.interactions)
+def _interactions(graph: Interconnection) -> list[str]:
+    pairs = dict.fromkeys((min(i.first, i.second), max(i.first, i.second)) for i in graph.interactions)
     return [f"\\draw[dotted, thick] (n{first}) to[bend left=25] (n{second});" for first, second in pairs]

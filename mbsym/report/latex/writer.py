@@ -292,13 +292,17 @@ class Writer:
         lines: list[str] = []
         others: list[str] = []
         room = 0.0
-        for one in value.matrices:
-            whole = "" if one.value.is_zero else formulas.matrix(one.value, self.long, self.form.widest, self.measured)
+        for matrix in value.matrices:
+            whole = (
+                ""
+                if matrix.value.is_zero
+                else formulas.matrix(matrix.value, self.long, self.form.widest, self.measured)
+            )
             if not whole:
-                others.append(self.block(one))
+                others.append(self.block(matrix))
                 continue
-            needed = self.measured(one.value)[1] + 6  # the width of the name and what is around it
-            shown = f"{self.math(one.symbol)} = {whole}"
+            needed = self.measured(matrix.value)[1] + 6  # the width of the name and what is around it
+            shown = f"{self.math(matrix.symbol)} = {whole}"
             if needed <= room:
                 lines[-1] += f",\\quad {shown}"
             else:
@@ -406,8 +410,8 @@ class Writer:
     def _joined(self, parts: Iterable[Inline]) -> str:
         return "".join(map(self.inline, parts))
 
-    def _length(self, value: Formula, kept: bool = True) -> str:
-        return f"\\text{{({self.said(length(value, kept))})}}"
+    def _length(self, value: Formula, in_full: bool = True) -> str:
+        return f"\\text{{({self.said(length(value, in_full))})}}"
 
     def _beside(self, value: Inline) -> str:
         """A part of a displayed line: words stand in it as text."""
@@ -440,10 +444,10 @@ OPENING = "{\\raggedright\\binoppenalty=10000 \\relpenalty=10000 \\linepenalty=2
 PARAGRAPH, CLOSING = "\\hangindent=1.2em \\hangafter=1 \\noindent ", "\\par\n"
 
 
-def paragraphs(told: Told[Any], found: Iterable[Passage], escaped: Callable[[str], str]) -> str:
+def paragraphs(listing: Told[Any], passages: Iterable[Passage], escaped: Callable[[str], str]) -> str:
     """Every passage as a paragraph, in one group."""
-    names = latex_names(told.ring)
-    return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in found) + "}"
+    names = latex_names(listing.ring)
+    return OPENING + "".join(PARAGRAPH + _sentence(x, names, escaped) + CLOSING for x in passages) + "}"
 
 
 def _sentence(passage: Passage, names: LatexNames, escaped: Callable[[str], str]) -> str:
@@ -477,15 +481,15 @@ _STYLES = {
 }
 
 
-def tikz(found: Sketch, letter: Callable[[Any], str], scale: float) -> str:
+def tikz(sketch: Sketch, letter: Callable[[Any], str], scale: float) -> str:
     """A ``tikzpicture``; ``letter`` writes what stands beside the lines, without dollars."""
-    drawn = [_command(how, list(marks)) for how, marks in groupby(found.marks, _how)]
-    used = {word for how, _ in groupby(found.marks, _how) for word in how}
+    drawn = [_command(how, list(marks)) for how, marks in groupby(sketch.marks, _how)]
+    used = {word for how, _ in groupby(sketch.marks, _how) for word in how}
     styles = "".join(f",\n  {name}/.style={{{style}}}" for name, style in _STYLES.items() if name in used)
     lines = [
         f"\\begin{{tikzpicture}}[>=latex, line join=round, scale={scale:g}{styles}]",
         *drawn,
-        *_letters(found, letter),
+        *_letters(sketch, letter),
         "\\end{tikzpicture}",
     ]
     return "\n".join(lines)
@@ -522,10 +526,10 @@ def _drawn(mark: Mark) -> str:
     return " -- ".join(map(_place, mark.points)) + (" -- cycle" if mark.closed else "")
 
 
-def _letters(found: Sketch, letter: Callable[[Any], str]) -> Iterator[str]:
+def _letters(sketch: Sketch, letter: Callable[[Any], str]) -> Iterator[str]:
     """All of one size by one path."""
-    if found.letters:
-        nodes = "\n  ".join(f"{_place(one.place)} node {{${letter(one.text)}$}}" for one in found.letters)
+    if sketch.letters:
+        nodes = "\n  ".join(f"{_place(label.place)} node {{${letter(label.text)}$}}" for label in sketch.letters)
         yield f"\\draw[every node/.style={{inner sep=1pt, font=\\small}}] {nodes};"
 
 

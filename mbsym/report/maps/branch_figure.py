@@ -44,45 +44,45 @@ _MARKS = {
 }
 
 
-def bifurcations(system: System, found: Branches, language: Language) -> Figure:
+def bifurcations(system: System, branches: Branches, language: Language) -> Figure:
     """Branches coordinate by coordinate, and how many there are."""
-    shown = found.coordinates[:MOST_PANELS]
+    shown = branches.coordinates[:MOST_PANELS]
     heights = [FIRST, *[FURTHER] * (len(shown) - 1), COUNTS] if shown else [COUNTS]
     used: dict[str, Any] = {}
-    figure = started(sum(heights) + 0.6, 0, found.values)
+    figure = started(sum(heights) + 0.6, 0, branches.values)
     panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
     for axes, name in zip(panels, shown, strict=False):
-        _coordinate(axes, system, found, name, used)
-    _counts(panels[-1], found, language)
+        _coordinate(axes, system, branches, name, used)
+    _counts(panels[-1], branches, language)
     for axes in panels:
         framed(axes)
-        _lines(axes, found, used)
-    panels[-1].set_xlim(float(found.axes[0].low), float(found.axes[0].high))
-    panels[-1].set_xlabel(axis_label(system, found.axes[0].name), fontsize=TEXT)
+        _lines(axes, branches, used)
+    panels[-1].set_xlim(float(branches.axes[0].low), float(branches.axes[0].high))
+    panels[-1].set_xlabel(axis_label(system, branches.axes[0].name), fontsize=TEXT)
     entries = [(handle, language.say(words, "branches of equilibria")) for words, handle in used.items()]
-    if found.interrupted:
+    if branches.interrupted:
         entries.append(("!", language.say(INTERRUPTED)))
     figure.set_figheight(figure.get_figheight() + LINE * len(entries))
     legend(figure, entries)
     return figure
 
 
-def _coordinate(axes: Axes, system: System, found: Branches, name: str, used: dict[str, Any]) -> None:
-    k = found.coordinates.index(name)
+def _coordinate(axes: Axes, system: System, branches: Branches, name: str, used: dict[str, Any]) -> None:
+    k = branches.coordinates.index(name)
     angular = False
-    for piece in found.pieces:
-        equilibrium = found.equilibria(found.regions[piece.interval])[piece.number]
+    for piece in branches.pieces:
+        equilibrium = branches.equilibria(branches.regions[piece.interval])[piece.number]
         if equilibrium.coordinates_of or name not in [x.name for x in equilibrium.values]:
             continue
         k = [x.name for x in equilibrium.values].index(name)
         angular = angular or equilibrium.values[k].angle
-        kind = style_of(found, piece)
+        kind = style_of(branches, piece)
         style = _STYLES[kind]
         used.setdefault(kind, Line2D([], [], linewidth=1.3, **style))
         for xs, ys in _unbroken(piece, k, equilibrium.values[k].angle):
             axes.plot(xs, ys, linewidth=1.3, zorder=2, **style)
-    for critical in found.criticals:
-        there = found.critical(critical)
+    for critical in branches.criticals:
+        there = branches.critical(critical)
         p = float_of(critical.sample)
         for meeting in (there.meetings or ()) if there.balance is not False else ():
             values = {x.name: x for x in meeting.values}
@@ -104,12 +104,12 @@ def _coordinate(axes: Axes, system: System, found: Branches, name: str, used: di
         axes.yaxis.set_major_locator(MaxNLocator(5))
 
 
-def style_of(found: Branches, piece: Piece) -> str:
+def style_of(branches: Branches, piece: Piece) -> str:
     """How a piece is drawn: only what is proved for the whole interval is solid or dashed."""
-    word = found.verdict(piece).word
+    word = branches.verdict(piece).word
     if not piece.throughout or word.open:
         return "undecided, or not proved throughout"
-    return "stable" if found.verdict(piece).stable else "unstable"
+    return "stable" if branches.verdict(piece).stable else "unstable"
 
 
 def _unbroken(piece: Piece, k: int, angle: bool) -> Iterator[tuple[list[float], list[float]]]:
@@ -130,10 +130,10 @@ def _unbroken(piece: Piece, k: int, angle: bool) -> Iterator[tuple[list[float], 
             start = i
 
 
-def _counts(axes: Axes, found: Branches, language: Language) -> None:
-    counts = [(interval, interval.counted) for interval in found.intervals if interval.counted is not None]
+def _counts(axes: Axes, branches: Branches, language: Language) -> None:
+    counts = [(interval, interval.counted) for interval in branches.intervals if interval.counted is not None]
     for cell, counted in counts:
-        low, high = map(float_of, found.ends(cell))
+        low, high = map(float_of, branches.ends(cell))
         style = "-" if cell.certainty is Certainty.PROVED else (0, (1, 1.5))
         axes.plot([low, high], [counted.count] * 2, color=DARK, linewidth=1.2, linestyle=style)
         axes.fill_between([low, high], 0, counted.stable, color=STABLE, alpha=0.35, linewidth=0)
@@ -142,10 +142,10 @@ def _counts(axes: Axes, found: Branches, language: Language) -> None:
     axes.set_ylabel(language.say("equilibria"), fontsize=SMALL)
 
 
-def _lines(axes: Axes, found: Branches, used: dict[str, Any]) -> None:
+def _lines(axes: Axes, branches: Branches, used: dict[str, Any]) -> None:
     """Where there are infinitely many equilibria at one value: a vertical line."""
-    for critical in found.criticals:
-        if found.critical(critical).continuum:
+    for critical in branches.criticals:
+        if branches.critical(critical).continuum:
             style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": (0, (1, 2))}
             used.setdefault(EVENTS[Event.CONTINUUM], Line2D([], [], **style))
             axes.axvline(float_of(critical.sample), zorder=1, **style)

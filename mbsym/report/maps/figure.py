@@ -82,42 +82,42 @@ ACROSS, ROWS = 2, 3
 _DASHES: Any = (0, (3, 2))
 
 
-def map_figure(system: System, found: Map, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
+def map_figure(system: System, chart: Map, language: Language, formats: Sequence[str]) -> dict[str, bytes]:
     """``map.svg`` and others (see ``stem``), those that are asked for; of slices ``map-2.svg``, ..., too.
 
     Nothing where no slice has a map.
     """
     ordered = sorted(formats, key=lambda kind: kind != "png")  # a PNG is drawn before others set their resolution
-    if isinstance(found, Branches):
-        return pictures({stem(found): partial(bifurcations, system, found, language)}, ordered)
-    told, shown, size = lettered(found), panels(found), ACROSS * ROWS
+    if isinstance(chart, Branches):
+        return pictures({stem(chart): partial(bifurcations, system, chart, language)}, ordered)
+    told, shown, size = lettered(chart), panels(chart), ACROSS * ROWS
     pages = [shown[k : k + size] for k in range(0, len(shown), size)]
-    drawings = (partial(_page, system, found, page, told, language) for page in pages)
-    return pictures(dict(zip(page_names(found), drawings, strict=True)), ordered)
+    drawings = (partial(_page, system, chart, page, told, language) for page in pages)
+    return pictures(dict(zip(page_names(chart), drawings, strict=True)), ordered)
 
 
-def page_names(found: Map) -> list[str]:
+def page_names(chart: Map) -> list[str]:
     """The files without their endings: map, map-2, ..."""
-    count, first = -(-len(panels(found)) // (ACROSS * ROWS)), stem(found)
+    count, first = -(-len(panels(chart)) // (ACROSS * ROWS)), stem(chart)
     return [first if k == 0 else f"{first}-{k + 1}" for k in range(count)]
 
 
-def panels(found: Map) -> list[tuple[Picture | None, Map]]:
+def panels(chart: Map) -> list[tuple[Picture | None, Map]]:
     """The map, or the slices that stand for the pictures of a stack."""
-    if not isinstance(found, Stack):
-        return [(None, found)]
-    shown = [(picture, found.layers[picture.shown].plane) for picture in found.pictures]
+    if not isinstance(chart, Stack):
+        return [(None, chart)]
+    shown = [(picture, chart.layers[picture.shown].plane) for picture in chart.pictures]
     return [(picture, plane) for picture, plane in shown if plane is not None]
 
 
-def look(found: Map, cell: Cell) -> Look:
+def look(chart: Map, cell: Cell) -> Look:
     """Colour and hatch of a region."""
     if (counted := cell.counted) is not None:
-        return look_of_count(counted.count, found.counts, counted.throughout or not counted.stable)
+        return look_of_count(counted.count, chart.counts, counted.throughout or not counted.stable)
     judged = cell.judged
     if judged is None:
         return WHITE if cell.lack in (Lack.NOT_REACHED, Lack.UNPROVED) else NONE
-    if found.of is Of.SIGNATURE and judged.degree is not None:
+    if chart.of is Of.SIGNATURE and judged.degree is not None:
         return look_of_degree(judged.degree)
     return look_of_roots(judged.verdict.word, judged.right, judged.real_right)
 
@@ -125,11 +125,11 @@ def look(found: Map, cell: Cell) -> Look:
 # --- letters ----------------------------------------------------------------------------------------------------------
 
 
-def lettered(found: Map) -> dict[str, str]:
+def lettered(chart: Map) -> dict[str, str]:
     """A letter for every curve of which an arc is drawn, and every point of a line, by its ``mark_name``."""
-    names = dict.fromkeys(mark_name(found, plane, k) for _, plane in panels(found) for k in sorted(marks(plane)))
+    names = dict.fromkeys(mark_name(chart, plane, k) for _, plane in panels(chart) for k in sorted(marks(plane)))
     order = sorted(names, key=lambda name: (not name.isdigit(), int(name) if name.isdigit() else 0))
-    return dict(zip(order, letters([axis.name for axis in found.axes], len(order)), strict=True))
+    return dict(zip(order, letters([axis.name for axis in chart.axes], len(order)), strict=True))
 
 
 def marks(plane: Map) -> set[int]:
@@ -140,9 +140,9 @@ def marks(plane: Map) -> set[int]:
     return {k for cell in shown for k in plane.place(cell).factors}
 
 
-def mark_name(found: Map, plane: Map, k: int) -> str:
+def mark_name(chart: Map, plane: Map, k: int) -> str:
     """Its number where it belongs to all slices, its polynomial where it was found in one."""
-    whole = isinstance(plane.ground, Line) or k < len(found.boundaries.factors)
+    whole = isinstance(plane.ground, Line) or k < len(chart.boundaries.factors)
     return str(k) if whole else str(plane.boundaries.factors[k])
 
 
@@ -157,21 +157,21 @@ def letters(taken: Collection[str], count: int) -> list[str]:
 
 def _page(
     system: System,
-    found: Map,
+    chart: Map,
     page: Sequence[tuple[Picture | None, Map]],
     told: Mapping[str, str],
     language: Language,
 ) -> Figure:
-    small = isinstance(found, Stack)
-    names = [{k: told[mark_name(found, plane, k)] for k in sorted(marks(plane))} for _, plane in page]
+    small = isinstance(chart, Stack)
+    names = [{k: told[mark_name(chart, plane, k)] for k in sorted(marks(plane))} for _, plane in page]
     entries = _entries([(plane, own) for (_, plane), own in zip(page, names, strict=True)], language)
-    if any(one is not None and one.unseen for one, _ in page):
+    if any(slice_picture is not None and slice_picture.unseen for slice_picture, _ in page):
         entries.append(("*", language.say("but for single values not looked at")))
-    if found.interrupted:
+    if chart.interrupted:
         entries.append(("!", language.say(INTERRUPTED)))
     rows = -(-len(page) // ACROSS)
-    body = ROW * rows + 0.3 if small else BAR if isinstance(found.ground, Line) else PLANE
-    figure = started(body, len(entries), found.values, near=small)
+    body = ROW * rows + 0.3 if small else BAR if isinstance(chart.ground, Line) else PLANE
+    figure = started(body, len(entries), chart.values, near=small)
     grid = figure.subplots(rows, ACROSS if small else 1, squeeze=False)
     for place, axes in enumerate(grid.flat):
         if place >= len(page):
@@ -179,7 +179,7 @@ def _page(
             continue
         picture, plane = page[place]
         _Drawing(axes, system, plane, names[place], FINE if small else SMALL, SMALL_ROOM if small else ROOM).draw()
-        if isinstance(found, Stack) and picture is not None:
+        if isinstance(chart, Stack) and picture is not None:
             last = place + ACROSS >= len(page)
             axes.set_xlabel(axes.get_xlabel() if last else "", fontsize=TEXT - 1, labelpad=1)
             axes.set_ylabel("" if place % ACROSS else axes.get_ylabel(), fontsize=TEXT - 1, labelpad=1)
@@ -187,20 +187,20 @@ def _page(
             axes.xaxis.set_major_locator(MaxNLocator(4))
             axes.yaxis.set_major_locator(MaxNLocator(4))
             axes.set_title(
-                title(system, found, picture), fontsize=SMALL - 0.5, pad=2.5, loc="left", linespacing=1.05
+                title(system, chart, picture), fontsize=SMALL - 0.5, pad=2.5, loc="left", linespacing=1.05
             )  # fmt: skip
     legend(figure, entries)
     return figure
 
 
-def title(system: System, found: Stack, picture: Picture) -> str:
+def title(system: System, stack: Stack, picture: Picture) -> str:
     """``C = 7/6`` and, on a second line, between which values the picture is the same."""
-    symbol = named(LatexNames([found.axis.name]), found.axis.name)
-    unit = pretty(unit_of(system, found.axis.name))
-    first = f"{symbol} {equal(found.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
-    if len(picture.layers) == 1 and found.layers[picture.shown].critical:
+    symbol = named(LatexNames([stack.axis.name]), stack.axis.name)
+    unit = pretty(unit_of(system, stack.axis.name))
+    first = f"{symbol} {equal(stack.layers[picture.shown].z)}" + (f" {unit}" if unit else "")
+    if len(picture.layers) == 1 and stack.layers[picture.shown].critical:
         return first
-    low, closed_low, high, closed_high = found.ends(picture)
+    low, closed_low, high, closed_high = stack.ends(picture)
     relations = ("\u2264" if closed_low else "<", "\u2264" if closed_high else "<")
     star = "*" if picture.unseen else ""
     return f"{first}\n{number(low)} {relations[0]} {symbol} {relations[1]} {number(high)}{star}"
@@ -211,15 +211,15 @@ def title(system: System, found: Stack, picture: Picture) -> str:
 
 @dataclass
 class _Drawing:
-    """A map in axes of a figure; ``told`` are the letters of its marks, ``size`` that of small text.
+    """A map in axes of a figure; ``letters`` are the letters of its marks, ``size`` that of small text.
 
     Numbers stand in regions that are wider than ``room``, as a part of the plane.
     """
 
     axes: Axes
     system: System
-    found: Map
-    told: Mapping[int, str]
+    map: Map
+    letters: Mapping[int, str]
     size: float
     room: float
     taken: list[XY] = field(default_factory=list)  # where something is written, in parts of the plane
@@ -229,16 +229,16 @@ class _Drawing:
         (x0, x1), (y0, y1) = self.span
         self.axes.set_xlim(x0, x1)
         self.axes.set_ylim(y0, y1)
-        self.axes.set_xlabel(axis_label(self.system, self.found.axes[0].name), fontsize=TEXT)
+        self.axes.set_xlabel(axis_label(self.system, self.map.axes[0].name), fontsize=TEXT)
         self._fill()
-        if isinstance(self.found.ground, Line):
+        if isinstance(self.map.ground, Line):
             self.axes.set_yticks([])
             self._points()
             return
         self.axes.xaxis.set_major_locator(MaxNLocator(5))
         self.axes.yaxis.set_major_locator(MaxNLocator(6))
-        self.axes.set_ylabel(axis_label(self.system, self.found.axes[1].name), fontsize=TEXT)
-        if isinstance(self.found.ground, Arrangement):
+        self.axes.set_ylabel(axis_label(self.system, self.map.axes[1].name), fontsize=TEXT)
+        if isinstance(self.map.ground, Arrangement):
             self._arcs()
             self._corners()
             self._numbers()
@@ -247,7 +247,7 @@ class _Drawing:
     @cached_property
     def span(self) -> tuple[XY, XY]:
         """From where to where the axes go."""
-        ground = self.found.ground
+        ground = self.map.ground
         if isinstance(ground, Line):
             return (float_of(ground.low), float_of(ground.high)), (0.0, 1.0)
         box = ground.box
@@ -255,19 +255,19 @@ class _Drawing:
 
     @cached_property
     def branches(self) -> Drawn:
-        return Drawn(self.found.arrangement)
+        return Drawn(self.map.arrangement)
 
     @cached_property
     def lines(self) -> dict[int, Sequence[XY]]:
         """The drawn arcs, by number."""
-        drawn = [arc for arc in self.found.arcs if self.found.drawn(arc)]
-        return {cell.number: polyline(self.found.arrangement, self.found.place(cell), TOLERANCE) for cell in drawn}
+        drawn = [arc for arc in self.map.arcs if self.map.drawn(arc)]
+        return {cell.number: polyline(self.map.arrangement, self.map.place(cell), TOLERANCE) for cell in drawn}
 
     def _fill(self) -> None:
         """All regions of one look at once."""
         paths: dict[Look, list[list[XY]]] = {}
-        for cell in self.found.regions:
-            paths.setdefault(look(self.found, cell), []).extend(self._rings(cell))
+        for cell in self.map.regions:
+            paths.setdefault(look(self.map, cell), []).extend(self._rings(cell))
         for seen, rings in paths.items():
             path = Path.make_compound_path(*(Path(ring, closed=True) for ring in (([*x, x[0]]) for x in rings)))
             # an edge of the same colour: no seams between strips
@@ -279,11 +279,11 @@ class _Drawing:
 
     def _rings(self, cell: Cell) -> list[list[XY]]:
         """The outline of a region: of an arrangement strip by strip, between the branches below and above."""
-        place = self.found.place(cell)
-        if isinstance(self.found.ground, Line):
-            low = self.span[0][0] + sum(size for size, _ in self.found.areas[: cell.number])
-            return [_rectangle(low, low + self.found.areas[cell.number][0], 0, 1)]
-        if not isinstance(self.found.ground, Arrangement):
+        place = self.map.place(cell)
+        if isinstance(self.map.ground, Line):
+            low = self.span[0][0] + sum(size for size, _ in self.map.areas[: cell.number])
+            return [_rectangle(low, low + self.map.areas[cell.number][0], 0, 1)]
+        if not isinstance(self.map.ground, Arrangement):
             box = place.box
             return [_rectangle(float(box.x0), float(box.x1), float(box.y0), float(box.y1))]
         rings = []
@@ -301,8 +301,8 @@ class _Drawing:
 
     def _points(self) -> None:
         """Lines through a bar, each with its letter."""
-        for k, letter in self.told.items():
-            x = float_of(self.found.corners[k].sample)
+        for k, letter in self.letters.items():
+            x = float_of(self.map.corners[k].sample)
             self.axes.axvline(x, color=DARK, linewidth=0.9)
             self.axes.annotate(
                 letter, (x, 1), xytext=(0, 2), textcoords="offset points", fontsize=SMALL, style="italic", ha="center"
@@ -310,10 +310,10 @@ class _Drawing:
 
     def _arcs(self) -> None:
         for k, line in self.lines.items():
-            arc = self.found.arcs[k]
+            arc = self.map.arcs[k]
             style: dict[str, Any] = {"color": DARK, "linewidth": 0.8, "linestyle": _DASHES}
-            if self.found.separates(arc):
-                open_side = any(cell is not None and cell.lack is not None for cell in self.found.beside(arc))
+            if self.map.separates(arc):
+                open_side = any(cell is not None and cell.lack is not None for cell in self.map.beside(arc))
                 style = {"color": EDGE if open_side else DARK, "linewidth": 0.7 if open_side else 0.9}
             xs, ys = zip(*line, strict=True)
             self.axes.plot(xs, ys, solid_capstyle="round", zorder=2, **style)
@@ -321,11 +321,11 @@ class _Drawing:
     def _corners(self) -> None:
         """Points in which drawn arcs meet, and those that differ from what is around them."""
         points = []
-        for cell, corner in zip(self.found.corners, self.found.arrangement.corners, strict=True):
+        for cell, corner in zip(self.map.corners, self.map.arrangement.corners, strict=True):
             meeting = corner.kind != "edge" and sum(k in self.lines for k in corner.arcs) > 2
-            if meeting or stands_out(self.found, cell):
+            if meeting or stands_out(self.map, cell):
                 points.append(corner.point.floats())
-        if points and self.found.of is not Of.EQUILIBRIA:
+        if points and self.map.of is not Of.EQUILIBRIA:
             xs, ys = zip(*points, strict=True)
             style: dict[str, Any] = {
                 "linestyle": "none",
@@ -339,10 +339,10 @@ class _Drawing:
     def _numbers(self) -> None:
         """Roots to the right, or equilibria and stable ones, in the middle of the widest part of regions with room."""
         (x0, x1), (y0, y1) = self.span
-        for cell in self.found.regions:
-            text = cell_text(self.found, cell)
+        for cell in self.map.regions:
+            text = cell_text(self.map, cell)
             best, place = 0.0, (0.0, 0.0)
-            for strip, k in self.found.place(cell).cells if text else ():
+            for strip, k in self.map.place(cell).cells if text else ():
                 left, right = self.branches.bounds(strip)
                 x, ys = self.branches.at(strip, math.pi / 2)
                 room = min((right - left) / (x1 - x0), (ys[k + 1] - ys[k]) / (y1 - y0))
@@ -351,7 +351,7 @@ class _Drawing:
             if best <= self.room * (1 if len(text) < 3 else 1.5):
                 continue
             self.taken.append(self._unit(place))
-            seen = look(self.found, cell)
+            seen = look(self.map, cell)
             behind = {"boxstyle": "round,pad=0.12", "facecolor": seen.colour, "edgecolor": "none"}
             self.axes.text(
                 *place, text, fontsize=self.size - (len(text) > 2), color=DARK if seen.light else "white",
@@ -362,9 +362,11 @@ class _Drawing:
     def _letters(self) -> None:
         """Each letter once, on an arc of its curve, at a place away from numbers, corners and the letters before it."""
         taken = self.taken
-        taken += [self._unit(one.sample.floats()) for one in self.found.corners if len(self.found.place(one).arcs) > 2]
-        for k, letter in self.told.items():
-            on = [self.lines[cell.number] for cell in marked(self.found, k)[0] if cell.number in self.lines]
+        taken += [
+            self._unit(corner.sample.floats()) for corner in self.map.corners if len(self.map.place(corner).arcs) > 2
+        ]
+        for k, letter in self.letters.items():
+            on = [self.lines[cell.number] for cell in marked(self.map, k)[0] if cell.number in self.lines]
             spots = [self._unit(p) for line in on for p in _along(line)]
             inside = [p for p in spots if min(*p, 1 - p[0], 1 - p[1]) > 0.04] or spots
             spot = max(inside, key=lambda p: min((math.dist(p, other) for other in taken), default=1.0))
@@ -394,11 +396,11 @@ def _along(line: Sequence[XY]) -> list[XY]:
     return list(middle[:: max(1, len(middle) // 24)])
 
 
-def cell_text(found: Map, cell: Cell) -> str:
+def cell_text(chart: Map, cell: Cell) -> str:
     """What is written into a region: roots to the right; ``24 (4)`` equilibria, of them stable."""
     if (counted := cell.counted) is not None:
         return f"{counted.count} ({counted.stable})"
-    return str(cell.right) if found.of is Of.STABILITY and cell.right else ""
+    return str(cell.right) if chart.of is Of.STABILITY and cell.right else ""
 
 
 # --- the legend -------------------------------------------------------------------------------------------------------
@@ -418,26 +420,26 @@ def _entries(shown: Sequence[tuple[Map, Mapping[int, str]]], language: Language)
     by_condition: dict[str, list[str]] = {}
     named_letters: set[str] = set()
     dashed = numbered = False
-    for found, told in shown:
-        for region, (area, _) in zip(found.regions, found.areas, strict=True):
-            words = language.say(cell_words(found, region))
-            if isinstance(found, BoxMap) and region.lack is Lack.UNPROVED:
-                words = f"{language.say('white: nothing is proved')} ({language.say(percent(found))})"
+    for chart, told in shown:
+        for region, (area, _) in zip(chart.regions, chart.areas, strict=True):
+            words = language.say(cell_words(chart, region))
+            if isinstance(chart, BoxMap) and region.lack is Lack.UNPROVED:
+                words = f"{language.say('white: nothing is proved')} ({language.say(percent(chart))})"
             (before, *_), _ = by_words.get(words, ((0.0,), NONE))
             order: tuple[float, ...] = (before - area,)
-            if found.of is Of.EQUILIBRIA:
+            if chart.of is Of.EQUILIBRIA:
                 order = (1,) if region.counted is None else (-region.counted.count, -region.counted.stable)
-            by_words[words] = order, look(found, region)
+            by_words[words] = order, look(chart, region)
         for k, letter in told.items():
             if letter not in named_letters:  # of slices, the first tells what a curve is
                 named_letters.add(letter)
-                words = language.say(border_words(found, k, in_mathtext))
-                if isinstance(found.ground, Line):
-                    words = f"{float_of(found.corners[k].sample):.6g}   {words}"
+                words = language.say(border_words(chart, k, in_mathtext))
+                if isinstance(chart.ground, Line):
+                    words = f"{float_of(chart.corners[k].sample):.6g}   {words}"
                 by_condition.setdefault(words, []).append(letter)
-        if isinstance(found.ground, Arrangement) and found.of is Of.STABILITY:
-            numbered |= any(cell_text(found, cell) for cell in found.regions)
-        dashed |= any(found.drawn(arc) and found.singles_out(arc) for arc in found.arcs)
+        if isinstance(chart.ground, Arrangement) and chart.of is Of.STABILITY:
+            numbered |= any(cell_text(chart, cell) for cell in chart.regions)
+        dashed |= any(chart.drawn(arc) and chart.singles_out(arc) for arc in chart.arcs)
     entries: list[tuple[Any, str]] = []
     for words, (_, seen) in sorted(by_words.items(), key=lambda item: (item[1][1] == WHITE, item[1][0])):
         edge = hatch_of(seen) if seen.hatch or not seen.light else EDGE

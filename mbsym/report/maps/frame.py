@@ -97,9 +97,9 @@ def legend(figure: Figure, entries: Sequence[tuple[Any, str]]) -> None:
     """(What is shown, what it means) below a figure."""
     if not entries:
         return
-    handles, told = zip(*entries, strict=True)
+    handles, labels = zip(*entries, strict=True)
     figure.legend(
-        handles, told, loc="outside lower left", fontsize=SMALL, frameon=False, handlelength=1.8, handleheight=1.0,
+        handles, labels, loc="outside lower left", fontsize=SMALL, frameon=False, handlelength=1.8, handleheight=1.0,
         labelspacing=0.35, borderaxespad=0.2, handler_map={str: Letter()},
     )  # fmt: skip
 

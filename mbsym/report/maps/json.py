@@ -23,41 +23,41 @@ from mbsym.report.documents.base import written
 from mbsym.source.yaml_writer import meaning
 
 
-def map_json(system: System, found: Map) -> str:
+def map_json(system: System, chart: Map) -> str:
     """One JSON object, keys in a fixed order, the same text for the same input."""
     head = {
         "system": system.name,
         "description_sha256": meaning(system),
-        "values": {name: str(value) for name, value in sorted(found.values.items())},
+        "values": {name: str(value) for name, value in sorted(chart.values.items())},
     }
-    if isinstance(found, Branches):
-        return written(_branches(head, found))
-    if isinstance(found, EquilibriaMap):
-        return written(_equilibria(head, found))
+    if isinstance(chart, Branches):
+        return written(_branches(head, chart))
+    if isinstance(chart, EquilibriaMap):
+        return written(_equilibria(head, chart))
     return written(
         doc.Map.from_result(
-            found,
+            chart,
             **head,
-            demands=[doc.Demand.from_result(x.condition, relation=x.relation) for x in found.admissibility.demands],
-            curves=_curves(found.boundaries),
-            **_places(None if isinstance(found, BoxMap | Stack) else found),
-            pictures=[_picture(found, picture) for picture in found.pictures] if isinstance(found, Stack) else UNSET,
-            slices=[_layer(found, layer) for layer in found.layers] if isinstance(found, Stack) else UNSET,
-            subdivision=_boxes(found) if isinstance(found, BoxMap) else UNSET,
+            demands=[doc.Demand.from_result(x.condition, relation=x.relation) for x in chart.admissibility.demands],
+            curves=_curves(chart.boundaries),
+            **_places(None if isinstance(chart, BoxMap | Stack) else chart),
+            pictures=[_picture(chart, picture) for picture in chart.pictures] if isinstance(chart, Stack) else UNSET,
+            slices=[_layer(chart, layer) for layer in chart.layers] if isinstance(chart, Stack) else UNSET,
+            subdivision=_boxes(chart) if isinstance(chart, BoxMap) else UNSET,
         )
     )
 
 
-def _curves(found: Boundaries, start: int = 0) -> list[tuple[Any, ...]]:
+def _curves(boundaries: Boundaries, start: int = 0) -> list[tuple[Any, ...]]:
     """The boundary polynomials from number ``start`` on, each with its number and its conditions."""
-    return list(zip(count(), found.factors, found.conditions))[start:]
+    return list(zip(count(), boundaries.factors, boundaries.conditions))[start:]
 
 
-def _places(found: Map | None) -> dict[str, Any]:
+def _places(chart: Map | None) -> dict[str, Any]:
     """Regions, arcs and corners; of a line intervals, with their ends, and points."""
-    if found is None:
+    if chart is None:
         return {"regions": [], "arcs": [], "corners": []}
-    line = isinstance(found.ground, Line)
+    line = isinstance(chart.ground, Line)
     return {
         "regions": [
             doc.Region.from_result(
@@ -68,8 +68,8 @@ def _places(found: Map | None) -> dict[str, Any]:
                 area=area,
                 area_error=error,
             )
-            for region, (area, error) in zip(found.regions, found.areas, strict=True)
-            for there in [found.place(region)]
+            for region, (area, error) in zip(chart.regions, chart.areas, strict=True)
+            for there in [chart.place(region)]
         ],
         "arcs": [
             doc.Arc.from_result(
@@ -78,10 +78,10 @@ def _places(found: Map | None) -> dict[str, Any]:
                 curves=there.factors,
                 regions=there.regions,
                 corners=there.corners,
-                separates=found.separates(arc),
+                separates=chart.separates(arc),
             )
-            for arc in found.arcs
-            for there in [found.place(arc)]
+            for arc in chart.arcs
+            for there in [chart.place(arc)]
         ],
         "corners": [
             doc.Corner.from_result(
@@ -91,47 +91,47 @@ def _places(found: Map | None) -> dict[str, Any]:
                 arcs=[] if line else there.arcs,
                 kind="zero" if line else str(there.kind),
             )
-            for corner in found.corners
-            for there in [found.place(corner)]
+            for corner in chart.corners
+            for there in [chart.place(corner)]
         ],
     }
 
 
-def _boxes(found: BoxMap) -> doc.Subdivision:
+def _boxes(chart: BoxMap) -> doc.Subdivision:
     """Each statement once, and the boxes with the numbers of theirs; exact edges."""
     statements: list[Cell] = []
     places: dict[tuple[object, ...], int] = {}
     boxes = []
-    for cell, tile in zip(found.regions, found.subdivision.tiles, strict=True):
+    for cell, tile in zip(chart.regions, chart.subdivision.tiles, strict=True):
         key = (*cell.kind, tuple(x.condition.about for x in cell.broken), cell.judged and cell.judged.null)
         if cell.lack is not Lack.UNPROVED and key not in places:
             places[key] = len(statements)
             statements.append(cell)
         boxes.append(((tile.box.x0, tile.box.x1, tile.box.y0, tile.box.y1), places.get(key)))
-    return doc.Subdivision.from_result(found, statements=statements, boxes=boxes)
+    return doc.Subdivision.from_result(chart, statements=statements, boxes=boxes)
 
 
-def _picture(found: Stack, picture: Picture) -> doc.Picture:
-    low, closed_low, high, closed_high = found.ends(picture)
+def _picture(stack: Stack, picture: Picture) -> doc.Picture:
+    low, closed_low, high, closed_high = stack.ends(picture)
     return doc.Picture.from_result(picture, low=low, low_belongs=closed_low, high=high, high_belongs=closed_high)
 
 
-def _layer(found: Stack, layer: Layer) -> doc.Slice:
+def _layer(stack: Stack, layer: Layer) -> doc.Slice:
     plane = layer.plane
     return doc.Slice.from_result(
         layer,
-        further_curves=[] if plane is None else _curves(plane.boundaries, len(found.boundaries.factors)),
+        further_curves=[] if plane is None else _curves(plane.boundaries, len(stack.boundaries.factors)),
         interrupted=plane is not None and plane.interrupted,
         **_places(plane),
     )
 
 
-def _equilibria(head: Mapping[str, Any], found: EquilibriaMap) -> branches.EquilibriaMap:
+def _equilibria(head: Mapping[str, Any], chart: EquilibriaMap) -> branches.EquilibriaMap:
     return branches.EquilibriaMap.from_result(
-        found,
+        chart,
         **head,
-        curves=[(k, p, [x.origin for x in conditions]) for k, p, conditions in _curves(found.boundaries)],
-        regions=[_numbered(region, area) for region, (area, _) in zip(found.regions, found.areas, strict=True)],
+        curves=[(k, p, [x.origin for x in conditions]) for k, p, conditions in _curves(chart.boundaries)],
+        regions=[_numbered(region, area) for region, (area, _) in zip(chart.regions, chart.areas, strict=True)],
     )
 
 
@@ -149,26 +149,26 @@ def _numbered(cell: Cell, area: float) -> branches.Region:
     )
 
 
-def _branches(head: Mapping[str, Any], found: Branches) -> branches.Branches:
+def _branches(head: Mapping[str, Any], diagram: Branches) -> branches.Branches:
     return branches.Branches.from_result(
-        found,
+        diagram,
         **head,
-        parameter=found.axes[0],
-        intervals=[_interval(found, interval) for interval in found.intervals],
-        critical_values=[_critical(found, critical) for critical in found.criticals],
+        parameter=diagram.axes[0],
+        intervals=[_interval(diagram, interval) for interval in diagram.intervals],
+        critical_values=[_critical(diagram, critical) for critical in diagram.criticals],
     )
 
 
-def _interval(found: Branches, cell: Cell) -> branches.Interval:
-    low, high = found.ends(cell)
+def _interval(diagram: Branches, cell: Cell) -> branches.Interval:
+    low, high = diagram.ends(cell)
     constant = cell.certainty is Certainty.PROVED
     return branches.Interval.from_result(cell.counted, low=low, high=high, sample=cell.sample, constant=constant)
 
 
-def _critical(found: Branches, at: Cell) -> branches.CriticalValue:
+def _critical(diagram: Branches, at: Cell) -> branches.CriticalValue:
     return branches.CriticalValue.from_result(
-        found.critical(at),
+        diagram.critical(at),
         value=at.sample,
-        intervals=[None if side is None else side.number for side in found.sides(at)],
-        verdict_changes=found.verdict_changes(at),
+        intervals=[None if side is None else side.number for side in diagram.sides(at)],
+        verdict_changes=diagram.verdict_changes(at),
     )

@@ -88,14 +88,14 @@ def read_points(text: str, axes: Sequence[str]) -> tuple[Points | None, list[Wro
                 )
             )
             continue
-        found = [_number(line[k]) for k in places]
+        entries = [_number(line[k]) for k in places]
         wrong += [
             Wrong(number, Message("[[name]]: a rational or decimal number is wanted", name=name))
-            for name, value in zip(axes, found, strict=True)
+            for name, value in zip(axes, entries, strict=True)
             if value is None
         ]
-        known = tuple(value for value in found if value is not None)
-        if len(known) == len(found):
+        known = tuple(value for value in entries if value is not None)
+        if len(known) == len(entries):
             rows.append(tuple(line))
             values.append(known)
     return (None, wrong) if wrong else (Points(tuple(header), tuple(rows), tuple(values)), [])
@@ -108,13 +108,13 @@ def _number(text: str) -> Fraction | None:
     return Fraction(match[1]) / Fraction(match[2] or 1)
 
 
-def located_csv(points: Points, found: Map) -> str:
+def located_csv(points: Points, chart: Map) -> str:
     """The same rows with the columns ``where``, ``verdict`` and, of exact maps of a line or a plane, ``border``.
 
     The last one: soft, hard or open at a point where a pair of roots is imaginary and none to the right.
     """
-    locate = Locating(found)
-    borders = len(found.axes) < 3 and found.of is not Of.EQUILIBRIA and not isinstance(found.ground, Subdivision)
+    locate = Locating(chart)
+    borders = len(chart.axes) < 3 and chart.of is not Of.EQUILIBRIA and not isinstance(chart.ground, Subdivision)
     rows = (
         (*row, *locate(*values), *([locate.border(*values)] if borders else []))
         for row, values in zip(points.rows, points.values, strict=True)
@@ -126,7 +126,7 @@ class Locating:
     """Finds where points of a map lie, and judges each exactly at its own place."""
 
     def __init__(self, found: Map) -> None:
-        self.found = found
+        self.map = found
         self._judge_at = lru_cache(_KEPT)(self._new_judge)
 
     def __call__(self, *values: Fraction) -> tuple[str, str]:
@@ -134,80 +134,80 @@ class Locating:
 
         Over three axes (``slice 4, region 3``, ...); beside a slice the region is the one that its signs single out.
         """
-        if isinstance(self.found, Stack):
-            return self._in_stack(self.found, values)
+        if isinstance(self.map, Stack):
+            return self._in_stack(self.map, values)
         cell = self.judged(*values)
         if cell is None:
-            return f"outside of the {'interval' if isinstance(self.found.ground, Line) else 'box'}", ""
+            return f"outside of the {'interval' if isinstance(self.map.ground, Line) else 'box'}", ""
         white = "white " if cell.lack is Lack.UNPROVED else ""
-        return f"{white}{cell.shape}{'' if white else f' {cell.number}'}", place_text(self.found, cell)
+        return f"{white}{cell.shape}{'' if white else f' {cell.number}'}", place_text(self.map, cell)
 
     def judged(self, *values: Fraction) -> Cell | None:
         """The cell of a rational point; an arc's verdict is found at the point itself.  None outside."""
-        cell, there = self.found.at(*values), self.found.section
+        cell, there = self.map.at(*values), self.map.section
         if cell is not None and there is not None and cell.shape is Shape.ARC and cell.lack is None:
-            return Judge(there, self.found.admissibility)(Shape.ARC, cell.number, _place(values))
+            return Judge(there, self.map.admissibility)(Shape.ARC, cell.number, _place(values))
         return cell
 
     def border(self, *values: Fraction) -> str:
         """``soft``, ``hard``, ``open`` or ``neither`` at a point with an imaginary pair and no root to the right."""
         cell = self.judged(*values)
-        if cell is None or self.found.onsets is None or not cell.imaginary:
+        if cell is None or self.map.onsets is None or not cell.imaginary:
             return ""
         if cell.shape is not Shape.ARC:
             return "" if cell.soft is None else cell.soft.onset.value
-        whole = self.found.arcs[cell.number].soft
+        whole = self.map.arcs[cell.number].soft
         if whole is not None and whole.onset is Onset.NEITHER:
             return whole.onset.value
-        return self.found.onsets.at(_place(values)).onset.value
+        return self.map.onsets.at(_place(values)).onset.value
 
     # --- over three axes ---
 
-    def _in_stack(self, found: Stack, values: Sequence[Fraction]) -> tuple[str, str]:
-        if any(not axis.low <= value <= axis.high for axis, value in zip(found.axes, values, strict=True)):
+    def _in_stack(self, stack: Stack, values: Sequence[Fraction]) -> tuple[str, str]:
+        if any(not axis.low <= value <= axis.high for axis, value in zip(stack.axes, values, strict=True)):
             return "outside of the box", ""
         x, y, z = (fmpq(value.numerator, value.denominator) for value in values)
-        layer = _layer(found, z)
+        layer = _layer(stack, z)
         if layer.z == z and layer.plane is not None:
             cell = layer.plane.at(*values[:2])
             assert cell is not None
-            return f"slice {layer.number}, {cell.shape} {cell.number}", place_text(found, cell)
+            return f"slice {layer.number}, {cell.shape} {cell.number}", place_text(stack, cell)
         beside = f"slice {layer.number}" if layer.z == z else f"beside slice {layer.number}"
         judge, broken = self._judge_at(z)
         cell = Cell(Shape.REGION, 0, lack=Lack.OUTSIDE) if broken else judge(Shape.REGION, 0, Point(x, y))
-        return beside + _region(found, layer, (x, y, z)), place_text(found, cell)
+        return beside + _region(stack, layer, (x, y, z)), place_text(stack, cell)
 
     def _new_judge(self, z: Any) -> tuple[Judge, bool]:
-        assert self.found.section is not None
-        cut, admissibility = at_level(self.found.section, self.found.admissibility, z)
+        assert self.map.section is not None
+        cut, admissibility = at_level(self.map.section, self.map.admissibility, z)
         return Judge(cut, admissibility), bool(admissibility.broken)
 
 
-def place_text(found: Map, cell: Cell) -> str:
+def place_text(chart: Map, cell: Cell) -> str:
     """The word of the verdict, numbers of equilibria, or why there is nothing."""
     if cell.lack is not None:
         return cell.lack.value
-    return cell_words(found, cell) if cell.word is None else cell.word.value
+    return cell_words(chart, cell) if cell.word is None else cell.word.value
 
 
 def _place(values: Sequence[Fraction]) -> Point:
     return Point(*(fmpq(x.numerator, x.denominator) for x in values))
 
 
-def _layer(found: Stack, z: Any) -> Layer:
+def _layer(stack: Stack, z: Any) -> Layer:
     """The slice at a value, or the one between the same critical values."""
-    for layer in found.layers:
+    for layer in stack.layers:
         if layer.critical and compare(layer.z, z) == 0:
             return layer
-    there: Any = found.line.locate(z)
-    return next(one for one in found.layers if not one.critical and one.z == there.sample)
+    there: Any = stack.line.locate(z)
+    return next(candidate for candidate in stack.layers if not candidate.critical and candidate.z == there.sample)
 
 
-def _region(found: Stack, layer: Layer, point: Sequence[Any]) -> str:
+def _region(stack: Stack, layer: Layer, point: Sequence[Any]) -> str:
     """``, region 3`` where one region alone has the signs of the point."""
     if layer.plane is None or layer.z == point[2]:
         return ""
-    signs = tuple(sign(p(*point)) for p in found.boundaries.factors)
+    signs = tuple(sign(p(*point)) for p in stack.boundaries.factors)
     if 0 in signs:
         return ", on a curve"
     fitting = [region for region in layer.plane.regions if layer.plane.place(region).signs[: len(signs)] == signs]

@@ -43,42 +43,48 @@ _HEADS = {
 }
 
 
-def map_tex(system: System, found: Map, language: Language) -> str:
+def map_tex(system: System, chart: Map, language: Language) -> str:
     """Needs graphicx; the pictures are map.pdf, map-2.pdf, ... (see ``stem``) in the same folder."""
-    if isinstance(found, Branches):
-        return _branches(system, found, language)
-    names = LatexNames([axis.name for axis in found.axes])
-    caption = caption_of(system, _HEADS[found.of], found.values, language, _plane(found, names))
-    if isinstance(found, BoxMap):
+    if isinstance(chart, Branches):
+        return _branches(system, chart, language)
+    names = LatexNames([axis.name for axis in chart.axes])
+    caption = caption_of(system, _HEADS[chart.of], chart.values, language, _plane(chart, names))
+    if isinstance(chart, BoxMap):
         caption += f" {language.say('Every coloured box is proved as a whole')}"
-        if any(region.lack is Lack.UNPROVED for region in found.regions):
-            caption += f"; {language.say('white: nothing is proved')} ({escaped(language.say(percent(found)))})"
+        if any(region.lack is Lack.UNPROVED for region in chart.regions):
+            caption += f"; {language.say('white: nothing is proved')} ({escaped(language.say(percent(chart)))})"
         caption += "."
-    if found.interrupted:
+    if chart.interrupted:
         caption += f" {language.say(INTERRUPTED)}."
-    command = "map --of equilibria" if found.of is Of.EQUILIBRIA else "map"
-    lines = [line for name in page_names(found) for line in figure_lines(system, name, caption, command)]
-    points = isinstance(found.ground, Line) and not isinstance(found, Stack)
+    command = "map --of equilibria" if chart.of is Of.EQUILIBRIA else "map"
+    lines = [line for name in page_names(chart) for line in figure_lines(system, name, caption, command)]
+    points = isinstance(chart.ground, Line) and not isinstance(chart, Stack)
     head = "The points of the map:" if points else "The curves of the map:"
-    return "\n".join([*lines, *listed(language.say(head), _marks(found, names, language))]) + "\n"
+    return "\n".join([*lines, *listed(language.say(head), _marks(chart, names, language))]) + "\n"
 
 
-def _branches(system: System, found: Branches, language: Language) -> str:
+def _branches(system: System, branches: Branches, language: Language) -> str:
     """The diagram, the numbers of equilibria, the critical values."""
-    name = LatexNames([found.axes[0].name])[found.axes[0].name]
-    caption = caption_of(system, "Relative equilibria of", found.values, language)
-    if found.interrupted:
+    name = LatexNames([branches.axes[0].name])[branches.axes[0].name]
+    caption = caption_of(system, "Relative equilibria of", branches.values, language)
+    if branches.interrupted:
         caption += f" {language.say(INTERRUPTED)}."
     numbers = []
-    for cell, last in found.spans():
-        low, high, counted = number_tex(found.ends(cell)[0]), number_tex(found.ends(last)[1]), cell.counted
+    for cell, last in branches.spans():
+        low, high, counted = number_tex(branches.ends(cell)[0]), number_tex(branches.ends(last)[1]), cell.counted
         assert counted is not None
         doubt = "" if cell.certainty is Certainty.PROVED else f" ({language.say('not proved to be constant')})"
         stable = f"{language.say('of them stable')} {counted.stable}"
         stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
-    told = [(one, words) for one in found.criticals if (words := language.say(critical_words(found, one)))]
-    critical = [rf"\item ${name} = {number_tex(one.sample)}$: {escaped(words)}" for one, words in told]
+    described = [
+        (critical_cell, words)
+        for critical_cell in branches.criticals
+        if (words := language.say(critical_words(branches, critical_cell)))
+    ]
+    critical = [
+        rf"\item ${name} = {number_tex(critical_cell.sample)}$: {escaped(words)}" for critical_cell, words in described
+    ]
     lines = figure_lines(system, "branches", caption, "equilibria --vary")
     lines += listed(language.say("Numbers of equilibria:"), numbers)
     return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"
@@ -94,22 +100,22 @@ def number_tex(x: Any) -> str:
     return f"{float(x):.8g}" + r"\ldots"
 
 
-def _plane(found: Map, names: LatexNames) -> str:
+def _plane(chart: Map, names: LatexNames) -> str:
     """What is shown: its axes."""
-    across = ", ".join(f"${names[axis.name]}$" for axis in found.axes[:2])
-    if not isinstance(found, Stack):
-        return f"({across})" if len(found.axes) > 1 else across
-    return rf"({across}), ${found.axis.low} \le {names[found.axis.name]} \le {found.axis.high}$"
+    across = ", ".join(f"${names[axis.name]}$" for axis in chart.axes[:2])
+    if not isinstance(chart, Stack):
+        return f"({across})" if len(chart.axes) > 1 else across
+    return rf"({across}), ${chart.axis.low} \le {names[chart.axis.name]} \le {chart.axis.high}$"
 
 
 def caption_of(system: System, head: str, values: Mapping[str, Any], language: Language, plane: str = "") -> str:
     """What is shown, over which axes, and what has a number; fractions with a stroke need no package."""
     fixed = LatexNames(list(values))
-    told = ", ".join(f"${fixed[name]} = {rational_text(value)}$" for name, value in values.items())
+    assignments = ", ".join(f"${fixed[name]} = {rational_text(value)}$" for name, value in values.items())
     return (
         f"{language.say(head)} {escaped(system.name)}"
         + (f": {plane}" if plane else "")
-        + (f"; {told}." if told else ".")
+        + (f"; {assignments}." if assignments else ".")
     )
 
 
@@ -127,22 +133,22 @@ def figure_lines(system: System, name: str, caption: str, command: str) -> list[
 
 def listed(head: str, items: Iterable[str]) -> list[str]:
     """A list under its head; nothing of none."""
-    told = list(items)
-    return ["", r"\noindent " + head, r"\begin{itemize}", *told, r"\end{itemize}"] if told else []
+    lines = list(items)
+    return ["", r"\noindent " + head, r"\begin{itemize}", *lines, r"\end{itemize}"] if lines else []
 
 
-def _marks(found: Map, names: LatexNames, language: Language) -> Iterator[str]:
+def _marks(chart: Map, names: LatexNames, language: Language) -> Iterator[str]:
     """Each letter of the picture with its polynomial in the axes, or its number; of one slice, in two of them."""
-    places = {mark_name(found, plane, k): (plane, k) for _, plane in reversed(panels(found)) for k in marks(plane)}
-    file = f"{stem(found)}.json"
-    for name, letter in lettered(found).items():
+    places = {mark_name(chart, plane, k): (plane, k) for _, plane in reversed(panels(chart)) for k in marks(plane)}
+    file = f"{stem(chart)}.json"
+    for name, letter in lettered(chart).items():
         plane, k = places[name]
         words = _with_formulas(language.say(border_words(plane, k, _in_dollars)))
         if isinstance(plane.ground, Line):
             equality = f"${names[plane.axes[0].name]} = {float_of(plane.corners[k].sample):.10g}$"
         else:
-            own = k >= len(found.boundaries.factors)
-            equality = equation((plane if own else found).boundaries.factors[k], names, language, file)
+            own = k >= len(chart.boundaries.factors)
+            equality = equation((plane if own else chart).boundaries.factors[k], names, language, file)
         yield rf"\item[\textit{{{letter}}}] {equality} \quad ({words})"
 
 

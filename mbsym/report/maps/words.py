@@ -74,9 +74,9 @@ LACKS = {
 }
 
 
-def stem(found: Map) -> str:
+def stem(chart: Map) -> str:
     """What the files of a map are called, without their endings."""
-    return "branches" if isinstance(found, Branches) else "equilibria-map" if found.of is Of.EQUILIBRIA else "map"
+    return "branches" if isinstance(chart, Branches) else "equilibria-map" if chart.of is Of.EQUILIBRIA else "map"
 
 
 def rational_text(x: Any) -> str:
@@ -93,36 +93,36 @@ def telling(conditions: Sequence[Condition], outside: bool = False) -> Condition
     """The condition that says most about a curve; one that parameters have to keep where it is a border of these."""
     origins = (Origin.ASSUMPTION, Origin.INERTIA, Origin.SIGN, Origin.MASS, Origin.UNDEFINED)
     order = [*origins, *_TELLING] if outside else _TELLING
-    return min(conditions, key=lambda one: order.index(one.origin))
+    return min(conditions, key=lambda condition: order.index(condition.origin))
 
 
-def condition_words(condition: Condition, found: Map, named: Callable[[str], str] = str) -> Message:
+def condition_words(condition: Condition, chart: Map, named: Callable[[str], str] = str) -> Message:
     """``double root: discriminant (psi, phi, sigma)``; ``named`` writes a coordinate."""
     words = Message(_CONDITIONS[condition.origin])
     if condition.origin in (Origin.ASSUMPTION, Origin.SIGN, Origin.INERTIA):
         return joined((words, condition.about), ": ") if condition.about else words
-    if condition.part is None or found.section is None or len(found.section.parts) == 1:
+    if condition.part is None or chart.section is None or len(chart.section.parts) == 1:
         return words
-    names = ", ".join(map(named, found.section.coordinates[condition.part]))
+    names = ", ".join(map(named, chart.section.coordinates[condition.part]))
     return Message("[[words]] ([[names]])", words=words, names=names)
 
 
-def border_words(found: Map, k: int, named: Callable[[str], str] = str) -> Message:
+def border_words(chart: Map, k: int, named: Callable[[str], str] = str) -> Message:
     """What a letter of the picture stands for: curve ``k``, or point ``k`` of a line.
 
     Where drawn borders bound what is not judged it is what parameters have to keep.
     """
-    borders, conditions = marked(found, k)
-    sides = [x for border in borders if found.drawn(border) for x in found.beside(border) if x is not None]
+    borders, conditions = marked(chart, k)
+    sides = [x for border in borders if chart.drawn(border) for x in chart.beside(border) if x is not None]
     condition = telling(conditions, outside=any(x.lack is not None for x in sides))
-    return joined((condition_words(condition, found, named), *onset_words(borders)), ", ")
+    return joined((condition_words(condition, chart, named), *onset_words(borders)), ", ")
 
 
-def marked(found: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
+def marked(chart: Map, k: int) -> tuple[list[Cell], Sequence[Condition]]:
     """The borders that have this letter, and the conditions that are equalities there."""
-    if isinstance(found.ground, Line):
-        return [found.corners[k]], found.conditions(found.corners[k])
-    return [arc for arc in found.arcs if k in found.place(arc).factors], found.boundaries.conditions[k]
+    if isinstance(chart.ground, Line):
+        return [chart.corners[k]], chart.conditions(chart.corners[k])
+    return [arc for arc in chart.arcs if k in chart.place(arc).factors], chart.boundaries.conditions[k]
 
 
 def onset_words(borders: Sequence[Cell]) -> list[Message]:
@@ -144,26 +144,26 @@ def onset_words(borders: Sequence[Cell]) -> list[Message]:
     return [Message(words[only])]
 
 
-def cell_words(found: Map, cell: Cell) -> Message:
+def cell_words(chart: Map, cell: Cell) -> Message:
     """What is said of a cell, for a legend or a table."""
     if (counts := cell.counted) is not None:
         return counted_words(counts, cell.certainty)
     if (judged := cell.judged) is None:
         assert cell.lack is not None
         return Message(LACKS[cell.lack])
-    return signature_words(judged) if found.of is Of.SIGNATURE else judged_words(judged)
+    return signature_words(judged) if chart.of is Of.SIGNATURE else judged_words(judged)
 
 
-def counted_words(found: Counted, certainty: Certainty) -> Message:
+def counted_words(counts: Counted, certainty: Certainty) -> Message:
     """``24 equilibria, 4 stable``."""
     proved = certainty is Certainty.PROVED
     text = "[[equilibria]], [[stable]] stable"
-    if proved and not found.throughout:
+    if proved and not counts.throughout:
         text = "[[equilibria]], [[stable]] stable at the sample"
-    told = Message(text, equilibria=message.Counted(found.count, "equilibrium", "equilibria"), stable=found.stable)
-    if found.undecided:
-        told = Message("[[told]], [[undecided]] undecided", told=told, undecided=found.undecided)
-    return told if proved else Message("[[told]] (at the sample only)", told=told)
+    phrase = Message(text, equilibria=message.Counted(counts.count, "equilibrium", "equilibria"), stable=counts.stable)
+    if counts.undecided:
+        phrase = Message("[[told]], [[undecided]] undecided", told=phrase, undecided=counts.undecided)
+    return phrase if proved else Message("[[told]] (at the sample only)", told=phrase)
 
 
 def judged_words(judged: Judged) -> Message:
@@ -180,18 +180,18 @@ def signature_words(judged: Judged) -> Message:
     """``degree of instability 2``; where K is singular, its nullity as well."""
     if judged.degree is None:
         return Message(Word.UNDECIDED)
-    told = Message("degree of instability [[degree]]", degree=judged.degree)
-    return Message("[[told]], null directions [[null]]", told=told, null=judged.null) if judged.null else told
+    phrase = Message("degree of instability [[degree]]", degree=judged.degree)
+    return Message("[[told]], null directions [[null]]", told=phrase, null=judged.null) if judged.null else phrase
 
 
-def row_words(found: Map, cell: Cell) -> tuple[Message, str]:
+def row_words(chart: Map, cell: Cell) -> tuple[Message, str]:
     """(``unstable: flutter, 2 roots to the right``, the theorem), for tables."""
-    told, judged = cell_words(found, cell), cell.judged
-    if judged is None or found.of is Of.SIGNATURE:
-        return told, ""
+    phrase, judged = cell_words(chart, cell), cell.judged
+    if judged is None or chart.of is Of.SIGNATURE:
+        return phrase, ""
     if judged.right:
-        told = Message("[[told]], [[roots]] to the right", told=told, roots=message.Counted(judged.right, "root"))
-    return told, joined(map(Message, judged.verdict.theorems), ", ")
+        phrase = Message("[[told]], [[roots]] to the right", told=phrase, roots=message.Counted(judged.right, "root"))
+    return phrase, joined(map(Message, judged.verdict.theorems), ", ")
 
 
 def share(value: float) -> str:
@@ -202,9 +202,9 @@ def share(value: float) -> str:
     return Message("less than 0.01 %") if percent < 0.01 else f"{min(percent, 99.99):.2f} %"
 
 
-def percent(found: BoxMap) -> Message:
+def percent(chart: BoxMap) -> Message:
     """``12.50 % of the area`` are white."""
-    return Message("[[share]] of the area", share=share(float(found.subdivision.white)))
+    return Message("[[share]] of the area", share=share(float(chart.subdivision.white)))
 
 
 # --- branches of equilibria -------------------------------------------------------------------------------------------
@@ -245,25 +245,25 @@ def event_words(events: Iterable[Event]) -> Message:
     return joined(messages, ", ")
 
 
-def critical_words(found: Branches, at: Cell) -> str:
+def critical_words(branches: Branches, at: Cell) -> str:
     """What happens at a critical value; "" for nothing that is shown."""
-    critical = found.critical(at)
+    critical = branches.critical(at)
     if critical.balance is False:
         return Message(EVENTS[Event.DEGENERATE])
     parts = [event_words(critical.events)] if critical.events else []
-    if found.leaves(at) and not critical.continuum:
+    if branches.leaves(at) and not critical.continuum:
         parts.append(Message(_RANK_LOST if critical.rank_lost else _BORDER))
-    if found.verdict_changes(at) and not parts and not found.count_changes(at):
-        parts.append(Message(_CHANGE if found.certain(at) else _DIFFER))
-    if not parts and found.happens(at):
+    if branches.verdict_changes(at) and not parts and not branches.count_changes(at):
+        parts.append(Message(_CHANGE if branches.certain(at) else _DIFFER))
+    if not parts and branches.happens(at):
         parts.append(Message(EVENTS[Event.DEGENERATE]))
     return joined(parts, ", ") if parts else ""
 
 
 def remark_words(remark: Remark) -> Message:
     """A sentence of the terminal on what is not proved."""
-    told = Message(_DOUBTS[remark.doubt])
-    return Message("[[told]] ([[about]])", told=told, about=worded(remark.about)) if remark.about else told
+    phrase = Message(_DOUBTS[remark.doubt])
+    return Message("[[told]] ([[about]])", told=phrase, about=worded(remark.about)) if remark.about else phrase
 
 
 def stable_words(verdicts: Iterable[Verdict | None]) -> str:

@@ -18,16 +18,20 @@ if TYPE_CHECKING:
 @cache
 def messages(language: str) -> dict[tuple[str, str], str]:
     """(context, English) -> the other language; the context is "" where a phrase has one meaning."""
-    return {(one.msgctxt or "", one.msgid): one.msgstr for one in _catalogue(language) if not one.msgid_plural}
+    return {
+        (entry.msgctxt or "", entry.msgid): entry.msgstr for entry in _catalogue(language) if not entry.msgid_plural
+    }
 
 
 @cache
 def plurals(language: str) -> tuple[dict[str, tuple[str, ...]], Callable[[int], int]]:
     """The forms of what is counted by its English singular, and which of them goes with a number."""
-    found = _catalogue(language)
-    rule = found.metadata["Plural-Forms"].partition("plural=")[2].rstrip("; ")
+    catalogue = _catalogue(language)
+    rule = catalogue.metadata["Plural-Forms"].partition("plural=")[2].rstrip("; ")
     forms = {
-        one.msgid: tuple(form for _, form in sorted(one.msgstr_plural.items())) for one in found if one.msgid_plural
+        entry.msgid: tuple(form for _, form in sorted(entry.msgstr_plural.items()))
+        for entry in catalogue
+        if entry.msgid_plural
     }
     return forms, c2py(rule)
 

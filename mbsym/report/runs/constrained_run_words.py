@@ -95,9 +95,9 @@ def _shown(value: float) -> str:
     return f"{value if abs(value) > NOUGHT else 0:.9g}"
 
 
-def drift_line(found: Drift, known: Constraints) -> Message:
+def drift_line(drift: Drift, known: Constraints) -> Message:
     """The largest drifts of the rows shown, scaled by the scene."""
-    positions, velocities = (f"{x:.1e}" for x in found.largest)
+    positions, velocities = (f"{x:.1e}" for x in drift.largest)
     if known.holonomic:
         text = "positions [[q]], velocities [[v]] off the constraints at most, in parts of the motion's size"
         return Message(text, q=positions, v=velocities)
@@ -134,8 +134,8 @@ def drift_columns(run: Simulation) -> Mapping[str, Any]:
     if run.drift is None:
         return {}
     taken = (*run.system.coordinates, *run.system.velocities)
-    found = {POSITIONS: run.drift.positions, VELOCITIES: run.drift.velocities}
-    return {name + "_" if name in taken else name: values for name, values in found.items()}
+    columns = {POSITIONS: run.drift.positions, VELOCITIES: run.drift.velocities}
+    return {name + "_" if name in taken else name: values for name, values in columns.items()}
 
 
 def constraints_json(run: Simulation) -> doc.Constraints | UnsetType:

@@ -63,8 +63,8 @@ def read_earlier(path: Path, system: System) -> Earlier:
     last = np.array([_number(value, kind) for value in state.values()])
     time = _number(content["reached"]["time"], float)
     times, states = _rows(path, content, system, time, last)
-    asked = content["time"]
-    spacing = (_number(asked["to"], float) - _number(asked["from"], float)) / max(1, int(asked["samples"]) - 1)
+    sampling = content["time"]
+    spacing = (_number(sampling["to"], float) - _number(sampling["from"], float)) / max(1, int(sampling["samples"]) - 1)
     if len(times) > 2:
         spacing = float(times[1] - times[0])
     if not (spacing > 0 and time > 0):
@@ -110,9 +110,9 @@ def _content(path: Path) -> dict[str, Any]:
         raise Unfit(Message("it cannot be read: [[why]]", why=error.strerror or error)) from None
     except (ValueError, RecursionError):
         raise Unfit("it is no JSON file, or damaged") from None
-    wanted = {"format", "description_sha256", "ended", "time", "reached", "method", "arithmetic", "tolerance", "step"}
-    wanted |= {"parameters", "initial", "files"}
-    if not isinstance(content, dict) or not wanted <= set(content) or content["format"] != 1:
+    required = {"format", "description_sha256", "ended", "time", "reached", "method", "arithmetic", "tolerance", "step"}
+    required |= {"parameters", "initial", "files"}
+    if not isinstance(content, dict) or not required <= set(content) or content["format"] != 1:
         raise Unfit("it is not a simulation.json of this version of mbsym")
     if not {"table_sha256", "model"} <= set(content):
         raise Unfit('it is damaged, or older than --continue: "table_sha256" and "model" are wanted')
@@ -137,35 +137,35 @@ def _number(value: Any, kind: Any) -> Any:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise Unfit("it is damaged: there is no number where there should be one")
     try:
-        found = kind(value if isinstance(value, str) else float(value))
+        number = kind(value if isinstance(value, str) else float(value))
     except (ValueError, OverflowError):
         raise Unfit("it is damaged: there is no number where there should be one") from None
-    if not isfinite(float(found)):
+    if not isfinite(float(number)):
         raise Unfit("its last state is not finite: there is nothing to go on from")
-    return found
+    return number
 
 
 def _rows(path: Path, content: Mapping[str, Any], system: System, time: float, last: Any) -> tuple[Any, Any]:
     """(times, states) of the table beside it.  Raises Unfit where there is none, or another one."""
     table, digest = _table(path, content)
     size = 1 + len(last)
-    wanted = [marked(name, unit) for name, unit in column_units(system).items()][:size]
+    expected = [marked(name, unit) for name, unit in column_units(system).items()][:size]
     try:
         with table.open(encoding="utf-8") as stream:
             header = stream.readline().rstrip("\n").split(",")[:size]
             with warnings.catch_warnings(action="ignore"):  # of an empty table
-                found = np.loadtxt(stream, delimiter=",", usecols=range(size), ndmin=2).T
+                columns = np.loadtxt(stream, delimiter=",", usecols=range(size), ndmin=2).T
     except (OSError, ValueError) as error:
         raise Unfit(Message(UNREAD, file=table.name, why=error)) from None
     count = content["reached"]["samples"]
-    if len(header) < size or header != wanted or found.shape != (size, count):
+    if len(header) < size or header != expected or columns.shape != (size, count):
         text = "[[file]] beside it is not the table of that run ([[count]] are wanted)"
         raise Unfit(Message(text, file=table.name, count=Counted(count, "row")))
-    times, states = found[0], found[1:].astype(last.dtype)
+    times, states = columns[0], columns[1:].astype(last.dtype)
     if (
         times[0]
         or times[-1] != time
-        or not np.array_equal(found[1:, -1], last.astype(float))
+        or not np.array_equal(columns[1:, -1], last.astype(float))
         or not np.all(np.diff(times) > 0)
     ):
         text = "[[file]] beside it does not end where that run did: one of the two has been changed"
@@ -192,8 +192,8 @@ def _table(path: Path, content: Mapping[str, Any]) -> tuple[Path, str]:
 
 def _model(content: Mapping[str, Any], system: System) -> Model:
     """What was in the equations.  Raises Unfit."""
-    told = content["model"]
-    gravity, linear, without = told["gravity"], told["linear"], told["without"]
+    model = content["model"]
+    gravity, linear, without = model["gravity"], model["linear"], model["without"]
     names = isinstance(without, list) and all(name in system.parameter_names for name in without)
     orders = isinstance(gravity, (int, str, type(None))) and not isinstance(gravity, bool)
     if not (names and orders and isinstance(linear, bool) and gravity in (None, 2, 3, 4, "exact")):

@@ -31,11 +31,11 @@ def quantile_name(chance: float) -> str:
     return f"q{round(100 * chance):02d}"
 
 
-def ensemble_csv(found: Ensemble) -> str:
+def ensemble_csv(ensemble: Ensemble) -> str:
     """Statistics at every time; numbers read back exactly, nan where nobody lives."""
-    spread, system = found.statistics, found.members.dynamics.system
-    names, columns = [marked("t", unit_of(system, "t")), "alive"], [found.times, spread.alive]
-    for place, name in enumerate(found.quantities):
+    spread, system = ensemble.statistics, ensemble.members.dynamics.system
+    names, columns = [marked("t", unit_of(system, "t")), "alive"], [ensemble.times, spread.alive]
+    for place, name in enumerate(ensemble.quantities):
         unit = unit_of(system, name)
         parts: list[tuple[str, Any]] = [
             ("mean", spread.mean),
@@ -49,118 +49,126 @@ def ensemble_csv(found: Ensemble) -> str:
     return written(names, columns)
 
 
-def members_csv(found: Ensemble) -> str:
+def members_csv(ensemble: Ensemble) -> str:
     """One row a member, numbered from 0 in the order of the grid or of the draws."""
-    system = found.members.dynamics.system
-    ended = {fate.member: fate for fate in found.fates}
-    varied = [marked(name, unit_of(system, name)) for name in found.members.names]
-    final = [marked(f"{name}_final", unit_of(system, name)) for name in found.quantities]
+    system = ensemble.members.dynamics.system
+    ended = {fate.member: fate for fate in ensemble.fates}
+    varied = [marked(name, unit_of(system, name)) for name in ensemble.members.names]
+    final = [marked(f"{name}_final", unit_of(system, name)) for name in ensemble.quantities]
     rows: list[Sequence[object]] = []
-    for member in range(found.count):
+    for member in range(ensemble.count):
         fate = ended.get(member)
-        values = (f"{value:.17g}" for value in found.members.values[:, member])
-        state = (f"{value:.17g}" if isfinite(value) else "" for value in found.final[:, member])
+        values = (f"{value:.17g}" for value in ensemble.members.values[:, member])
+        state = (f"{value:.17g}" if isfinite(value) else "" for value in ensemble.final[:, member])
         rows.append((member, *values, *state, *((fate.kind, f"{fate.time:.9g}") if fate else ("", ""))))
     return text_table(["member", *varied, *final, "ended", "at"], rows)
 
 
 def ensemble_json(
-    found: Ensemble, variations: tuple[Variation, ...], seed: int, sampling: str, files: list[str]
+    ensemble: Ensemble, variations: tuple[Variation, ...], seed: int, sampling: str, files: list[str]
 ) -> str:
     """The file's text; ``files`` are those that belong to it."""
-    scenario = found.members.dynamics.scenario
-    spread = found.statistics
+    scenario = ensemble.members.dynamics.scenario
+    spread = ensemble.statistics
     content = doc.Ensemble.from_result(
-        found,
+        ensemble,
         system=scenario.system.name,
         description_sha256=meaning(scenario.system),
-        status="partial" if found.interrupted else "whole",
+        status="partial" if ensemble.interrupted else "whole",
         inputs=laws_json(scenario) if scenario.inputs else UNSET,
-        members=found.count,
+        members=ensemble.count,
         varied=[_variation(variation) for variation in variations],
         seed=None if isinstance(variations[0], Grid) else seed,
         sampling="grid" if isinstance(variations[0], Grid) else sampling,
-        time=(0.0, float(found.times[-1]), len(found.times)),
+        time=(0.0, float(ensemble.times[-1]), len(ensemble.times)),
         ended=[
             doc.Ended.from_result(
                 fate,
-                values=zip(found.members.names, map(float, found.members.values[:, fate.member]), strict=True),
+                values=zip(ensemble.members.names, map(float, ensemble.members.values[:, fate.member]), strict=True),
             )
-            for fate in found.fates
+            for fate in ensemble.fates
         ],
         final={
             name: (
                 *(x[-1, place] for x in (spread.mean, spread.deviation, spread.least, spread.greatest)),
                 {f"{chance:g}": row[-1, place] for chance, row in zip(QUANTILES, spread.quantiles, strict=True)},
             )
-            for place, name in enumerate(found.quantities)
+            for place, name in enumerate(ensemble.quantities)
         },
         files=files,
     )
     return document(content)
 
 
-def _variation(one: Variation) -> doc.Varied:
-    if isinstance(one, Grid):
-        return doc.Varied(name=one.name, kind="grid", from_=one.low, to=one.high, count=one.count)
-    if one.kind == "normal":
-        return doc.Varied(name=one.name, kind="normal", mean=one.first, deviation=one.second)
-    return doc.Varied(name=one.name, kind="uniform", from_=one.first, to=one.second)
+def _variation(variation: Variation) -> doc.Varied:
+    if isinstance(variation, Grid):
+        return doc.Varied(
+            name=variation.name, kind="grid", from_=variation.low, to=variation.high, count=variation.count
+        )
+    if variation.kind == "normal":
+        return doc.Varied(name=variation.name, kind="normal", mean=variation.first, deviation=variation.second)
+    return doc.Varied(name=variation.name, kind="uniform", from_=variation.first, to=variation.second)
 
 
-def sentences(found: Ensemble) -> Iterator[tuple[str, str]]:
+def sentences(ensemble: Ensemble) -> Iterator[tuple[str, str]]:
     """(title, text): how it went, how good it is, who ended early."""
-    setting, compared = found.setting, found.compared
-    varied = Message("[[count]], [[names]] varied", count=found.count, names=", ".join(found.members.names))
+    setting, compared = ensemble.setting, ensemble.compared
+    varied = Message("[[count]], [[names]] varied", count=ensemble.count, names=", ".join(ensemble.members.names))
     yield Message("members"), varied
     if compared.members:
-        told = (
+        text = (
             "integrated more finely, [[members]]: at most [[size]] of a quantity's size away; of the others nothing is "
             "known"
         )
         members = Counted(len(compared.members), "member")
-        yield Message("error"), Message(told, members=members, size=f"{compared.largest:.1e}")
-    elif not found.interrupted:
+        yield Message("error"), Message(text, members=members, size=f"{compared.largest:.1e}")
+    elif not ensemble.interrupted:
         yield Message("error"), Message("not estimated: nothing finer than this to compare with")
-    if found.missed:
-        member, one = min(found.missed.items())
-        told = (
+    if ensemble.missed:
+        member, transient = min(ensemble.missed.items())
+        text = (
             "a load that changes within [[width]] at t = [[time]] was passed by steps of [[step]] "
             "(member [[member]]; so "
             "in [[members]]): a step of [[needed]] meets it"
         )
-        gaps = {"width": f"{one.width:.2g}", "time": f"{one.time:.6g}", "step": f"{one.step:.2g}"}
-        members = Counted(len(found.missed), "member")
-        yield Message("warning"), Message(told, member=member, members=members, needed=f"{one.width / 4:.2g}", **gaps)
-    if found.fates:
-        told = "[[ended]] early; from then on the statistics are those of the rest (column alive)"
-        yield Message("warning"), Message(told, ended=Counted(len(found.fates), "member ended", "members ended"))
-        for fate in found.fates[:NAMED]:
-            told = "member [[member]] ([[values]]): [[how]] near t = [[time]]"
-            values = found.members.described(fate.member)
+        gaps = {"width": f"{transient.width:.2g}", "time": f"{transient.time:.6g}", "step": f"{transient.step:.2g}"}
+        members = Counted(len(ensemble.missed), "member")
+        yield (
+            Message("warning"),
+            Message(text, member=member, members=members, needed=f"{transient.width / 4:.2g}", **gaps),
+        )
+    if ensemble.fates:
+        text = "[[ended]] early; from then on the statistics are those of the rest (column alive)"
+        yield Message("warning"), Message(text, ended=Counted(len(ensemble.fates), "member ended", "members ended"))
+        for fate in ensemble.fates[:NAMED]:
+            text = "member [[member]] ([[values]]): [[how]] near t = [[time]]"
+            values = ensemble.members.described(fate.member)
             yield (
                 Message("ended"),
-                Message(told, member=fate.member, values=values, how=Message(fate.kind), time=f"{fate.time:.6g}"),
+                Message(text, member=fate.member, values=values, how=Message(fate.kind), time=f"{fate.time:.6g}"),
             )
-        if len(found.fates) > NAMED:
-            yield Message("ended"), Message("and [[count]] more, in members.csv", count=len(found.fates) - NAMED)
-    if found.interrupted:
-        yield Message("warning"), Message("interrupted: statistics up to t = [[time]]", time=f"{found.times[-1]:.9g}")
-    told, gap = "[[method]], step [[setting]], float64; each member has steps of its own", setting.step
+        if len(ensemble.fates) > NAMED:
+            yield Message("ended"), Message("and [[count]] more, in members.csv", count=len(ensemble.fates) - NAMED)
+    if ensemble.interrupted:
+        yield (
+            Message("warning"),
+            Message("interrupted: statistics up to t = [[time]]", time=f"{ensemble.times[-1]:.9g}"),
+        )
+    text, gap = "[[method]], step [[setting]], float64; each member has steps of its own", setting.step
     if gap is None:
-        told, gap = (
+        text, gap = (
             "[[method]], tolerance [[setting]] per step, float64; each member has steps of its own",
             setting.tolerance,
         )
-    yield Message("method"), Message(told, method=found.method, setting=f"{gap:g}")
-    if found.members.dynamics.switches.outputs:
-        told = "steps end where the rates are not smooth, each member's at places of its own"
-        yield Message("switches"), Message(told)
+    yield Message("method"), Message(text, method=ensemble.method, setting=f"{gap:g}")
+    if ensemble.members.dynamics.switches.outputs:
+        text = "steps end where the rates are not smooth, each member's at places of its own"
+        yield Message("switches"), Message(text)
     work = Message(
         "[[steps]] in [[seconds]] s, [[rate]] a second, [[threads]]",
-        steps=Counted(found.steps, "step"),
-        seconds=f"{found.seconds:.2f}",
-        rate=f"{found.steps / max(found.seconds, 1e-9):.2g}",
-        threads=Counted(found.threads, "thread"),
+        steps=Counted(ensemble.steps, "step"),
+        seconds=f"{ensemble.seconds:.2f}",
+        rate=f"{ensemble.steps / max(ensemble.seconds, 1e-9):.2g}",
+        threads=Counted(ensemble.threads, "thread"),
     )
     yield Message("work"), work

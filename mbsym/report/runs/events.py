@@ -38,16 +38,16 @@ def events_json(run: Simulation) -> dict[str, Any]:
     return content
 
 
-def _event(found: Occurrences, place: int, event: Event) -> doc.WatchedEvent:
-    times = found.times[found.which == place]
+def _event(occurrences: Occurrences, place: int, event: Event) -> doc.WatchedEvent:
+    times = occurrences.times[occurrences.which == place]
     return doc.WatchedEvent.from_result(
         event,
         condition=event.text,
         count=len(times),
         first=float(times[0]) if len(times) else None,
         last=float(times[-1]) if len(times) else None,
-        touches=int(np.sum(found.turns[found.which == place] == 0)),
-        undecided=event in found.undecided,
+        touches=int(np.sum(occurrences.turns[occurrences.which == place] == 0)),
+        undecided=event in occurrences.undecided,
     )
 
 
@@ -113,30 +113,34 @@ def events_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
 # (nothing: not proved).  Of a section: ``t``, ``direction``, its axes, coordinates and velocities.
 
 
-def events_csv(found: Occurrences, system: System, radii: Sequence[float | None] | None = None) -> str:
+def events_csv(occurrences: Occurrences, system: System, radii: Sequence[float | None] | None = None) -> str:
     """The text of events.csv; ``radii`` of a certificate stand in a column of their own."""
-    names = [event.name for event in found.events]
+    names = [event.name for event in occurrences.events]
     time_unit = unit_of(system, "t")
     proved = [] if radii is None else [marked("t_radius", time_unit)]
     header = [marked("t", time_unit), *proved, "event", "direction", *_states(system)]
-    columns = [[]] * len(found) if radii is None else [["" if x is None else _number(x)] for x in radii]
+    columns = [[]] * len(occurrences) if radii is None else [["" if x is None else _number(x)] for x in radii]
     rows = (
         [_number(time), *radius, names[which], str(turn), *map(_number, state)]
         for time, radius, which, turn, state in zip(
-            found.times, columns, found.which, found.turns, found.states.T, strict=True
+            occurrences.times, columns, occurrences.which, occurrences.turns, occurrences.states.T, strict=True
         )
     )
     return text_table(header, rows)
 
 
-def section_csv(found: SectionPoints, system: System) -> str:
+def section_csv(section_points: SectionPoints, system: System) -> str:
     """The text of section.csv."""
-    axes = [axis.text for axis in found.section.axes if axis.text not in (*system.coordinates, *system.velocities)]
-    shown = [place for place, axis in enumerate(found.section.axes) if axis.text in axes]
+    axes = [
+        axis.text for axis in section_points.section.axes if axis.text not in (*system.coordinates, *system.velocities)
+    ]
+    shown = [place for place, axis in enumerate(section_points.section.axes) if axis.text in axes]
     header = [marked("t", unit_of(system, "t")), "direction", *axes, *_states(system)]
     rows = (
         [_number(time), str(turn), *map(_number, point[shown]), *map(_number, state)]
-        for time, turn, point, state in zip(found.times, found.turns, found.points.T, found.states.T, strict=True)
+        for time, turn, point, state in zip(
+            section_points.times, section_points.turns, section_points.points.T, section_points.states.T, strict=True
+        )
     )
     return text_table(header, rows)
 

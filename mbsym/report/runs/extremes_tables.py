@@ -30,16 +30,16 @@ HEADER = (
 )
 
 
-def extremes_csv(found: Extremes) -> str:
+def extremes_csv(extremes: Extremes) -> str:
     """One line for each quantity on each rung; verdicts of stability follow as quantity ``stability``."""
     rows: list[Sequence[object]] = []
-    for row in found.rows:
-        d = row.found
+    for row in extremes.rows:
+        d = row.digits
         digits = [d.digits[FLOAT32], d.digits[FLOAT64], d.worst[FLOAT32], d.worst[FLOAT64], d.formula]
         numbers = [f"{x:.2f}" for x in digits]
         about = (row.kind, row.subject, f"{row.size:.0e}", row.quantity)
         rows.append((*about, *numbers, f"{d.condition:.3e}", d.verdict, d.bits))
-    for item in found.verdicts:
+    for item in extremes.verdicts:
         judged = item.judged
         said = [judged.floats[FLOAT32], judged.floats[FLOAT64]]
         about = (item.kind, item.subject, f"{item.size:.0e}", "stability")
@@ -47,39 +47,39 @@ def extremes_csv(found: Extremes) -> str:
     return text_table(HEADER, rows)
 
 
-def extremes_json(found: Extremes) -> str:
+def extremes_json(extremes: Extremes) -> str:
     """Everything, with the sentences; numbers that are infinite are null."""
-    singular = found.singularities
+    singular = extremes.singularities
     whole = doc.Extremes.from_result(
-        found,
-        system=found.system.name,
-        sentences=sentences(found),
+        extremes,
+        system=extremes.system.name,
+        sentences=sentences(extremes),
         singular=None if singular is None or not singular.how else singular,
         eigenvalues=[
             (float(x.real.mid()), float(x.imag.mid()), float(max(x.real.rad(), x.imag.rad())))
-            for x in found.eigenvalues
+            for x in extremes.eigenvalues
         ],
         stability=[
             doc.StabilityAt.from_result(item, floats_wrong={scalar: item.judged.wrong(scalar) for scalar in FULL})
-            for item in found.verdicts
+            for item in extremes.verdicts
         ],
     )
     return written(whole)
 
 
-def tables(found: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:
+def tables(extremes: Extremes) -> Iterator[tuple[list[str], list[list[str]]]]:
     """Column titles, and for each ladder the fewest digits of each quantity, ``float64 / float32``.
 
     A star marks digits lost by the formula rather than by the question.  The equations of motion come first, then the
     linear equations.
     """
     for linear in (False, True):
-        columns = [quantity for quantity in found.quantities if (quantity in _LINEAR) == linear]
+        columns = [quantity for quantity in extremes.quantities if (quantity in _LINEAR) == linear]
         rows = []
-        for kind, subject in found.ladders:
-            cells = [_cell(found.of(kind, subject, quantity)) for quantity in columns]
+        for kind, subject in extremes.ladders:
+            cells = [_cell(extremes.of(kind, subject, quantity)) for quantity in columns]
             if any(cells):
-                own = [v for v in found.verdicts if (v.kind, v.subject) == (kind, subject)]
+                own = [v for v in extremes.verdicts if (v.kind, v.subject) == (kind, subject)]
                 title: str = worded(subject)
                 if kind == "ratio":
                     title = Message("[[name]] times 1e-12 to 1e12", name=subject)
@@ -99,11 +99,11 @@ _LINEAR = ("M", "D", "G", "K", "N", "eigenvalues")
 def _cell(rows: Sequence[Row]) -> str:
     if not rows:
         return ""
-    known = [row for row in rows if row.found.bits]
+    known = [row for row in rows if row.digits.bits]
     if not known:
         return "?"
-    least = {scalar: min(row.found.digits[scalar] for row in known) for scalar in FULL}
-    star = "*" if any(row.found.verdict == "formula" for row in known) else ""
+    least = {scalar: min(row.digits.digits[scalar] for row in known) for scalar in FULL}
+    star = "*" if any(row.digits.verdict == "formula" for row in known) else ""
     return f"{least[FLOAT64]:.0f}{star} / {least[FLOAT32]:.0f}"
 
 

@@ -31,28 +31,30 @@ _SAID = {
 }
 
 
-def floquet_json(system: System, found: Judged) -> str:
+def floquet_json(system: System, floquet: Judged) -> str:
     """The file's text."""
-    return written(doc.Floquet.from_result(found, system=system.name, description_sha256=meaning(system)))
+    return written(doc.Floquet.from_result(floquet, system=system.name, description_sha256=meaning(system)))
 
 
-def sentences(found: Judged) -> Iterator[tuple[str, str]]:
+def sentences(floquet: Judged) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    if found.rests:
-        yield Message("motion"), _SAID[found.word]
+    if floquet.rests:
+        yield Message("motion"), _SAID[floquet.word]
     else:
-        told = "that the unperturbed motion satisfies the equations is verified numerically, not proved"
-        yield Message("warning"), Message(told)
-        yield Message("motion"), Message("if it does: [[verdict]]", verdict=_SAID[found.word])
-    period = found.period.str(15, radius=False)
-    told = "[[period]] is a period of the coefficients (2 pi over [[frequency]])"
-    yield Message("period"), Message(told, period=period, frequency=found.frequency)
-    for one in found.multipliers:
-        where = Message("size between [[least]] and [[most]]", least=f"{one.least:.12g}", most=f"{one.greatest:.12g}")
-        told = Message("on the unit circle") if one.on_circle else where
-        yield Message("multiplier"), joined((_shown(one), told), "; ")
-    told = "enclosed in balls with proved remainders, [[steps]]"
-    yield Message("how"), Message(told, steps=Counted(found.steps, "step"))
+        text = "that the unperturbed motion satisfies the equations is verified numerically, not proved"
+        yield Message("warning"), Message(text)
+        yield Message("motion"), Message("if it does: [[verdict]]", verdict=_SAID[floquet.word])
+    period = floquet.period.str(15, radius=False)
+    text = "[[period]] is a period of the coefficients (2 pi over [[frequency]])"
+    yield Message("period"), Message(text, period=period, frequency=floquet.frequency)
+    for multiplier in floquet.multipliers:
+        where = Message(
+            "size between [[least]] and [[most]]", least=f"{multiplier.least:.12g}", most=f"{multiplier.greatest:.12g}"
+        )
+        text = Message("on the unit circle") if multiplier.on_circle else where
+        yield Message("multiplier"), joined((_shown(multiplier), text), "; ")
+    text = "enclosed in balls with proved remainders, [[steps]]"
+    yield Message("how"), Message(text, steps=Counted(floquet.steps, "step"))
 
 
 def _shown(multiplier: Multiplier) -> str:

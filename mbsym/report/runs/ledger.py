@@ -41,7 +41,7 @@ class LedgerLine:
     standing: str = NOT_NEEDED
 
 
-def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
+def ledger_lines(ledger: Ledger) -> tuple[LedgerLine, ...]:
     """Every saving as text; measures that come out equal, or nearly as quick, are left to the files."""
     return tuple(
         LedgerLine(
@@ -52,20 +52,20 @@ def ledger_lines(found: Ledger) -> tuple[LedgerLine, ...]:
             tuple(_compared(measure) for measure in item.measures if measure.clear),
             item.standing,
         )
-        for item in found.savings
+        for item in ledger.savings
     )
 
 
-def ledger_blocks(found: Ledger) -> Iterator[Block]:
+def ledger_blocks(ledger: Ledger) -> Iterator[Block]:
     """What was left out, why that is safe, what it saved; apart, what nobody knows to be safe, and what is not."""
-    lines = ledger_lines(found)
+    lines = ledger_lines(ledger)
     for standing, title in _TITLES.items():
         own = [line for line in lines if line.standing == standing]
         if own or standing == NOT_NEEDED:
             yield Subheading((Graded(title, "bad") if standing == NEEDED else title,))
             yield Facts(tuple(map(_fact, own))) if own else paragraph("  ", Message("nothing"))
-    if found.unmeasured:
-        kinds = joined(map(worded, found.unmeasured), ", ")
+    if ledger.unmeasured:
+        kinds = joined(map(worded, ledger.unmeasured), ", ")
         yield paragraph(Graded(Message("not measured, beyond the budget: [[kinds]]", kinds=kinds), "open"))
 
 
@@ -96,10 +96,10 @@ def _number(value: float, item: Measure) -> str:
     return f"{value:.3g}" if item.unit == SECONDS else str(int(value))
 
 
-def ledger_csv(found: Ledger) -> str:
+def ledger_csv(ledger: Ledger) -> str:
     """One row a measure."""
     rows: list[Sequence[object]] = []
-    for saving in found.savings:
+    for saving in ledger.savings:
         head = (saving.kind, "; ".join(saving.what), saving.why, saving.how)
         for item in saving.measures:
             numbers = (f"{x:.6g}" if item.unit == SECONDS else int(x) for x in (item.without, item.taken, item.saved))
@@ -107,9 +107,9 @@ def ledger_csv(found: Ledger) -> str:
     return text_table(COLUMNS, rows)
 
 
-def ledger_data(found: Ledger) -> doc.Ledger:
+def ledger_data(ledger: Ledger) -> doc.Ledger:
     """The ledger as a part of results.json."""
-    return doc.Ledger(savings=[_saving(item) for item in found.savings], not_measured=list(found.unmeasured))
+    return doc.Ledger(savings=[_saving(item) for item in ledger.savings], not_measured=list(ledger.unmeasured))
 
 
 def _saving(item: Saving) -> doc.Saving:
@@ -117,7 +117,7 @@ def _saving(item: Saving) -> doc.Saving:
     return doc.Saving.from_result(item, measures=measures)
 
 
-def with_ledger(results: str, found: Ledger) -> str:
+def with_ledger(results: str, ledger: Ledger) -> str:
     """The text of ``results.json`` with the ledger in it."""
-    content = json.loads(results) | {"ledger": plain(ledger_data(found))}
+    content = json.loads(results) | {"ledger": plain(ledger_data(ledger))}
     return json.dumps(content, indent=2, sort_keys=True, ensure_ascii=False) + "\n"

@@ -21,33 +21,33 @@ from mbsym.report.runs.trajectory_csv import written
 from mbsym.source.yaml_writer import meaning
 
 
-def lyapunov_csv(found: Exponents) -> str:
-    names = [f"exponent_{k + 1}" for k in range(len(found.values))]
-    return written(["t", *names], [found.times, *found.history.T])
+def lyapunov_csv(exponents: Exponents) -> str:
+    names = [f"exponent_{k + 1}" for k in range(len(exponents.values))]
+    return written(["t", *names], [exponents.times, *exponents.history.T])
 
 
-def lyapunov_json(system: System, found: Exponents) -> str:
+def lyapunov_json(system: System, exponents: Exponents) -> str:
     """The file's text."""
     content = doc.Lyapunov.from_result(
-        found,
+        exponents,
         system=system.name,
         description_sha256=meaning(system),
-        exponents=list(zip(found.values, found.uncertainty, strict=True)),
-        largest=found.parting.name.lower().removesuffix("_over_this_time") if len(found.times) else None,
+        exponents=list(zip(exponents.values, exponents.uncertainty, strict=True)),
+        largest=exponents.parting.name.lower().removesuffix("_over_this_time") if len(exponents.times) else None,
     )
     return document(content)
 
 
-def lyapunov_figure(system: System, found: Exponents, formats: Sequence[str]) -> dict[str, bytes]:
+def lyapunov_figure(system: System, exponents: Exponents, formats: Sequence[str]) -> dict[str, bytes]:
     """Every exponent up to t against t."""
 
     def drawn() -> Figure:
         figure = Figure(figsize=(8, 4), layout="constrained")
         axes = figure.subplots()
-        for place, row in enumerate(found.history.T):
-            axes.plot(found.times, row, color=BLUE if place == 0 else GREY, linewidth=1.4 if place == 0 else 0.9)
+        for place, row in enumerate(exponents.history.T):
+            axes.plot(exponents.times, row, color=BLUE if place == 0 else GREY, linewidth=1.4 if place == 0 else 0.9)
         axes.axhline(0, color="#444444", linewidth=0.7)
-        axes.set_xlim(0, found.times[-1])
+        axes.set_xlim(0, exponents.times[-1])
         axes.set_xlabel("t")
         axes.set_ylabel("exponents up to t")
         figure.suptitle(f"{system.name}: Lyapunov exponents", fontsize=12, parse_math=False)
@@ -56,13 +56,13 @@ def lyapunov_figure(system: System, found: Exponents, formats: Sequence[str]) ->
     return pictures({"lyapunov": drawn}, formats)
 
 
-def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
+def sentences(exponents: Exponents) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    if not len(found.times):
+    if not len(exponents.times):
         yield Message("warning"), Message("nothing was measured")
         return
-    yield Message("motion"), _judged(found)
-    for place, (value, doubt) in enumerate(zip(found.values, found.uncertainty, strict=True)):
+    yield Message("motion"), _judged(exponents)
+    for place, (value, doubt) in enumerate(zip(exponents.values, exponents.uncertainty, strict=True)):
         if isfinite(doubt):
             message = Message(
                 "[[value]] +- [[doubt]] (95 %, statistics of this run only)", value=f"{value:.6g}", doubt=f"{doubt:.2g}"
@@ -70,29 +70,29 @@ def sentences(found: Exponents) -> Iterator[tuple[str, str]]:
         else:
             message = Message("[[value]], uncertainty not estimated", value=f"{value:.6g}")
         yield f"lambda {place + 1}", message
-    yield Message("time"), f"{found.time:g}"
-    if isfinite(found.sum_error):
+    yield Message("time"), f"{exponents.time:g}"
+    if isfinite(exponents.sum_error):
         yield (
             Message("check"),
             Message(
                 "the sum is [[sum]], the mean divergence of the equations [[divergence]]: they differ by [[error]]",
-                sum=f"{float(np.sum(found.values)):.3e}",
-                divergence=f"{found.divergence:.3e}",
-                error=f"{found.sum_error:.1e}",
+                sum=f"{float(np.sum(exponents.values)):.3e}",
+                divergence=f"{exponents.divergence:.3e}",
+                error=f"{exponents.sum_error:.1e}",
             ),
         )
 
 
-def _judged(found: Exponents) -> Message:
-    match found.parting:
-        case Parting.POSITIVE if found.linear:
+def _judged(exponents: Exponents) -> Message:
+    match exponents.parting:
+        case Parting.POSITIVE if exponents.linear:
             return Message(
                 "neighbouring motions part exponentially over this time; the equations are linear: all of their "
                 "motions part alike, and none is chaotic"
             )
-        case Parting.POSITIVE if found.resting:
+        case Parting.POSITIVE if exponents.resting:
             return Message("the motion is a rest, and neighbouring motions leave it exponentially over this time")
-        case Parting.POSITIVE if found.planar:
+        case Parting.POSITIVE if exponents.planar:
             return Message(
                 "neighbouring motions part exponentially over this time; states of two dimensions and no time in the "
                 "equations: none of their motions is chaotic"
@@ -103,15 +103,15 @@ def _judged(found: Exponents) -> Message:
             )
         case Parting.NEGATIVE:
             return Message("neighbouring motions come together over this time")
-    bound = f"{found.regular:.2g}"
-    if found.linear:
+    bound = f"{exponents.regular:.2g}"
+    if exponents.linear:
         return Message(
             "the largest exponent is not distinguishable from zero, which takes three times its "
             "uncertainty and three times "
             "log(T)/T = [[bound]]; the equations are linear: none of their motions is chaotic",
             bound=bound,
         )
-    if found.planar:
+    if exponents.planar:
         return Message(
             "the largest exponent is not distinguishable from zero, which takes three times its "
             "uncertainty and three times "
@@ -119,7 +119,7 @@ def _judged(found: Exponents) -> Message:
             "chaotic",
             bound=bound,
         )
-    if found.falling:
+    if exponents.falling:
         return Message(
             "the largest exponent is not distinguishable from zero, which takes three times its "
             "uncertainty and three times "

@@ -20,21 +20,21 @@ from mbsym.simulation.motions import PeriodicMotion
 from mbsym.source.yaml_writer import meaning
 
 
-def orbit_csv(found: PeriodicMotion) -> str:
-    system = found.scenario.system
-    names = ("t", *found.orbit.names)
-    return written([marked(name, unit_of(system, name)) for name in names], [found.times, *found.states])
+def orbit_csv(motion: PeriodicMotion) -> str:
+    system = motion.scenario.system
+    names = ("t", *motion.orbit.names)
+    return written([marked(name, unit_of(system, name)) for name in names], [motion.times, *motion.states])
 
 
-def orbit_json(found: PeriodicMotion) -> str:
+def orbit_json(motion: PeriodicMotion) -> str:
     """The file's text."""
-    orbit, system = found.orbit, found.scenario.system
+    orbit, system = motion.orbit, motion.scenario.system
     content = doc.Orbit.from_result(
         orbit,
         system=system.name,
         description_sha256=meaning(system),
         initial=zip(orbit.names, map(float, orbit.state), strict=True),
-        repeats=found.repeats,
+        repeats=motion.repeats,
         turns={name: float(turn) for name, turn in zip(orbit.names, orbit.turns, strict=True) if turn},
         verified=(orbit.verified, orbit.verifier),
         multipliers=[(float(mu.real), float(mu.imag), float(abs(mu))) for mu in orbit.multipliers],
@@ -43,13 +43,13 @@ def orbit_json(found: PeriodicMotion) -> str:
     return document(content)
 
 
-def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
+def sentences(motion: PeriodicMotion) -> Iterator[tuple[str, str]]:
     """(title, text)."""
-    orbit = found.orbit
-    period, n = f"{orbit.period:.15g}", found.repeats
-    told = "[[period]], in which the motion is run through [[n]] times: it repeats after [[shorter]]"
+    orbit = motion.orbit
+    period, n = f"{orbit.period:.15g}", motion.repeats
+    text = "[[period]], in which the motion is run through [[n]] times: it repeats after [[shorter]]"
     shorter = f"{orbit.period / n:.15g}"
-    yield Message("period"), Message(told, period=period, n=n, shorter=shorter) if n > 1 else period
+    yield Message("period"), Message(text, period=period, n=n, shorter=shorter) if n > 1 else period
     yield Message("motion"), _judged(orbit)
     values = zip(orbit.names, orbit.state, strict=True)
     yield Message("state"), ", ".join(f"{name} = {value:.12g}" for name, value in values)
@@ -57,16 +57,16 @@ def sentences(found: PeriodicMotion) -> Iterator[tuple[str, str]]:
         by = (f"{name} = {orbit.turns[orbit.names.index(name)]:.12g}" for name in orbit.shifted)
         yield Message("shifted by"), ", ".join(by)
     steps = Counted(orbit.steps, "Newton step")
-    told = "to [[size]] of the state's size after [[steps]]"
-    yield Message("closes"), Message(told, size=f"{orbit.closure:.1e}", steps=steps)
+    text = "to [[size]] of the state's size after [[steps]]"
+    yield Message("closes"), Message(text, size=f"{orbit.closure:.1e}", steps=steps)
     if isfinite(orbit.verified):
-        told = "numerically: by [[method]] the same motion closes to [[size]]"
-        yield Message("verified"), Message(told, method=orbit.verifier, size=f"{orbit.verified:.1e}")
+        text = "numerically: by [[method]] the same motion closes to [[size]]"
+        yield Message("verified"), Message(text, method=orbit.verifier, size=f"{orbit.verified:.1e}")
     else:
         yield Message("warning"), Message("no other method could verify it")
     listed = ", ".join(_shown(mu) for mu in orbit.multipliers)
-    told = "[[values]] (to about [[error]])"
-    yield Message("multipliers"), Message(told, values=listed, error=f"{orbit.uncertainty:.0e}")
+    text = "[[values]] (to about [[error]])"
+    yield Message("multipliers"), Message(text, values=listed, error=f"{orbit.uncertainty:.0e}")
     for reason in orbit.reasons:
         yield Message("one is 1"), reason.reason
 
@@ -79,11 +79,11 @@ def _judged(orbit: Orbit) -> Message:
         return Message("all multipliers are 1 for a reason: they tell nothing of stability")
     largest = float(others[0])
     if largest > 1 + doubt:
-        told = "unstable in floating point: a multiplier of size [[size]]; not proved"
-        return Message(told, size=f"{largest:.6g}")
+        text = "unstable in floating point: a multiplier of size [[size]]; not proved"
+        return Message(text, size=f"{largest:.6g}")
     if largest < 1 - doubt:
-        told = "neighbouring motions come nearer, in floating point: the largest other multiplier is [[size]]"
-        return Message(told, size=f"{largest:.6g}")
+        text = "neighbouring motions come nearer, in floating point: the largest other multiplier is [[size]]"
+        return Message(text, size=f"{largest:.6g}")
     return Message(
         "no multiplier is distinguishable from one on the unit circle or inside: numbers decide nothing "
         "about stability here"

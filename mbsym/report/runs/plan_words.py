@@ -135,7 +135,7 @@ def item_words(item: Item, plan: Plan) -> Message:
     """``dop853, tolerance 3.3e-08, 91 µs a run: ...; rk45 3.3e-08: error 6.6e-07, about 110 µs``."""
     chosen: str = worded(item.chosen)
     if item.kind == Kind.METHOD:
-        fineness = next(one for one in plan.items if one.kind == Kind.FINENESS)
+        fineness = next(choice for choice in plan.items if choice.kind == Kind.FINENESS)
         text, seconds = "[[method]], [[fineness]], [[seconds]] a run", duration(plan.seconds)
         chosen = Message(text, method=item.chosen, fineness=fineness.chosen, seconds=seconds)
     if item.kind in (Kind.MASSES, Kind.RESTING, Kind.PARTS, Kind.WELDED):
@@ -172,28 +172,28 @@ def alternative_words(other: Alternative, plan: Plan) -> Message:
 
 def repeating_options(request: Request) -> list[str]:
     """The options after FILE, beside --set and those of the output, that repeat a settled run without choosing."""
-    found = ["--time", _number(request.time)]
-    found += ["--samples", str(request.samples)] if request.samples is not None else []
-    found += ["--every", _number(request.every)] if request.every is not None else []
-    found += ["--method", request.method]
-    found += ["--tolerance", _number(request.tolerance)] if request.tolerance is not None else []
-    found += ["--step", _number(request.step)] if request.step is not None else []
-    found += ["--max-step", _number(request.longest)] if request.longest is not None else []
-    found += ["--arithmetic", request.arithmetic] if request.arithmetic != "float64" else []
-    found += ["--gravity", str(request.model.gravity)] if request.model.gravity is not None else []
-    found += ["--linear"] if request.model.linear else []
-    found += [word for name in request.model.without for word in ("--without", name)]
-    found += ["--whole"] if request.whole else []
-    found += ["--certify", _number(request.certify)] if request.certify is not None else []
-    found += ["--step-limit", str(request.step_limit)] if request.step_limit != Setting.step_limit else []
-    found += ["--invariants"] if request.invariants else []
+    options = ["--time", _number(request.time)]
+    options += ["--samples", str(request.samples)] if request.samples is not None else []
+    options += ["--every", _number(request.every)] if request.every is not None else []
+    options += ["--method", request.method]
+    options += ["--tolerance", _number(request.tolerance)] if request.tolerance is not None else []
+    options += ["--step", _number(request.step)] if request.step is not None else []
+    options += ["--max-step", _number(request.longest)] if request.longest is not None else []
+    options += ["--arithmetic", request.arithmetic] if request.arithmetic != "float64" else []
+    options += ["--gravity", str(request.model.gravity)] if request.model.gravity is not None else []
+    options += ["--linear"] if request.model.linear else []
+    options += [word for name in request.model.without for word in ("--without", name)]
+    options += ["--whole"] if request.whole else []
+    options += ["--certify", _number(request.certify)] if request.certify is not None else []
+    options += ["--step-limit", str(request.step_limit)] if request.step_limit != Setting.step_limit else []
+    options += ["--invariants"] if request.invariants else []
     watched = request.events
-    found += [word for event in watched.events for word in ("--event", _written(event))]
-    found += [word for stop in watched.stops for word in ("--stop", _written(stop))]
+    options += [word for event in watched.events for word in ("--event", _written(event))]
+    options += [word for stop in watched.stops for word in ("--stop", _written(stop))]
     if watched.section is not None:
         axes = ", ".join(axis.text for axis in watched.section.axes)
-        found += ["--section", _written(watched.section.condition), "--axes", axes]
-    return found
+        options += ["--section", _written(watched.section.condition), "--axes", axes]
+    return options
 
 
 def _written(condition: Condition) -> str:

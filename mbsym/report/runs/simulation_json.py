@@ -93,47 +93,47 @@ def _units(run: Simulation) -> dict[str, str]:
     return units_by_name(run.system, [*energies, *((invariant.column, invariant.unit) for invariant in run.invariants)])
 
 
-def _resting(found: Reduced | None) -> doc.Resting | None:
+def _resting(reduced_system: Reduced | None) -> doc.Resting | None:
     """Which coordinates rest, how that is known, and the operations of one right-hand side with and without them."""
-    if found is None:
+    if reduced_system is None:
         return None
-    whole, reduced = found.operations
+    whole, reduced = reduced_system.operations
     return doc.Resting(
-        coordinates=list(found.names),
-        how=found.reduction.how,
-        taken_out=found.proved,
-        operations=doc.Operations(whole=whole, reduced=reduced) if found.proved else UNSET,
+        coordinates=list(reduced_system.names),
+        how=reduced_system.reduction.how,
+        taken_out=reduced_system.proved,
+        operations=doc.Operations(whole=whole, reduced=reduced) if reduced_system.proved else UNSET,
     )
 
 
-def _last(found: Trajectory) -> dict[str, Any]:
+def _last(trajectory: Trajectory) -> dict[str, Any]:
     """The last state to the last bit; numbers of more digits than JSON's readers keep are text."""
-    names, state = [*found.system.coordinates, *found.system.velocities], found.states[:, -1]
+    names, state = [*trajectory.system.coordinates, *trajectory.system.velocities], trajectory.states[:, -1]
     exact = [np.format_float_scientific(x) for x in state] if state.dtype == np.longdouble else map(float, state)
     return dict(zip(names, exact, strict=True))
 
 
-def _ended(found: Trajectory) -> doc.Ended | None:
+def _ended(trajectory: Trajectory) -> doc.Ended | None:
     """Why and where a trajectory ended early."""
-    if found.interrupted:
-        return doc.Ended(kind="interrupted", message="stopped by the user", time=float(found.times[-1]))
-    if found.breakdown is None:
+    if trajectory.interrupted:
+        return doc.Ended(kind="interrupted", message="stopped by the user", time=float(trajectory.times[-1]))
+    if trajectory.breakdown is None:
         return None
-    names = [*found.system.coordinates, *found.system.velocities]
-    state: dict[str, float | str] = dict(zip(names, map(float, found.breakdown.state), strict=True))
-    ended = found.breakdown
+    names = [*trajectory.system.coordinates, *trajectory.system.velocities]
+    state: dict[str, float | str] = dict(zip(names, map(float, trajectory.breakdown.state), strict=True))
+    ended = trajectory.breakdown
     return doc.Ended.from_result(ended, time=float(ended.time), state=state)
 
 
 def versions() -> dict[str, str]:
     """Of Python and of the packages that the numbers depend on."""
-    found = {"python": platform.python_version()}
+    version_numbers = {"python": platform.python_version()}
     for name in PACKAGES:
         try:
-            found[name] = version(name)
+            version_numbers[name] = version(name)
         except PackageNotFoundError:
             continue
-    return found
+    return version_numbers
 
 
 def finite(value: Any) -> Any:

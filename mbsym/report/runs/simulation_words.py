@@ -26,50 +26,50 @@ if TYPE_CHECKING:
     from mbsym.simulation import Simulation
 
 
-def standing_words(found: Conservation) -> Message:
+def standing_words(conservation: Conservation) -> Message:
     """``conserved (proved)``, ``not conserved``, ``undecided (why)``."""
-    if found.standing in (Standing.PROVED, Standing.VERIFIED):
-        return Message("conserved ([[how]])", how=found.standing)
-    if found.doubt is not None:
-        return Message("[[standing]] ([[why]])", standing=found.standing, why=found.doubt)
-    return Message("[[standing]]", standing=found.standing)
+    if conservation.standing in (Standing.PROVED, Standing.VERIFIED):
+        return Message("conserved ([[how]])", how=conservation.standing)
+    if conservation.doubt is not None:
+        return Message("[[standing]] ([[why]])", standing=conservation.standing, why=conservation.doubt)
+    return Message("[[standing]]", standing=conservation.standing)
 
 
-def conservation_line(found: Conservation, error: float = 0.0) -> Message:
+def conservation_line(conservation: Conservation, error: float = 0.0) -> Message:
     """With how far the run keeps it, and what that is a part of: a drift is an error, a change is none.
 
     What other motions change may rest along this one, as T - U does at the bottom of a hoop that turns.  ``error`` is
     what the run's own errors make of the quantity: a change that is no larger is not told from it.
     """
-    said = standing_words(found)
-    if found.standing is Standing.CHANGING and found.change == 0:
+    said = standing_words(conservation)
+    if conservation.standing is Standing.CHANGING and conservation.change == 0:
         return Message("[[standing]] in general; constant along this run", standing=said)
-    if not isfinite(found.change):
+    if not isfinite(conservation.change):
         return said
-    if found.standing in (Standing.PROVED, Standing.VERIFIED):
-        return Message("[[standing]]; largest drift [[measured]]", standing=said, measured=_measured(found))
-    if found.standing is Standing.CHANGING and found.change <= error / found.scale:
+    if conservation.standing in (Standing.PROVED, Standing.VERIFIED):
+        return Message("[[standing]]; largest drift [[measured]]", standing=said, measured=_measured(conservation))
+    if conservation.standing is Standing.CHANGING and conservation.change <= error / conservation.scale:
         text = "[[standing]]; the change in this run, [[measured]], is not told from its error"
-        return Message(text, standing=said, measured=_measured(found))
-    return Message("[[standing]]; largest change [[measured]]", standing=said, measured=_measured(found))
+        return Message(text, standing=said, measured=_measured(conservation))
+    return Message("[[standing]]; largest change [[measured]]", standing=said, measured=_measured(conservation))
 
 
-def _measured(found: Conservation) -> Message:
+def _measured(conservation: Conservation) -> Message:
     """``1e-12 times the largest kinetic energy``."""
-    return Message("[[change]] times [[size]]", change=f"{found.change:.1e}", size=found.measure)
+    return Message("[[change]] times [[size]]", change=f"{conservation.change:.1e}", size=conservation.measure)
 
 
 def energy_lines(run: Simulation) -> Iterator[tuple[str, Message]]:
     """(which, what is said of it): T2 - T0 - U and T - U, which are the same where nothing moves as prescribed."""
-    given = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
+    forced = any(isinstance(load, GeneralizedForce | PointForce | Torque) for load in run.system.loads)
 
-    def told(found: Conservation, place: int) -> Message:
+    def told(conservation: Conservation, place: int) -> Message:
         error = 0.0
-        if found.standing is Standing.CHANGING and len(run.times):
+        if conservation.standing is Standing.CHANGING and len(run.times):
             points = np.vstack([run.trajectory.times, run.trajectory.states])
             error = swayed(run.dynamics.energies, place, points, _errors(run))
-        line = conservation_line(found, error)
-        if found.standing is not Standing.CHANGING or not given:
+        line = conservation_line(conservation, error)
+        if conservation.standing is not Standing.CHANGING or not forced:
             return line
         return Message("[[line]] (U has no part of forces that are given as such)", line=line)
 
@@ -90,12 +90,14 @@ def _errors(run: Simulation) -> list[float]:
     return [least * float(size) for size in np.max(np.abs(states), axis=1)]
 
 
-def invariant_line(found: Conservation) -> Message:
+def invariant_line(conservation: Conservation) -> Message:
     """``momentum of psi (proved): largest drift 1e-12 times the size of its terms``."""
-    if found.standing in (Standing.PROVED, Standing.VERIFIED):
+    if conservation.standing in (Standing.PROVED, Standing.VERIFIED):
         text = "[[quantity]] ([[how]]): largest drift [[measured]]"
-        return Message(text, quantity=found.quantity, how=found.standing, measured=_measured(found))
-    return Message("[[quantity]]: [[said]]", quantity=found.quantity, said=conservation_line(found))
+        return Message(
+            text, quantity=conservation.quantity, how=conservation.standing, measured=_measured(conservation)
+        )
+    return Message("[[quantity]]: [[said]]", quantity=conservation.quantity, said=conservation_line(conservation))
 
 
 def setting_words(setting: Setting, scalar: str) -> Message:
@@ -109,30 +111,30 @@ def setting_words(setting: Setting, scalar: str) -> Message:
     return joined([*messages, Message(scalar)], ", ")
 
 
-def error_lines(found: ErrorEstimate | NoEstimate) -> Iterator[Message]:
+def error_lines(estimate: ErrorEstimate | NoEstimate) -> Iterator[Message]:
     """The error in words; nothing where none was asked for or the run says itself why it ended."""
-    if isinstance(found, NoEstimate):
-        if found.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.NOTHING, Lacking.INTERRUPTED):
-            yield Message("not estimated: [[why]]", why=found.why)
+    if isinstance(estimate, NoEstimate):
+        if estimate.why not in (Lacking.NOT_ASKED, Lacking.NOT_WHOLE, Lacking.NOTHING, Lacking.INTERRUPTED):
+            yield Message("not estimated: [[why]]", why=estimate.why)
         return
-    better = joined([found.against.method, setting_words(found.against.setting, found.against.scalar)], ", ")
+    better = joined([estimate.against.method, setting_words(estimate.against.setting, estimate.against.scalar)], ", ")
     against = Message("of each quantity's size in the whole motion; against [[run]]", run=better)
-    largest, final = f"{found.largest:.1e}", f"{found.final:.1e}"
-    if found.parted is not None:
+    largest, final = f"{estimate.largest:.1e}", f"{estimate.final:.1e}"
+    if estimate.parted is not None:
         text = (
             "unknown: this run and a better one have parted by t = [[time]], differ by up to [[error]], and nothing is "
             "known of either from there on ([[against]])"
         )
-        yield Message(text, error=largest, time=f"{found.parted:.4g}", against=against)
-    elif found.largest <= found.rounding:
+        yield Message(text, error=largest, time=f"{estimate.parted:.4g}", against=against)
+    elif estimate.largest <= estimate.rounding:
         text = "no more than the rounding of one number, [[rounding]] ([[against]])"
-        yield Message(text, rounding=f"{found.rounding:.1e}", against=against)
-    elif found.largest > 2 * found.final:
+        yield Message(text, rounding=f"{estimate.rounding:.1e}", against=against)
+    elif estimate.largest > 2 * estimate.final:
         text = "about [[error]] at the end, [[worst]] at worst ([[against]])"
         yield Message(text, error=final, worst=largest, against=against)
     else:
         yield Message("about [[error]] at the end ([[against]])", error=final, against=against)
-    resting = [q for q in found.quantities if q.rests]
+    resting = [q for q in estimate.quantities if q.rests]
     if not resting:
         return
     names, error = ", ".join(q.name for q in resting), max(q.largest for q in resting)
@@ -189,29 +191,32 @@ def quality(run: Simulation) -> tuple[list[Message], list[Message], bool]:
     return list(warnings(run.conservation, run.error)), messages, isinstance(run.error, NoEstimate)
 
 
-def error_json(found: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:
+def error_json(estimate: ErrorEstimate | NoEstimate) -> doc.Estimate | doc.NoEstimate:
     """The estimate with what it was made of, or why there is none."""
-    if isinstance(found, NoEstimate):
-        return doc.NoEstimate.from_result(found, available=False)
+    if isinstance(estimate, NoEstimate):
+        return doc.NoEstimate.from_result(estimate, available=False)
     return doc.Estimate.from_result(
-        found,
+        estimate,
         available=True,
         how="better run",
-        over=(0.0, found.compared.end, found.compared.points, found.compared.followed),
-        quantities={q.name: q for q in found.quantities},
+        over=(0.0, estimate.compared.end, estimate.compared.points, estimate.compared.followed),
+        quantities={q.name: q for q in estimate.quantities},
     )
 
 
 def inputs_line(scenario: Scenario) -> Message:
     """``F = sin(3*t); w = 0 (held, as on the unperturbed motion)``: what every input is in a run."""
-    laws = {one: Message("[[name]] = [[law]]", name=one.name, law=text(one.law)) for one in scenario.inputs}
+    laws = {
+        driven_input: Message("[[name]] = [[law]]", name=driven_input.name, law=text(driven_input.law))
+        for driven_input in scenario.inputs
+    }
     held = "[[law]] (held, as on the unperturbed motion)"
-    return joined([law if one.asked else Message(held, law=law) for one, law in laws.items()], "; ")
+    return joined([law if driven_input.asked else Message(held, law=law) for driven_input, law in laws.items()], "; ")
 
 
 def laws_json(scenario: Scenario) -> dict[str, str]:
     """What every input is in a run, as formulas."""
-    return {one.name: text(one.law) for one in scenario.inputs}
+    return {driven_input.name: text(driven_input.law) for driven_input in scenario.inputs}
 
 
 # What is said of switches and narrow features on the way of a run: for the terminal and for ``simulation.json``.
@@ -241,11 +246,11 @@ def passed_over(run: Simulation, file: str) -> Iterator[Message]:
     if passed is None:
         return
     seen: set[int | None] = set()
-    for one in passed.narrow:
-        if one.followed or one.place in seen:
+    for transient in passed.narrow:
+        if transient.followed or transient.place in seen:
             continue
-        seen.add(one.place)
-        yield _told(run, one, file)
+        seen.add(transient.place)
+        yield _told(run, transient, file)
     if passed.unresolved:
         words = (
             "in the step at t = [[time]] changes of side follow one another too quickly to be told apart: [[command]]"
@@ -254,15 +259,17 @@ def passed_over(run: Simulation, file: str) -> Iterator[Message]:
         yield Message(words, time=f"{passed.unresolved[0]:.6g}", command=command)
 
 
-def _told(run: Simulation, one: Narrow, file: str) -> Message:
-    expression = None if one.place is None else source_of(run.dynamics, one.place)
+def _told(run: Simulation, transient: Narrow, file: str) -> Message:
+    expression = None if transient.place is None else source_of(run.dynamics, transient.place)
     what = Message("a load") if expression is None else text(expression)
     if expression is not None and expression.span is not None:
         where = "[[what]] (line [[line]], column [[column]])"
         what = Message(where, what=what, line=expression.span.line, column=expression.span.column)
     words = "[[what]] changes within [[width]] at t = [[time]], and a step of [[step]] passed it: [[command]]"
-    width, time, step = f"{one.width:.2g}", f"{one.time:.6g}", f"{one.step:.2g}"
-    return Message(words, what=what, width=width, time=time, step=step, command=_command(run, file, one.width / 4))
+    width, time, step = f"{transient.width:.2g}", f"{transient.time:.6g}", f"{transient.step:.2g}"
+    return Message(
+        words, what=what, width=width, time=time, step=step, command=_command(run, file, transient.width / 4)
+    )
 
 
 def _command(run: Simulation, file: str, step: float) -> str:

@@ -150,14 +150,14 @@ def _between(times: Any, step: float) -> bool:
     return not np.allclose(passed, np.round(passed), rtol=1e-12, atol=1e-6)
 
 
-def _rest_line(found: Reduced) -> Message:
+def _rest_line(reduced_system: Reduced) -> Message:
     """What was taken out of the integration, how it is known, and what that saved."""
-    names, how = ", ".join(found.names), found.reduction.how
-    if not found.proved:
+    names, how = ", ".join(reduced_system.names), reduced_system.reduction.how
+    if not reduced_system.proved:
         return Message("[[names]] ([[how]], not proved): integrated all the same", names=names, how=how)
-    (whole, less), n = found.operations, found.whole.size
+    (whole, less), n = reduced_system.operations, reduced_system.whole.size
     text = (
         "[[names]] (proved): [[count]] of [[all]] coordinates integrated, [[less]] operations a right-hand side "
         "instead of [[whole]]"
     )
-    return Message(text, names=names, count=n - len(found.names), all=n, less=less, whole=whole)
+    return Message(text, names=names, count=n - len(reduced_system.names), all=n, less=less, whole=whole)

@@ -108,8 +108,13 @@ def sweep_json(
         stable=_share(totals.stable(random)) if judged else None,
         singly=totals.singly if judged else None,
         ranges=[
-            doc.Range.from_result(one, least=finite(one.least), mean=finite(one.mean), greatest=finite(one.greatest))
-            for one in totals.ranges()
+            doc.Range.from_result(
+                column_range,
+                least=finite(column_range.least),
+                mean=finite(column_range.mean),
+                greatest=finite(column_range.greatest),
+            )
+            for column_range in totals.ranges()
         ],
         dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
         left_out=list(left_out),
@@ -117,10 +122,12 @@ def sweep_json(
     return written(content)
 
 
-def _variation(one: Variation) -> doc.Swept:
-    if isinstance(one, Grid):
-        return doc.Swept(name=one.name, kind="grid", low=one.low, high=one.high, count=one.count)
-    return doc.Swept.from_result(one, first=one.first, second=one.second)
+def _variation(variation: Variation) -> doc.Swept:
+    if isinstance(variation, Grid):
+        return doc.Swept(
+            name=variation.name, kind="grid", low=variation.low, high=variation.high, count=variation.count
+        )
+    return doc.Swept.from_result(variation, first=variation.first, second=variation.second)
 
 
 def _share(share: Share) -> doc.Share:
@@ -146,26 +153,30 @@ def sentences(
         for share in totals.shares(random):
             yield Message(share.word), _sweep_words_share(share)
         if random:
-            told = "[[share]]; stable means proved to be, and nothing weaker"
-            yield Message("P(stable)"), Message(told, share=_sweep_words_share(totals.stable(random)))
+            text = "[[share]]; stable means proved to be, and nothing weaker"
+            yield Message("P(stable)"), Message(text, share=_sweep_words_share(totals.stable(random)))
         if totals.singly:
-            told = "[[points]] decided one by one, exactly"
-            yield Message("near borders"), Message(told, points=Counted(totals.singly, "point"))
-    for found in totals.ranges():
-        gaps = {"least": f"{found.least:.6g}", "most": f"{found.greatest:.6g}", "mean": f"{found.mean:.6g}"}
-        told = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
-        if found.missing:
-            told = Message("[[range]]; none at [[points]]", range=told, points=Counted(found.missing, "point"))
-        yield found.column, told
+            text = "[[points]] decided one by one, exactly"
+            yield Message("near borders"), Message(text, points=Counted(totals.singly, "point"))
+    for column_range in totals.ranges():
+        gaps = {
+            "least": f"{column_range.least:.6g}",
+            "most": f"{column_range.greatest:.6g}",
+            "mean": f"{column_range.mean:.6g}",
+        }
+        text = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
+        if column_range.missing:
+            text = Message("[[range]]; none at [[points]]", range=text, points=Counted(column_range.missing, "point"))
+        yield column_range.column, text
     yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:
-        told = "[[values]] (rank correlation with [[column]]: 0, none; 1 or -1, it alone decides)"
+        text = "[[values]] (rank correlation with [[column]]: 0, none; 1 or -1, it alone decides)"
         if columns[0].words:
-            told = "[[values]] (0: it makes no difference, 1: it alone decides; distance of stable points from others)"
+            text = "[[values]] (0: it makes no difference, 1: it alone decides; distance of stable points from others)"
         values = ", ".join(f"{name} {value:.2f}" for name, value in pairs)
         gaps = {} if columns[0].words else {"column": columns[0].name}
-        yield Message("depends on"), Message(told, values=values, **gaps)
+        yield Message("depends on"), Message(text, values=values, **gaps)
     if left_out:
         yield Message("not looked at"), ", ".join(left_out)
 
@@ -173,8 +184,8 @@ def sentences(
 def _how(points: Points) -> str:
     if points.grids:
         return f"({' x '.join(str(grid.count) for grid in points.grids)})"
-    told = "drawn at random, seed [[seed]]" if points.sampling == "random" else "of Sobol's sequence, seed [[seed]]"
-    return Message(told, seed=points.seed)
+    text = "drawn at random, seed [[seed]]" if points.sampling == "random" else "of Sobol's sequence, seed [[seed]]"
+    return Message(text, seed=points.seed)
 
 
 def _sweep_words_share(share: Share) -> str:

@@ -27,12 +27,12 @@ STRAYED = ("constraint_drift", "constraint_velocity_drift")
 MODEL_COLUMNS = ("model", "neglected", "error", "operations", "evaluations", "seconds", "trouble")
 
 
-def tradeoff_csv(found: Tradeoff, time: str | None = None) -> str:
+def tradeoff_csv(tradeoff: Tradeoff, time: str | None = None) -> str:
     """One row a run; an empty field where there is no number.  ``time`` is the unit of the step, if it is known."""
-    tied = constrained(found.rows)
+    tied = constrained(tradeoff.rows)
     names = _with_strayed(COLUMNS, STRAYED if tied else ())
     return text_table(
-        [marked(name, time if name == "step" else "") for name in names], (_row(row, tied) for row in found.rows)
+        [marked(name, time if name == "step" else "") for name in names], (_row(row, tied) for row in tradeoff.rows)
     )
 
 
@@ -99,15 +99,15 @@ def _number(value: float) -> str:
     return f"{value:.17g}" if isfinite(value) else ""
 
 
-def compared(found: Sequence[tuple[str, Tradeoff, float]]) -> list[tuple[str, ...]]:
+def compared(tradeoffs: Sequence[tuple[str, Tradeoff, float]]) -> list[tuple[str, ...]]:
     """Cells for the terminal, a line a scene (name, what was measured, target): what reaches the target in least time.
 
     Where nothing does it is the most accurate setting; nothing is said of a scene of which no run came to the end.
     """
     lines = []
-    for name, trade, target in found:
+    for name, trade, target in tradeoffs:
         best = trade.cheapest(target) if target >= trade.smallest_judged else None
-        row = best or min(trade.rows, key=lambda one: one.error, default=None)
+        row = best or min(trade.rows, key=lambda run: run.error, default=None)
         if row is None or not isfinite(row.error):
             lines.append((name, *[""] * 7, Message("no")))
             continue

@@ -39,23 +39,23 @@ BLOCK = 10_000
 
 
 def trajectory_parts(
-    found: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
+    trajectory: Trajectory, more: Mapping[str, Any] | None = None, units: Mapping[str, str | None] | None = None
 ) -> Iterator[str]:
     """The file's text in parts, of which only one is held at a time.
 
     ``more`` maps names of further columns to their values, of shape (m,), ``units`` to theirs.
     """
-    further, natural = dict(more or {}), found.generalized_energy is found.energy
-    known = column_units(found.system, natural) | dict(units or {})
-    names = [marked(name, known.get(name)) for name in (*columns(found.system, natural), *further)]
-    if found.table is not None:
+    further, natural = dict(more or {}), trajectory.generalized_energy is trajectory.energy
+    known = column_units(trajectory.system, natural) | dict(units or {})
+    names = [marked(name, known.get(name)) for name in (*columns(trajectory.system, natural), *further)]
+    if trajectory.table is not None:
         own = ("energy",) if natural else ("energy", "generalized_energy")
         yield header(names)
-        for points, values in found.table.blocks():
+        for points, values in trajectory.table.blocks():
             yield rows([*points, *(values[name] for name in (*own, "relative_drift", *further))], True)
         return
-    energies = [found.energy] if natural else [found.energy, found.generalized_energy]
-    table = [found.times, *found.states, *energies, found.drift, *further.values()]
+    energies = [trajectory.energy] if natural else [trajectory.energy, trajectory.generalized_energy]
+    table = [trajectory.times, *trajectory.states, *energies, trajectory.drift, *further.values()]
     yield from parts(names, table)
 
 
@@ -135,10 +135,10 @@ def bodies_parts(blocks: Iterable[BodyMotions], system: System | None = None) ->
         begun = True
 
 
-def _table(found: BodyMotions, system: System | None) -> tuple[list[str], list[Any]]:
-    kinetic = found.kinetic.sum(axis=0)
-    energies = {"kinetic_energy": kinetic, "force_function": found.force_function}
-    table = {"t": found.times, **dict(_columns(found)), **energies, "energy": kinetic - found.force_function}
+def _table(motions: BodyMotions, system: System | None) -> tuple[list[str], list[Any]]:
+    kinetic = motions.kinetic.sum(axis=0)
+    energies = {"kinetic_energy": kinetic, "force_function": motions.force_function}
+    table = {"t": motions.times, **dict(_columns(motions)), **energies, "energy": kinetic - motions.force_function}
     units = {} if system is None else _units(system)
     return [marked(name, units.get(_quantity(name))) for name in table], list(table.values())
 
@@ -164,9 +164,9 @@ def _quantity(name: str) -> str:
     return quantity[:-2] if quantity[-2:-1] == "_" and quantity[-1:].isdigit() else quantity
 
 
-def _columns(found: BodyMotions) -> Iterator[tuple[str, Any]]:
-    for k, name in enumerate(found.names):
+def _columns(motions: BodyMotions) -> Iterator[tuple[str, Any]]:
+    for k, name in enumerate(motions.names):
         for what, attribute in _VECTORS:
             for axis in range(3):
-                yield f"{name}.{what}_{axis + 1}", getattr(found, attribute)[k, axis]
-        yield f"{name}.kinetic_energy", found.kinetic[k]
+                yield f"{name}.{what}_{axis + 1}", getattr(motions, attribute)[k, axis]
+        yield f"{name}.kinetic_energy", motions.kinetic[k]

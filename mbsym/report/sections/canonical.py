@@ -48,8 +48,8 @@ def content(results: Results) -> Iterator[Block]:
         yield no_result(failure)
 
 
-def _of_routh(found: Routh, denominators: Sequence[tuple[Formula, Formula]]) -> Iterator[Block]:
-    ring = found.function.ring
+def _of_routh(routh: Routh, denominators: Sequence[tuple[Formula, Formula]]) -> Iterator[Block]:
+    ring = routh.function.ring
     yield Subheading((Said(TITLES["routh"]),))
     yield paragraph(
         say(
@@ -58,32 +58,32 @@ def _of_routh(found: Routh, denominators: Sequence[tuple[Formula, Formula]]) -> 
             r"velocities $\dot c$ of these in terms of $\beta$, belongs to the others, $s = ([[left]])$: "
             r"$\frac{d}{dt} \frac{\partial R}{\partial \dot s} - \frac{\partial R}{\partial s} = Q$, "
             r"that is $M^R \ddot s = f^R$.",
-            ignored=named(found.ignored),
-            momenta=Listed(tuple(Name(x, ring=ring) for x in found.momenta)),
-            left=named(found.coordinates),
+            ignored=named(routh.ignored),
+            momenta=Listed(tuple(Name(x, ring=ring) for x in routh.momenta)),
+            left=named(routh.coordinates),
         )
     )
     yield from equalities(denominators, "routh:Delta")
-    yield Display(Relation(Symbol("R"), "=", found.function), "routh")
-    yield Matrices(Symbol("M", upper="R"), found.mass_matrix, True, "routh:M")
-    yield from equalities(numbered(Symbol("f", upper="R"), found.forcing), "routh:f")
+    yield Display(Relation(Symbol("R"), "=", routh.function), "routh")
+    yield Matrices(Symbol("M", upper="R"), routh.mass_matrix, True, "routh:M")
+    yield from equalities(numbered(Symbol("f", upper="R"), routh.forcing), "routh:f")
     yield paragraph(
         Said(r"With $R = \frac12 \dot s \cdot M^R \dot s + b \cdot \dot s - W$, $W$ the reduced potential:")
     )
-    if all(x.is_zero for x in found.linear):
+    if all(x.is_zero for x in routh.linear):
         yield Display(Relation(Symbol("b"), "=", 0), "routh:b")
     else:
-        yield from equalities(numbered(Symbol("b"), found.linear), "routh:b")
-    yield Display(Relation(Symbol("W"), "=", found.reduced_potential), "routh:W")
+        yield from equalities(numbered(Symbol("b"), routh.linear), "routh:b")
+    yield Display(Relation(Symbol("W"), "=", routh.reduced_potential), "routh:W")
     yield paragraph(Said("Then by integration:"))
-    rates = zip((Name(x, 1) for x in found.ignored), found.ignored_rates, strict=True)
+    rates = zip((Name(x, 1) for x in routh.ignored), routh.ignored_rates, strict=True)
     yield from equalities(rates, "routh:rate")
 
 
 def _of_hamilton(
-    found: Hamilton, denominators: Sequence[tuple[Formula, Formula]], coordinates: Sequence[str]
+    hamilton: Hamilton, denominators: Sequence[tuple[Formula, Formula]], coordinates: Sequence[str]
 ) -> Iterator[Block]:
-    ring = found.hamiltonian.ring
+    ring = hamilton.hamiltonian.ring
     yield Subheading((Said(TITLES["hamilton"]),))
     yield paragraph(
         Said(
@@ -93,20 +93,20 @@ def _of_hamilton(
         )
     )
     yield from equalities(denominators, "canonical:Delta")
-    momenta = [Name(x, ring=ring) for x in found.momenta]
-    yield from equalities(zip(momenta, found.momenta_in_velocities, strict=True), "momentum")
-    yield Display(Relation(Symbol("H"), "=", found.hamiltonian), "H")
-    yield from equalities(zip((Name(x, 1) for x in coordinates), found.velocities, strict=True), "canonical:q")
-    yield from equalities(zip((replace(x, dots=1) for x in momenta), found.rates, strict=True), "canonical:p")
+    momenta = [Name(x, ring=ring) for x in hamilton.momenta]
+    yield from equalities(zip(momenta, hamilton.momenta_in_velocities, strict=True), "momentum")
+    yield Display(Relation(Symbol("H"), "=", hamilton.hamiltonian), "H")
+    yield from equalities(zip((Name(x, 1) for x in coordinates), hamilton.velocities, strict=True), "canonical:q")
+    yield from equalities(zip((replace(x, dots=1) for x in momenta), hamilton.rates, strict=True), "canonical:p")
 
 
-def _of_brackets(found: Brackets) -> Iterator[Block]:
+def _of_brackets(brackets: Brackets) -> Iterator[Block]:
     yield paragraph(Said("The first integrals of problem 7 in coordinates and momenta:"))
-    for k, (name, value) in enumerate(zip(found.names, found.formulas, strict=True), start=1):
+    for k, (name, value) in enumerate(zip(brackets.names, brackets.formulas, strict=True), start=1):
         yield Display(Relation(Symbol("F", str(k)), "=", value), f"canonical:F:{k}", (worded(name),))
-    if len(found.names) < 2:
+    if len(brackets.names) < 2:
         return
-    if found.in_involution:
+    if brackets.in_involution:
         yield paragraph(
             Said(
                 r"They are in involution: all Poisson brackets $\{F_i, F_j\} = \frac{\partial F_i}{\partial q} \cdot "
@@ -122,8 +122,8 @@ def _of_brackets(found: Brackets) -> Iterator[Block]:
             "written are zero, or follow by a change of sign."
         )
     )
-    for i, j in combinations(range(1, len(found.names) + 1), 2):
-        value = found.matrix[i - 1, j - 1]
+    for i, j in combinations(range(1, len(brackets.names) + 1), 2):
+        value = brackets.matrix[i - 1, j - 1]
         if not value.is_zero:
             bracket = Notation(rf"\{{F_{{{i}}}, F_{{{j}}}\}}")
             yield Display(Relation(bracket, "=", value), f"bracket:{i}:{j}")

@@ -29,7 +29,10 @@ def content(results: Results) -> Iterator[Block]:
             TableColumn(Said("second route"), 4.4),
             TableColumn(Said("agreement"), 3.4),
         ),
-        rows=tuple(((worded(one.name),), (worded(one.first),), (worded(one.second),), _outcome(one)) for one in checks),
+        rows=tuple(
+            ((worded(check.name),), (worded(check.first),), (worded(check.second),), _outcome(check))
+            for check in checks
+        ),
     )
 
 

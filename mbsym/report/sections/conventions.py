@@ -34,4 +34,4 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("conventions", Said("Conventions"))
     said = (_LINEAR,) if results.system.linear else (*_OF_BODIES, _LINEAR)
-    yield paragraph(*[part for one in said for part in (" ", one)][1:])
+    yield paragraph(*[part for sentence in said for part in (" ", sentence)][1:])

@@ -52,31 +52,33 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: Equations, system: System, write: Write) -> doc.Equations:
+def data(equations: Equations, system: System, write: Write) -> doc.Equations:
     """The section of results.json."""
-    tied, own = found.constraints, {}
-    if found.in_speeds:
-        kane = cast("SpeedEquations", found)
+    tied, own = equations.constraints, {}
+    if equations.in_speeds:
+        kane = cast("SpeedEquations", equations)
         own = {name: getattr(kane, name) for name in ("speeds", "needed", "supplied", "aside")}
         own["positions"] = zip(kane.positions, kane.rates, strict=True)
     constraints = UNSET if tied is None else _constraints(tied, write)
-    return doc.Equations.from_result(found, write, constraints=constraints, **own)
+    return doc.Equations.from_result(equations, write, constraints=constraints, **own)
 
 
-def _constraints(found: Constraints, write: Write) -> doc.Constraints:
-    rows = zip(found.names, found.position, found.velocity, strict=True)
+def _constraints(constraints: Constraints, write: Write) -> doc.Constraints:
+    rows = zip(constraints.names, constraints.position, constraints.velocity, strict=True)
     return doc.Constraints.from_result(
-        found,
+        constraints,
         write,
         rows=[
-            doc.ConstraintRow.from_result(name, write, position=f, velocity=rate, independent=k in found.independent)
+            doc.ConstraintRow.from_result(
+                name, write, position=f, velocity=rate, independent=k in constraints.independent
+            )
             for k, (name, f, rate) in enumerate(rows)
         ],
-        integrable_alone=[(name.label, decided) for name, decided in found.alone],
+        integrable_alone=[(name.label, decided) for name, decided in constraints.alone],
     )
 
 
-def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[doc.Reaction]:
+def reaction_data(reactions: Sequence[Reaction], tied: Constraints | None, write: Write) -> list[doc.Reaction]:
     """What each joint transmits, for results.json."""
     names = [] if tied is None else [tied.names[i].label for i in tied.independent]
     return [
@@ -85,7 +87,7 @@ def reaction_data(found: Sequence[Reaction], tied: Constraints | None, write: Wr
             write,
             per_multiplier=[(name, *both) for name, both in zip(names, reaction.per_multiplier, strict=True)],
         )
-        for reaction in found
+        for reaction in reactions
     ]
 
 
@@ -103,30 +105,30 @@ _WITH_MULTIPLIERS = (
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("equations", Said("Problem 3. Equations of motion"))
-    system, found, compact = results.system, results.found.get(3), results.told.get(3)
+    system, motion_equations, compact = results.system, results.by_problem.get(3), results.compact.get(3)
     equations = Said(_WITH_MULTIPLIERS if system.constraints else _LAGRANGE)
     yield from results.missing(3)
-    if found is not None and found.in_speeds:
-        yield from _of_kane(found)
+    if motion_equations is not None and motion_equations.in_speeds:
+        yield from _of_kane(motion_equations)
     elif compact is not None:
         yield paragraph(equations)
         yield from results.intermediates(3)
         yield Matrices(Symbol("M"), compact.system.mass_matrix, True, "M", packed=True)
         yield from equalities(numbered(Symbol("f"), compact.system.forcing), "f")
-        if found is not None:
-            yield Folded(Said("The same, written out"), tuple(_closed(found)))
-    elif found is not None:
-        written = short_equations(found, system)
+        if motion_equations is not None:
+            yield Folded(Said("The same, written out"), tuple(_closed(motion_equations)))
+    elif motion_equations is not None:
+        written = short_equations(motion_equations, system)
         if written:
             yield paragraph(Said("The equations of motion:"))
         for k, relation in enumerate(written, start=1):
             yield Display(relation, f"equation:{k}")
         yield paragraph(equations)
-        yield from _closed(found)
+        yield from _closed(motion_equations)
     else:
         yield from _program(results.analysis, equations)
-    if found is not None and found.constraints is not None:
-        yield from _of_constraints(found, found.constraints)
+    if motion_equations is not None and motion_equations.constraints is not None:
+        yield from _of_constraints(motion_equations, motion_equations.constraints)
     if results.analysis.forms:
         from mbsym.report.sections import canonical
 
@@ -140,12 +142,12 @@ LONGEST, MOST_EQUATIONS, LONGEST_TOGETHER = 220, 6, 720
 MOST_TERMS = 24
 
 
-def short_equations(found: Equations, system: System) -> tuple[Relation, ...]:
+def short_equations(equations: Equations, system: System) -> tuple[Relation, ...]:
     """M q'' - f = 0, under constraints J^T lambda on the right; none where they are too long to be read at a glance."""
-    if len(found.forcing) > MOST_EQUATIONS or found.terms > MOST_TERMS * MOST_EQUATIONS:
+    if len(equations.forcing) > MOST_EQUATIONS or equations.terms > MOST_TERMS * MOST_EQUATIONS:
         return ()
-    left, forces = zip(*balances(found, system), strict=True)
-    beside = [x for relation in ties(found) for x in relation.parts if isinstance(x, Formula)]
+    left, forces = zip(*balances(equations, system), strict=True)
+    beside = [x for relation in ties(equations) for x in relation.parts if isinstance(x, Formula)]
     if not are_short([*left, *beside, *(x for row in forces for x, _ in row)]):
         return ()
     right = [[(x, Symbol("lambda", str(k))) for x, k in row] for row in forces]
@@ -160,10 +162,10 @@ def balances(found: Equations, system: System) -> Iterator[tuple[Formula, tuple[
         yield left if number == 1 else Formula(left.ring, left.polynomial / number), forces
 
 
-def ties(found: Equations) -> tuple[Relation, ...]:
+def ties(equations: Equations) -> tuple[Relation, ...]:
     """What stands beside these: kinematic equations of speeds, and constraints."""
-    kinematic = (Relation(Name(x, 1), "=", rate) for x, rate in getattr(found, "kinematic", ()))
-    rows = () if found.constraints is None else constraint_rows(found.constraints)
+    kinematic = (Relation(Name(x, 1), "=", rate) for x, rate in getattr(equations, "kinematic", ()))
+    rows = () if equations.constraints is None else constraint_rows(equations.constraints)
     return (*kinematic, *(Relation(value, "=", 0) for _, value in rows))
 
 
@@ -172,9 +174,9 @@ def are_short(values: Sequence[Formula]) -> bool:
     return all(map(is_short, values)) and sum(len(x.readable()) for x in values) <= LONGEST_TOGETHER
 
 
-def constraint_forces(found: Equations, i: int) -> tuple[tuple[Formula, int], ...]:
+def constraint_forces(equations: Equations, i: int) -> tuple[tuple[Formula, int], ...]:
     """(J^T lambda)_i: what is not zero before the multipliers of independent constraints, and their numbers from 1."""
-    tied = found.constraints
+    tied = equations.constraints
     entries = () if tied is None else ((tied.jacobian.rows[k][i], k + 1) for k in tied.independent)
     return tuple((x, k) for x, k in entries if not x.is_zero)
 
@@ -211,40 +213,40 @@ def is_short(value: Formula) -> bool:
     return value.terms <= MOST_TERMS and len(value.readable()) <= LONGEST
 
 
-def _closed(found: Equations) -> Iterator[Block]:
-    yield Matrices(Symbol("M"), found.mass_matrix, True, "M")
-    yield from equalities(numbered(Symbol("f"), found.forcing), "f")
+def _closed(equations: Equations) -> Iterator[Block]:
+    yield Matrices(Symbol("M"), equations.mass_matrix, True, "M")
+    yield from equalities(numbered(Symbol("f"), equations.forcing), "f")
 
 
-def _of_kane(found: SpeedEquations) -> Iterator[Block]:
+def _of_kane(kane: SpeedEquations) -> Iterator[Block]:
     """In speeds, as they stand in textbooks first."""
     text = (
         "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$: what the motion needs is "
         "what the loads supply."
-        if found.constraints is None
+        if kane.constraints is None
         else "Kane's equations (equally those of Boltzmann and Hamel) in the speeds $[[speeds]]$, of the bodies "
         r"without constraints: what the motion needs is what the loads supply; constraints add $J^T \lambda$ "
         "on the right."
     )
-    yield paragraph(say(text, speeds=speeds(found.speeds)))
-    yield from equalities(zip(found.needed, found.supplied, strict=True), "needed")
-    if found.kinematic:
+    yield paragraph(say(text, speeds=speeds(kane.speeds)))
+    yield from equalities(zip(kane.needed, kane.supplied, strict=True), "needed")
+    if kane.kinematic:
         yield paragraph(Said("Kinematic equations:"))
-    yield from equalities(((Name(x, 1), rate) for x, rate in found.kinematic), "kinematic")
-    for pairs in found.relations:
+    yield from equalities(((Name(x, 1), rate) for x, rate in kane.kinematic), "kinematic")
+    for pairs in kane.relations:
         yield Display(Relation(_products(pairs), "=", int(pairs[0][0] == pairs[0][1])))
-    if found.aside:
+    if kane.aside:
         text = "No equation above depends on $[[names]]$, which follow by integration:"
-        yield paragraph(say(text, names=named(found.aside)))
-        yield from equalities(((Name(x, 1), rate) for x, rate in found.kinematic_aside), "aside")
+        yield paragraph(say(text, names=named(kane.aside)))
+        yield from equalities(((Name(x, 1), rate) for x, rate in kane.kinematic_aside), "aside")
     text = (
         r"As $M \dot u = f$ with $u = ([[speeds]])$; $M$ is symmetric, entries that are not written are zero."
-        if found.constraints is None
+        if kane.constraints is None
         else r"$M$ and $f$ of these equations sorted by $\dot u$, $u = ([[speeds]])$; $M$ is symmetric, entries that "
         "are not written are zero."
     )
-    yield paragraph(say(text, speeds=speeds(found.speeds)))
-    yield from _closed(found)
+    yield paragraph(say(text, speeds=speeds(kane.speeds)))
+    yield from _closed(kane)
 
 
 def _products(pairs: Sequence[tuple[str, str]]) -> Expression:
@@ -271,7 +273,7 @@ def _program(analysis: Analysis, equations: Said) -> Iterator[Block]:
     yield Steps(programs.program, tuple(results), names, Said("The program"))
 
 
-def _of_constraints(found: Equations, tied: Constraints) -> Iterator[Block]:
+def _of_constraints(equations: Equations, tied: Constraints) -> Iterator[Block]:
     """What is known of them, J and gamma, and the equations without multipliers."""
     from mbsym.report.words.constraint_words import label, sentences
 
@@ -308,7 +310,7 @@ def _of_constraints(found: Equations, tied: Constraints) -> Iterator[Block]:
             yield Components(Symbol("y", "0"), solved.shift, "y:zero")
     if not tied.free:
         return
-    if found.embedded is None:
+    if equations.embedded is None:
         yield paragraph(Said("The equations without multipliers are longer than the budget of terms."))
     else:
         yield paragraph(
@@ -322,14 +324,14 @@ def _of_constraints(found: Equations, tied: Constraints) -> Iterator[Block]:
                 "are not written are zero."
             )
         )
-        yield Matrices(Symbol("M", look="bar"), found.embedded.mass_matrix, True, "M:embedded")
-        yield from equalities(numbered(Symbol("f", look="bar"), found.embedded.forcing), "f:embedded")
+        yield Matrices(Symbol("M", look="bar"), equations.embedded.mass_matrix, True, "M:embedded")
+        yield from equalities(numbered(Symbol("f", look="bar"), equations.embedded.forcing), "f:embedded")
 
 
 def _of_reactions(results: Results) -> Iterator[Block]:
     """What joints transmit, where that was asked for."""
-    found = results.analysis.optional("reactions") if results.system.reactions else None
-    if not found:
+    reactions = results.analysis.optional("reactions") if results.system.reactions else None
+    if not reactions:
         return
     yield Subheading((Said("Reactions in joints"),))
     sentences = [
@@ -340,14 +342,14 @@ def _of_reactions(results: Results) -> Iterator[Block]:
     if results.system.constraints:
         sentences.append(r"With the multipliers, $R + \sum \lambda_i R^{(i)}$ and $L + \sum \lambda_i L^{(i)}$.")
     yield paragraph(joined(map(Said, sentences), " "))
-    for one in found:
-        k = str(results.numbers[one.body])
-        if one.balances:
+    for reaction in reactions:
+        k = str(results.numbers[reaction.body])
+        if reaction.balances:
             from mbsym.report.words.constraint_words import reaction_sentences
 
-            yield paragraph(joined(reaction_sentences(one), " "))
-        yield Components(Symbol("R", k), one.force, f"R:{k}")
-        yield Components(Symbol("L", k), one.moment, f"L:{k}")
-        for i, (force, moment) in enumerate(one.per_multiplier, start=1):
+            yield paragraph(joined(reaction_sentences(reaction), " "))
+        yield Components(Symbol("R", k), reaction.force, f"R:{k}")
+        yield Components(Symbol("L", k), reaction.moment, f"L:{k}")
+        for i, (force, moment) in enumerate(reaction.per_multiplier, start=1):
             yield Components(Symbol("R", k, f"({i})"), force, f"R:{k}:per:{i}")
             yield Components(Symbol("L", k, f"({i})"), moment, f"L:{k}:per:{i}")

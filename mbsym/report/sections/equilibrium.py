@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
+def data(equilibrium: Equilibrium, system: System, write: Write) -> doc.Equilibrium:
     """The section of results.json."""
-    solved = {name: str(value) for name, value in found.solved}
-    return doc.Equilibrium.from_result(found, write, impossible=bool(found.impossible), solved=solved)
+    solved = {name: str(value) for name, value in equilibrium.solved}
+    return doc.Equilibrium.from_result(equilibrium, write, impossible=bool(equilibrium.impossible), solved=solved)
 
 
 IN_COORDINATES = (
@@ -33,9 +33,9 @@ SINGULAR = (
 )
 
 
-def exists_if(found: Equilibrium) -> Said:
+def exists_if(equilibrium: Equilibrium) -> Said:
     """What is said before the conditions: of those that vary along the motion, that they have to hold all the time."""
-    if found.unsteady:
+    if equilibrium.unsteady:
         return Said("satisfies the equations of motion if and only if, at all times,")
     return Said("satisfies the equations of motion if and only if")
 
@@ -43,28 +43,28 @@ def exists_if(found: Equilibrium) -> Said:
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("equilibrium", Said("Problem 4. The unperturbed motion"))
-    system, found = results.system, results.found.get(4)
-    if system.motion or found is not None:
+    system, equilibrium = results.system, results.by_problem.get(4)
+    if system.motion or equilibrium is not None:
         yield paragraph(Said("The unperturbed motion"))
         yield Display(unperturbed_motion(system), "motion")
     yield from results.missing(4)
-    if found is None:
+    if equilibrium is None:
         return
-    if found.satisfied:
+    if equilibrium.satisfied:
         yield paragraph(Said("satisfies the equations of motion identically."))
-    elif found.impossible:
+    elif equilibrium.impossible:
         yield paragraph(Said("does not satisfy the equations of motion: these can never vanish."))
-        yield from map(Display, found.impossible)
+        yield from map(Display, equilibrium.impossible)
     else:
-        yield paragraph(exists_if(found))
-        for k, condition in enumerate(found.conditions, start=1):
+        yield paragraph(exists_if(equilibrium))
+        for k, condition in enumerate(equilibrium.conditions, start=1):
             yield Display(Relation(condition, "=", 0), f"equilibrium:{k}")
-        if found.solved:
+        if equilibrium.solved:
             yield paragraph(Said("which problems 5 and 6 use in the form"))
-        for k, (name, value) in enumerate(found.solved, start=1):
+        for k, (name, value) in enumerate(equilibrium.solved, start=1):
             yield Display(Relation(Name(name), "=", value), f"solved:{k}")
-    if found.singular:
-        names = named(dict.fromkeys(name for one in found.singular for name, _ in one))
+    if equilibrium.singular:
+        names = named(dict.fromkeys(name for displacement in equilibrium.singular for name, _ in displacement))
         yield paragraph(say(SINGULAR, names=names))
     if system.speeds:
         yield paragraph(Said(IN_COORDINATES))

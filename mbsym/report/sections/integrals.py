@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
+def data(integrals: tuple[Integral, ...], system: System, write: Write) -> list[doc.Integral]:
     """The section of results.json."""
-    return [doc.Integral.from_result(item, write) for item in found]
+    return [doc.Integral.from_result(item, write) for item in integrals]
 
 
 _ENERGY = (
@@ -39,13 +39,13 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("integrals", Said("Problem 7. First integrals"))
     yield from results.missing(7)
-    if 7 not in results.found:
+    if 7 not in results.by_problem:
         return
-    integrals: tuple[Integral, ...] = results.found[7]
+    integrals: tuple[Integral, ...] = results.by_problem[7]
     for number, item in enumerate(integrals, start=1):
         yield paragraph(title(item), " (", worded(item.status), "):")
         written = Display(Relation(item.formula, "=", CONSTANT), f"integral:{number}")
-        if item.kind == ENERGY and 2 in results.told and 3 in results.problems:
+        if item.kind == ENERGY and 2 in results.compact and 3 in results.problems:
             yield Display(Relation(Notation("T_2 - T_0 - U"), "=", CONSTANT), f"integral:{number}")
             yield paragraph(
                 Said(_ENERGY),

@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: InvariantSets, system: System, write: Write) -> doc.InvariantSets:
+def data(invariant_sets: InvariantSets, system: System, write: Write) -> doc.InvariantSets:
     """The section of results.json."""
-    return doc.InvariantSets.from_result(found)
+    return doc.InvariantSets.from_result(invariant_sets)
 
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("invariant-sets", Said("Problem 10. Steady motions and invariant manifolds"))
     yield from results.missing(10)
-    if 10 not in results.found:
+    if 10 not in results.by_problem:
         return
-    sets: InvariantSets = results.found[10]
+    sets: InvariantSets = results.by_problem[10]
     yield ragged(*opening(sets))
     for family in told_families(sets):
         yield ragged(Phrase((family_title(family, sets), ":")), *of_family(family))
@@ -49,29 +49,32 @@ def content(results: Results) -> Iterator[Block]:
         yield ragged(*closing(sets))
 
 
-def formulas(found: InvariantSets, system: System) -> Iterator[tuple[str, Formula]]:
+def formulas(invariant_sets: InvariantSets, system: System) -> Iterator[tuple[str, Formula]]:
     """What each formula is, and the formula: those that model.py has."""
-    for k, (name, formula) in enumerate(found.integrals):
+    for k, (name, formula) in enumerate(invariant_sets.integrals):
         yield f"V{k}, {name}", formula
-    for k, formula in enumerate(found.relations, start=1):
+    for k, formula in enumerate(invariant_sets.relations, start=1):
         yield f"relation {k}, zero", formula
-    for f, family in enumerate(found.families, start=1):
+    for f, family in enumerate(invariant_sets.families, start=1):
         for k, stationary_set in enumerate(family.sets, start=1):
             yield from ((f"family {f}, set {k}: {key}", formula) for key, formula in _formulas_of_set(stationary_set))
 
 
-def _formulas_of_set(one: StationarySet) -> Iterator[tuple[str, Formula]]:
-    yield from one.solved
-    for k, formula in enumerate(one.relations, start=1):
+def _formulas_of_set(stationary_set: StationarySet) -> Iterator[tuple[str, Formula]]:
+    yield from stationary_set.solved
+    for k, formula in enumerate(stationary_set.relations, start=1):
         yield f"equation {k}, zero", formula
-    for name, value in one.multipliers:
+    for name, value in stationary_set.multipliers:
         if value is not None:
             yield f"multiplier {name}", value
-    yield from ((f"{name}'", formula) for name, formula in one.motion)
-    if one.variation is not None:
-        for word, relations in (("positive", one.variation.positive), ("negative", one.variation.negative)):
+    yield from ((f"{name}'", formula) for name, formula in stationary_set.motion)
+    if stationary_set.variation is not None:
+        for word, relations in (
+            ("positive", stationary_set.variation.positive),
+            ("negative", stationary_set.variation.negative),
+        ):
             for k, each in enumerate(relations or (), start=1):
                 yield f"second variation {word} {k}, {each.relation} 0", each.formula
-    if one.first is not None:
-        for k, each in enumerate(one.first.necessary, start=1):
+    if stationary_set.first is not None:
+        for k, each in enumerate(stationary_set.first.necessary, start=1):
             yield f"necessary {k}, {each.relation} 0", each.formula

@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: Kinematics, system: System, write: Write) -> doc.Kinematics:
+def data(kinematics: Kinematics, system: System, write: Write) -> doc.Kinematics:
     """The section of results.json."""
-    return doc.Kinematics.from_result(found, write)
+    return doc.Kinematics.from_result(kinematics, write)
 
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("kinematics", Said("Problem 1. Kinematics"))
-    found, compact = results.found.get(1), results.told.get(1)
-    closed = {} if found is None else {body.name: body for body in found.bodies}
+    kinematics, compact = results.by_problem.get(1), results.compact.get(1)
+    closed = {} if kinematics is None else {body.name: body for body in kinematics.bodies}
     yield from results.missing(1)
     if compact is None:
         for k, body in enumerate(closed.values(), start=1):

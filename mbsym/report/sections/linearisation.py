@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 SHORT = 12
 
 
-def data(found: Linearisation, system: System, write: Write) -> doc.Linearisation:
+def data(linearisation: Linearisation, system: System, write: Write) -> doc.Linearisation:
     """The section of results.json."""
     return doc.Linearisation.from_result(
-        found,
+        linearisation,
         write,
-        time="t" if found.time_scale is None else f"({found.time_scale})*t",
+        time="t" if linearisation.time_scale is None else f"({linearisation.time_scale})*t",
         notation={item.name: text(item.value) for item in system.notation},
     )
 
@@ -58,39 +58,39 @@ _FIVE = (("M", 2, True), ("D", 1, True), ("G", 1, False), ("K", 0, True), ("N", 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("linearisation", Said("Problem 5. First approximation"))
-    system, found = results.system, results.found.get(5)
+    system, linearisation = results.system, results.by_problem.get(5)
     yield from results.missing(5)
-    if found is None:
+    if linearisation is None:
         return
-    if found.constrained is not None:
+    if linearisation.constrained is not None:
         from mbsym.report.words.constraint_words import reduction_sentences
 
-        yield paragraph(joined(reduction_sentences(found.constrained), " "))
+        yield paragraph(joined(reduction_sentences(linearisation.constrained), " "))
     if system.linear is not None and system.linear.of_first_order:
         yield paragraph(Said("As $\\dot x = A x$ with $M = 0$, $D = 1$ and $K + N = -A$."))
     yield paragraph(
         say(
             "In the time $t$ and the declared parameters, $q = ([[q]])$ meaning deviations; entries that are not "
             "written are zero.",
-            q=named(found.coordinates),
+            q=named(linearisation.coordinates),
         )
     )
     for letter, _, symmetric in _FIVE:
-        matrix = getattr(found, letter)
+        matrix = getattr(linearisation, letter)
         if letter == "M" or not matrix.is_zero:
             yield Matrices(Symbol(letter), matrix, symmetric, f"linear:{letter}")
-    if found.B is not None:
+    if linearisation.B is not None:
         yield paragraph(
             say(
                 "With the deviations $v$ of the inputs $([[inputs]])$ from the values at which they are held, the "
                 "right side is $B v$ instead of zero.",
-                inputs=named(found.inputs),
+                inputs=named(linearisation.inputs),
             )
         )
-        yield Matrices(Symbol("B"), found.B, False, "linear:B")
-    yield from _first_order(results, found)
-    if found.time_scale is not None or system.notation or len(found.subsystems) > 1:
-        yield from _subsystems(found)
+        yield Matrices(Symbol("B"), linearisation.B, False, "linear:B")
+    yield from _first_order(results, linearisation)
+    if linearisation.time_scale is not None or system.notation or len(linearisation.subsystems) > 1:
+        yield from _subsystems(linearisation)
     if system.notation:
         yield paragraph(Said("Notation"), ":")
         yield Display(Listed(tuple(Relation(Name(x.name), "=", x.value) for x in system.notation)), "notation")
@@ -99,15 +99,15 @@ def content(results: Results) -> Iterator[Block]:
         yield from _in_speeds(state)
 
 
-def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
+def _first_order(results: Results, linearisation: Linearisation) -> Iterator[Block]:
     """A, B, C, D of systems with inputs or outputs."""
-    known = first_order(results.analysis, found)
+    known = first_order(results.analysis, linearisation)
     form = known["first_order"]
     if form is None:
         if known["no_first_order"]:
             yield paragraph(Said("There is no first-order form"), ": ", worded(known["no_first_order"]), ".")
         return
-    if found.constrained is not None:
+    if linearisation.constrained is not None:
         state = speeds(form.states)
         said = (
             say(
@@ -146,16 +146,16 @@ def _first_order(results: Results, found: Linearisation) -> Iterator[Block]:
         yield Matrices(d, form.D, False, "first-order:D")
 
 
-def _subsystems(found: Linearisation) -> Iterator[Block]:
+def _subsystems(linearisation: Linearisation) -> Iterator[Block]:
     """What problem 6 decides about, in its time and notation."""
-    several = len(found.subsystems) > 1
+    several = len(linearisation.subsystems) > 1
     if several:
         yield paragraph(
-            say("The equations split into subsystems: [[count]].", count=str(len(found.subsystems))),
+            say("The equations split into subsystems: [[count]].", count=str(len(linearisation.subsystems))),
         )
-    if found.time_scale is not None:
-        yield paragraph(say(r"Derivatives are with respect to $\tau = [[scale]]\, t$.", scale=found.time_scale))
-    for k, part in enumerate(found.subsystems, start=1):
+    if linearisation.time_scale is not None:
+        yield paragraph(say(r"Derivatives are with respect to $\tau = [[scale]]\, t$.", scale=linearisation.time_scale))
+    for k, part in enumerate(linearisation.subsystems, start=1):
         index, key = str(k) if several else "", f"subsystem:{k}"
         present = [x for x in _FIVE if x[0] == "M" or not getattr(part, x[0]).is_zero]
         yield Display(_equation(part, index, present), key)

@@ -19,22 +19,22 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: NormalForms, system: System, write: Write) -> doc.NormalForms:
+def data(normal_forms: NormalForms, system: System, write: Write) -> doc.NormalForms:
     """The section of results.json."""
-    symbols = found.in_symbols
+    symbols = normal_forms.in_symbols
     return doc.NormalForms.from_result(
-        found,
+        normal_forms,
         write,
-        at_values=None if found.at_values is None else _judged(found.at_values),
+        at_values=None if normal_forms.at_values is None else _judged(normal_forms.at_values),
         two_frequencies=symbols if isinstance(symbols, InSymbols) else None,
         pair=symbols if isinstance(symbols, Focus) else None,
     )
 
 
-def _judged(found: Judged) -> doc.NormalFormAtValues:
-    actions = [(i + 1, j + 1, value) for (i, j), value in found.quadratic]
+def _judged(normal_form: Judged) -> doc.NormalFormAtValues:
+    actions = [(i + 1, j + 1, value) for (i, j), value in normal_form.quadratic]
     return doc.NormalFormAtValues.from_result(
-        found, enclosure, actions=actions, resonances=[resonance.vector for resonance in found.resonances]
+        normal_form, enclosure, actions=actions, resonances=[resonance.vector for resonance in normal_form.resonances]
     )
 
 
@@ -47,13 +47,13 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("normal_forms", Said("Problem 11. Terms of higher order"))
     yield from results.missing(11)
-    if 11 in results.found:
-        yield from map(ragged, sentences(results.found[11]))
+    if 11 in results.by_problem:
+        yield from map(ragged, sentences(results.by_problem[11]))
 
 
-def formulas(found: NormalForms, system: System) -> Iterator[tuple[str, Formula]]:
+def formulas(normal_forms: NormalForms, system: System) -> Iterator[tuple[str, Formula]]:
     """What each formula is, and the formula: those that model.py has."""
-    symbols = found.in_symbols
+    symbols = normal_forms.in_symbols
     if isinstance(symbols, InSymbols):
         yield "sum of squares of the frequencies", symbols.trace
         yield "product of squares of the frequencies", symbols.product

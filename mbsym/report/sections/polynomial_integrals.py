@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 def data(result: Polynomials, system: System, write: Write) -> doc.PolynomialIntegrals:
     """The section of results.json."""
-    found = result.found
+    polynomial_integrals = result.integrals
     return doc.PolynomialIntegrals.from_result(
-        found,
-        weights=zip(found.field.variables, found.grading.weights, strict=True),
+        polynomial_integrals,
+        weights=zip(polynomial_integrals.field.variables, polynomial_integrals.grading.weights, strict=True),
         integrals=[
             integrals.Integral.from_result(generator, formula=formula)
-            for generator, formula in zip(found.generators, result.formulas, strict=True)
+            for generator, formula in zip(polynomial_integrals.generators, result.formulas, strict=True)
         ],
         on_levels=[
             integrals.ZeroLevel.from_result(
@@ -56,56 +56,64 @@ def content(results: Results) -> Iterator[Block]:
     """What reports say."""
     yield Heading("polynomial-integrals", Said("Problem 9. Polynomial integrals"))
     yield from results.missing(9)
-    if 9 not in results.found:
+    if 9 not in results.by_problem:
         return
-    result: Polynomials = results.found[9]
-    found = result.found
-    yield from listed(found, result.variables, result.formulas)
+    result: Polynomials = results.by_problem[9]
+    polynomial_integrals = result.integrals
+    yield from listed(polynomial_integrals, result.variables, result.formulas)
     for level, formulas in zip(result.levels, result.on_levels, strict=True):
         zero, name = level.level, worded(title(level.level))
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
             yield ragged(say(LEVEL, weight=str(weight), own=str(zero.weight), name=name))
             yield _constant(formula)
-    yield from map(ragged, sentences(found))
+    yield from map(ragged, sentences(polynomial_integrals))
     if result.symmetries is not None:
         yield from of_symmetries(result.symmetries)
 
 
-def listed(found: PolynomialIntegrals, variables: Sequence[Inline], formulas: Sequence[Formula]) -> Iterator[Block]:
+def listed(
+    polynomial_integrals: PolynomialIntegrals, variables: Sequence[Inline], formulas: Sequence[Formula]
+) -> Iterator[Block]:
     """What is looked for, and each integral."""
     yield ragged(
-        say(OPENING, degree=str(found.degree), weights=weighted(variables, found.grading.weights)),
-        Said(UNIFORM if found.grading.homogeneous else NOT_UNIFORM),
+        say(
+            OPENING,
+            degree=str(polynomial_integrals.degree),
+            weights=weighted(variables, polynomial_integrals.grading.weights),
+        ),
+        Said(UNIFORM if polynomial_integrals.grading.homogeneous else NOT_UNIFORM),
     )
-    for generator, formula in zip(found.generators, formulas, strict=True):
+    for generator, formula in zip(polynomial_integrals.generators, formulas, strict=True):
         yield ragged(say(LISTED, weight=str(generator.weight), name=worded(title(generator))))
         yield _constant(formula)
 
 
-def of_symmetries(found: Symmetries) -> Iterator[Block]:
+def of_symmetries(symmetries: Symmetries) -> Iterator[Block]:
     """What each gives, with the integral where problem 7 does not list it; what is known of the list."""
     yield ragged(Said(symmetry_words.OPENING))
-    for symmetry in found.symmetries:
+    for symmetry in symmetries.symmetries:
         yield ragged(symmetry_words.gives(symmetry, symmetry_words.field(symmetry)))
         if not symmetry.name:
             yield _constant(symmetry.integral)
-    yield from map(ragged, symmetry_words.sentences(found))
+    yield from map(ragged, symmetry_words.sentences(symmetries))
 
 
 def _constant(formula: Formula) -> Display:
     return Display(Relation(formula, "=", Notation("\\mathrm{const}")))
 
 
-def formulas(found: Polynomials, system: System) -> Iterator[tuple[str, Formula]]:
+def formulas(polynomials: Polynomials, system: System) -> Iterator[tuple[str, Formula]]:
     """What each formula is, and the formula: those that model.py has."""
-    for k, (generator, formula) in enumerate(zip(found.found.generators, found.formulas, strict=True), start=1):
+    for k, (generator, formula) in enumerate(
+        zip(polynomials.integrals.generators, polynomials.formulas, strict=True), start=1
+    ):
         yield f"{k}. {title(generator)}, weight {generator.weight}", formula
-    k = len(found.formulas)
-    for level, formulas in zip(found.levels, found.on_levels, strict=True):
+    k = len(polynomials.formulas)
+    for level, formulas in zip(polynomials.levels, polynomials.on_levels, strict=True):
         for (weight, _), formula in zip(level.integrals, formulas, strict=True):
             k += 1
             yield f"{k}. {level_title(weight, level)}", formula
-    for symmetry in () if found.symmetries is None else found.symmetries.symmetries:
+    for symmetry in () if polynomials.symmetries is None else polynomials.symmetries.symmetries:
         if not symmetry.name:
             k += 1
             yield f"{k}. integral of the symmetry {symmetry_words.field_text(symmetry)}", symmetry.integral

@@ -35,16 +35,16 @@ if TYPE_CHECKING:
     from mbsym.report.results import Results
 
 
-def data(found: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
+def data(stabilisation: Stabilisation, system: System, write: Write) -> doc.Stabilisation:
     """The section of results.json."""
-    law = found.feedback
+    law = stabilisation.feedback
     feedback = None if law is None else doc.Feedback.from_result(law, **verdict_data(law.verdict))
-    return doc.Stabilisation.from_result(found, write, feedback=feedback)
+    return doc.Stabilisation.from_result(stabilisation, write, feedback=feedback)
 
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    stabilisation: Stabilisation | None = results.found.get(8)
+    stabilisation: Stabilisation | None = results.by_problem.get(8)
     yield Heading("stabilisation", Said("Problem 8. Stabilisation"))
     yield from results.missing(8)
     if stabilisation is None:

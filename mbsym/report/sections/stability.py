@@ -74,21 +74,21 @@ if TYPE_CHECKING:
 SHORT = 60
 
 
-def data(found: Stability, system: System, write: Write) -> doc.Stability:
+def data(stability: Stability, system: System, write: Write) -> doc.Stability:
     """The section of results.json."""
     taken = [*system.coordinates, *system.parameter_names, *(item.name for item in system.notation)]
     variable = free_name("lam", taken)
     return doc.Stability.from_result(
-        found,
-        **verdict_data(found.verdict),
-        subsystems=[_subsystem(part, variable) for part in found.subsystems],
-        eigenvalues_at_values=[(part.coordinates, numbers(part)) for part in found.spectra],
+        stability,
+        **verdict_data(stability.verdict),
+        subsystems=[_subsystem(part, variable) for part in stability.subsystems],
+        eigenvalues_at_values=[(part.coordinates, numbers(part)) for part in stability.spectra],
     )
 
 
-def verdict_data(found: Verdict) -> dict[str, Any]:
+def verdict_data(conclusion: Verdict) -> dict[str, Any]:
     """The fields of a verdict in every JSON file, for parts that have more of them."""
-    return asdict(parts.Verdict.from_result(found))
+    return asdict(parts.Verdict.from_result(conclusion))
 
 
 def _subsystem(part: SubsystemStability, variable: str) -> doc.StabilitySubsystem:
@@ -114,11 +114,11 @@ def _statement(item: Statement) -> doc.Statement:
 
 def _condition_of(item: Statement) -> doc.Condition:
     """A long one in the coefficients of the characteristic polynomial, too, with what these are."""
-    told: doc.InCoefficients | UnsetType = UNSET
-    if item.told is not None:
-        letters = {str(letter): str(value) for letter, value in item.told.letters}
-        told = doc.InCoefficients.from_result(item.told, coefficients=letters)
-    return doc.Condition.from_result(item, **asdict(_statement(item)), in_coefficients=told)
+    in_coefficients: doc.InCoefficients | UnsetType = UNSET
+    if item.in_coefficients is not None:
+        letters = {str(letter): str(value) for letter, value in item.in_coefficients.letters}
+        in_coefficients = doc.InCoefficients.from_result(item.in_coefficients, coefficients=letters)
+    return doc.Condition.from_result(item, **asdict(_statement(item)), in_coefficients=in_coefficients)
 
 
 def _case(case: CaseStatement, shown: Shown) -> doc.Case:
@@ -142,7 +142,7 @@ def _case(case: CaseStatement, shown: Shown) -> doc.Case:
 
 def content(results: Results) -> Iterator[Block]:
     """What reports say."""
-    stability: Stability | None = results.found.get(6)
+    stability: Stability | None = results.by_problem.get(6)
     yield Heading("stability", Said("Problem 6. Stability"))
     yield from results.missing(6)
     if stability is None:
@@ -233,25 +233,29 @@ def _told(part: SubsystemStability, number: int, several: bool, results: Results
 
 def _conserved(results: Results) -> bool:
     """Whether the energy of the system is constant near the motion, in all orders, if there are further ones."""
-    found = results.analysis.optional("balance")
-    if found is None:  # other angles were judged
-        return any("energy" in one.name for one in results.analysis.optional("integrals") or ())
-    return found.exactly_linear or found.law is EnergyLaw.CONSERVED
+    balance = results.analysis.optional("balance")
+    if balance is None:  # other angles were judged
+        return any("energy" in integral.name for integral in results.analysis.optional("integrals") or ())
+    return balance.exactly_linear or balance.law is EnergyLaw.CONSERVED
 
 
-def _verdict_told(found: Verdict) -> tuple[Inline, ...]:
-    if found.word is Word.DEPENDS:
-        others = [sentence(reason) for reason in found.reasons if reason.code is not Because.SEE_CASES]
+def _verdict_told(conclusion: Verdict) -> tuple[Inline, ...]:
+    if conclusion.word is Word.DEPENDS:
+        others = [sentence(reason) for reason in conclusion.reasons if reason.code is not Because.SEE_CASES]
         said = (" ", worded(sentences_of(others))) if others else ()
-        return *concluded(found.word, ()), "; ", Said("see the cases."), *said
-    return *verdict(found), ". ", worded(found.explanation)
+        return *concluded(conclusion.word, ()), "; ", Said("see the cases."), *said
+    return *verdict(conclusion), ". ", worded(conclusion.explanation)
 
 
 def _without_numbers(results: Results) -> list[str]:
     """The parameters that have no value, where others have one."""
     system, motion = results.system, results.analysis.optional("equilibrium")
-    known = {one.name for one in system.relations} | {name for name, _ in (() if motion is None else motion.solved)}
-    lacking = [one.name for one in system.parameters if one.value is None and one.name not in known]
+    known = {relation.name for relation in system.relations} | {
+        name for name, _ in (() if motion is None else motion.solved)
+    }
+    lacking = [
+        parameter.name for parameter in system.parameters if parameter.value is None and parameter.name not in known
+    ]
     used = {name for x in expressions(system) for name in names(x)} if lacking else set()
     return [name for name in lacking if name in used] if any(x.value is not None for x in system.parameters) else []
 
@@ -327,11 +331,11 @@ def _condition_told(item: Statement, seen: _Keyed) -> Iterator[Block]:
     elif item.formula is None:
         never = item.never is not None and item.never.terms < SHORT
         yield Display(Relation(label, *(("=", item.never) if never else ()), item.relation, 0), key, note)
-    elif item.told is not None:
+    elif item.in_coefficients is not None:
         text = "written out [[terms]] terms, of degree [[degree]]; in full in results.json"
         long = say(text, terms=str(item.formula.terms), degree=str(item.formula.degree))
-        yield Display(Relation(*named, item.told.formula, item.relation, 0), key, (long, *remark))
-        letters = seen.unshown(item.told)
+        yield Display(Relation(*named, item.in_coefficients.formula, item.relation, 0), key, (long, *remark))
+        letters = seen.unshown(item.in_coefficients)
         if letters:
             yield Definitions(Said("with"), tuple(Relation(letter, "=", value) for letter, value in letters))
     else:

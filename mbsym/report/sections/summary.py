@@ -123,22 +123,22 @@ def finding(results: Results) -> Facts:
 
 
 def _facts(results: Results) -> Iterator[Fact]:
-    system, found = results.system, results.found
-    yield _size(system, found)
-    if equations := tuple(_equations(found, system)):
+    system, solutions = results.system, results.by_problem
+    yield _size(system, solutions)
+    if equations := tuple(_equations(solutions, system)):
         yield Fact(Said("Equations"), equations)
-    if 4 in found:
-        yield Fact(Said("Motion"), tuple(_motion(found[4], system)))
-    if 6 in found:
-        if found[6].numerical is not None and not _is_everywhere(found[6]):
-            yield Fact(Said("At given values"), (_at_values(found[6], system),))
-        lines = tuple(_stability(found[6], results))
+    if 4 in solutions:
+        yield Fact(Said("Motion"), tuple(_motion(solutions[4], system)))
+    if 6 in solutions:
+        if solutions[6].numerical is not None and not _is_everywhere(solutions[6]):
+            yield Fact(Said("At given values"), (_at_values(solutions[6], system),))
+        lines = tuple(_stability(solutions[6], results))
         yield Fact(Said("Stability"), (*lines, *_meanings(lines, system)))
-    if 8 in found and found[8].control:
-        yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(found[8])))
-    if 7 in found:
+    if 8 in solutions and solutions[8].control:
+        yield Fact(Link(Said("Control"), "stabilisation"), tuple(_control(solutions[8])))
+    if 7 in solutions:
         none = (Said("none in closed form of the kinds that are looked for"),)
-        yield Fact(Said("First integrals"), tuple(_integrals(found[7])) or none)
+        yield Fact(Said("First integrals"), tuple(_integrals(solutions[7])) or none)
     if results.analysis.claims:
         yield Fact(Said("Claims"), tuple(_claims(results)))
     yield from _missing(results)
@@ -146,9 +146,9 @@ def _facts(results: Results) -> Iterator[Fact]:
         yield Fact(Said("Self-check"), (Link(Graded(self_check(checks), grade(worst(checks))), "checks"),))
 
 
-def _size(system: System, found: dict[int, Any]) -> Fact:
+def _size(system: System, solutions: dict[int, Any]) -> Fact:
     """Coordinates, constraints, what is left of freedom, cyclic coordinates, inputs."""
-    tied: Constraints | None = found[3].constraints if 3 in found else None
+    tied: Constraints | None = solutions[3].constraints if 3 in solutions else None
     said: list[Inline] = [named(system.coordinates)]
     if len(system.coordinates) > 1:
         said.insert(0, f"{len(system.coordinates)}: ")
@@ -163,7 +163,11 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
         said += ["; ", say("degrees of freedom: [[freedom]]", freedom=str(freedom))]
         if tied.demanded.satisfied is False:
             said += [" ", Said("(at values of the parameters that satisfy further relations; the given ones do not)")]
-    cyclic = [] if 2 not in found or system.constraints else [x for x in found[2].cyclic if not is_felt(x, found)]
+    cyclic = (
+        []
+        if 2 not in solutions or system.constraints
+        else [x for x in solutions[2].cyclic if not is_felt(x, solutions)]
+    )
     cyclic = [name for name in cyclic if name in system.coordinates]  # the others are functions of time
     if cyclic:
         said += ["; ", Said("$L$ does not contain"), " ", named(cyclic)]
@@ -172,14 +176,14 @@ def _size(system: System, found: dict[int, Any]) -> Fact:
     return Fact(Said("Coordinates"), (Phrase(tuple(said)),))
 
 
-def _equations(found: dict[int, Any], system: System) -> Iterator[Inline]:
+def _equations(solutions: dict[int, Any], system: System) -> Iterator[Inline]:
     """The equations of motion with the constraints; where they are long, how long, and where they stand."""
-    if 3 in found:
-        equations: Equations = found[3]
+    if 3 in solutions:
+        equations: Equations = solutions[3]
         rows, shown, number = equations.equalities(system.coordinates), short_equations(equations, system), 3
         yield from (*shown, *ties(equations)) if shown else ()
-    elif system.linear is not None and 5 in found:
-        rows, number = found[5].equalities, 5
+    elif system.linear is not None and 5 in solutions:
+        rows, number = solutions[5].equalities, 5
         shown = tuple(Relation(x, "=", 0) for x in rows) if are_short(rows) else ()
         yield from shown
     else:
@@ -190,26 +194,26 @@ def _equations(found: dict[int, Any], system: System) -> Iterator[Inline]:
         yield Phrase((size, " (", Elsewhere("equations", number), ")"))
 
 
-def _motion(found: Equilibrium, system: System) -> Iterator[Inline]:
+def _motion(equilibrium: Equilibrium, system: System) -> Iterator[Inline]:
     items = unperturbed_motion(system)
     inlines: tuple[Inline, ...] = (items, " ") if 0 < len(items.items) <= MOST_COORDINATES else ()
-    if found.satisfied:
+    if equilibrium.satisfied:
         yield Phrase((*inlines, Said("satisfies the equations of motion identically")))
-    elif found.impossible:
+    elif equilibrium.impossible:
         yield Phrase((*inlines, Graded(Said("does not satisfy the equations of motion"), "bad")))
-    elif len(found.conditions) <= MOST_CONDITIONS and all(map(is_short, found.conditions)):
-        phrase = joined((Relation(condition, "=", 0) for condition in found.conditions), ", ")
-        yield Phrase((*inlines, exists_if(found), " ", phrase))
+    elif len(equilibrium.conditions) <= MOST_CONDITIONS and all(map(is_short, equilibrium.conditions)):
+        phrase = joined((Relation(condition, "=", 0) for condition in equilibrium.conditions), ", ")
+        yield Phrase((*inlines, exists_if(equilibrium), " ", phrase))
     else:
         text = "satisfies the equations of motion under conditions; their number: [[count]]"
-        conditions = say(text, count=str(len(found.conditions)))
+        conditions = say(text, count=str(len(equilibrium.conditions)))
         yield Phrase((*inlines, conditions, " (", Elsewhere("motion", 4), ")"))
 
 
-def _integrals(found: Sequence[Integral]) -> Iterator[Inline]:
+def _integrals(integrals: Sequence[Integral]) -> Iterator[Inline]:
     """The name of each, how surely it is one, and what it is where that is short, else how long it is."""
-    long = [one for one in found if not is_short(one.formula)]
-    for integral in found:
+    long = [first_integral for first_integral in integrals if not is_short(first_integral.formula)]
+    for integral in integrals:
         named_surely = Phrase((title(integral), " (", worded(integral.status), ")"))
         if integral not in long:
             yield Phrase((named_surely, ": ", Relation(integral.formula, "=", CONSTANT)))
@@ -219,56 +223,61 @@ def _integrals(found: Sequence[Integral]) -> Iterator[Inline]:
         yield Phrase((say("[[integral]], [[terms]]", integral=named_surely, terms=terms), *place))
 
 
-def _is_everywhere(found: Stability) -> bool:
+def _is_everywhere(stability: Stability) -> bool:
     """Whether the verdict at the given values is that for all values, and no number stands beside it."""
-    alike = [found.verdict, found.numerical, *(part.theory.verdict for part in found.subsystems)]
-    words = {(one.word, one.theorems) for one in alike if one is not None}
-    return len(words) == len(found.subsystems) == 1 and found.verdict.word.stable
+    alike = [stability.verdict, stability.numerical, *(part.theory.verdict for part in stability.subsystems)]
+    words = {(conclusion.word, conclusion.theorems) for conclusion in alike if conclusion is not None}
+    return len(words) == len(stability.subsystems) == 1 and stability.verdict.word.stable
 
 
-def _at_values(found: Stability, system: System) -> Inline:
+def _at_values(stability: Stability, system: System) -> Inline:
     """The verdict at the given values; of an unstable motion how fast the fastest solution grows."""
-    assert found.numerical is not None
-    said = (*verdict(found.numerical, "verdict-at-values"), worded(decided(found)))
-    if found.numerical.word is Word.UNDECIDED and found.numerical.explanation:
-        said = (*said, ": ", worded(found.numerical.explanation))
-    growth = max((root.real for part in found.spectra for root in numbers(part)), default=0.0)
-    if found.numerical.word is Word.UNSTABLE and growth > 0:
+    assert stability.numerical is not None
+    said = (*verdict(stability.numerical, "verdict-at-values"), worded(decided(stability)))
+    if stability.numerical.word is Word.UNDECIDED and stability.numerical.explanation:
+        said = (*said, ": ", worded(stability.numerical.explanation))
+    growth = max((root.real for part in stability.spectra for root in numbers(part)), default=0.0)
+    if stability.numerical.word is Word.UNSTABLE and growth > 0:
         unit = rate_unit(system)
         largest = say("largest real part of an eigenvalue: [[growth]]", growth=f"{growth:.4g}")
         said = (*said, "; ", largest, *((" ", Unit(unit)) if unit else ()))
     return Phrase(said)
 
 
-def _stability(found: Stability, results: Results) -> Iterator[Inline]:
+def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
     """The verdicts for all values of the parameters: that on the whole, then those on subsystems, with their cases."""
     presumed = (*results.presumed[1:], ": ") if results.presumed else ()
-    if len(found.subsystems) == 1:
-        first, *further = _part(found.subsystems[0], 1, "verdict")
+    if len(stability.subsystems) == 1:
+        first, *further = _part(stability.subsystems[0], 1, "verdict")
         yield Phrase((*presumed, first))
-        yield from _coefficients(found.subsystems[0], further, results.variable)
+        yield from _coefficients(stability.subsystems[0], further, results.variable)
         yield from further
-        yield from _what_would_decide(found)
+        yield from _what_would_decide(stability)
         return
-    yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(found.verdict, "verdict")))
-    word, told = found.verdict.word, [list(_part(part, k, "")) for k, part in enumerate(found.subsystems, start=1)]
-    alike = all(part.theory.verdict.word is word for part in found.subsystems)
-    yield from _what_would_decide(found)
-    if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in told):
+    yield Phrase((*presumed, Said("the whole system"), ": ", *verdict(stability.verdict, "verdict")))
+    word, lines_by_part = (
+        stability.verdict.word,
+        [list(_part(part, k, "")) for k, part in enumerate(stability.subsystems, start=1)],
+    )
+    alike = all(part.theory.verdict.word is word for part in stability.subsystems)
+    yield from _what_would_decide(stability)
+    if alike and word is not Word.DEPENDS and all(len(lines) == 1 for lines in lines_by_part):
         return
-    for part, lines in zip(found.subsystems, told, strict=True):
+    for part, lines in zip(stability.subsystems, lines_by_part, strict=True):
         lines[:0] = _coefficients(part, lines, results.variable)
         yield Phrase((named(part.coordinates), ": ", lines[0]))
         yield from lines[1:]
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
-    reasons = (one for part in found.subsystems for one in part.theory.verdict.reasons)
-    for reason in dict.fromkeys(one for one in reasons if one.code is Because.OTHER_ANGLES):  # the names mean others
+    reasons = (cause for part in stability.subsystems for cause in part.theory.verdict.reasons)
+    for reason in dict.fromkeys(
+        cause for cause in reasons if cause.code is Because.OTHER_ANGLES
+    ):  # the names mean others
         yield worded(sentence(reason))
 
 
-def _what_would_decide(found: Stability) -> Iterator[Inline]:
+def _what_would_decide(stability: Stability) -> Iterator[Inline]:
     """Where all parameters are on a border: the condition on terms of higher order, or that values would help."""
-    for reason in found.verdict.reasons:
+    for reason in stability.verdict.reasons:
         if reason.code in (Because.ORDER_DECIDES, Because.VALUES_DECIDE):
             yield worded(sentence(reason))
 
@@ -312,8 +321,8 @@ def _within(part: object) -> Iterator[object]:
     if isinstance(part, Said):
         yield from _within(tuple(part.gaps.values()))
     elif isinstance(part, tuple | list):
-        for one in part:
-            yield from _within(one)
+        for inner in part:
+            yield from _within(inner)
     elif is_dataclass(part) and not isinstance(part, Formula):
         yield from _within(tuple(getattr(part, x.name) for x in fields(part)))
 
@@ -355,7 +364,8 @@ def _conditions(case: CaseStatement, seen: list[Formula], keys: Keys) -> tuple[l
     """
     statements = [*case.all_of, *case.any_of]
     if len(statements) > MOST_CONDITIONS or not all(
-        one.formula is not None and (is_short(one.formula) or "," not in one.bare) for one in statements
+        condition.formula is not None and (is_short(condition.formula) or "," not in condition.bare)
+        for condition in statements
     ):
         return [], []
     long = not all(statement.formula is not None and is_short(statement.formula) for statement in statements)
@@ -383,7 +393,11 @@ def _counted(case: CaseStatement) -> Inline:
 def _where(case: CaseStatement, every: list[_Condition], either: list[_Condition], before: list[_Condition]) -> Inline:
     """The verdict with its conditions; ``before``: those of the case in front of it."""
     verdict = Phrase(where(case.word, case.theorems))
-    if len(either) > 1 and not every and [one.parts for one, _ in either] == [_reversed(one) for one, _ in before]:
+    if (
+        len(either) > 1
+        and not every
+        and [inequality.parts for inequality, _ in either] == [_reversed(inequality) for inequality, _ in before]
+    ):
         return say("[[verdict]] if one of these is negative", verdict=verdict)
     between = (", ", Said("and"), " ") if every and either else ()
     phrase = joined((Phrase((relation, *number)) for relation, number in every), ", ")
@@ -401,10 +415,10 @@ def _condition(item: Statement, long: bool, seen: list[Formula], keys: Keys) -> 
     if (long and isinstance(name, Symbol)) or not is_short(item.formula):
         stands = OPPOSITE.get(item.relation, item.relation) if item.opposite else item.relation
         return Relation(name, stands, 0), _numbered(item.formula, item.relation, keys)
-    one = _relation(item, seen)
-    left, relation, _ = one.parts
+    inequality = _relation(item, seen)
+    left, relation, _ = inequality.parts
     assert isinstance(left, Formula)
-    return one, _numbered(left, relation, keys)
+    return inequality, _numbered(left, relation, keys)
 
 
 def _numbered(left: Formula, relation: Math | str, keys: Keys) -> tuple[Numbered, ...]:
@@ -427,30 +441,30 @@ def _relation(item: Statement, seen: list[Formula]) -> Relation:
     """p > 0; where -p or a multiple stood before, by that: p < 0; so, too, where all signs of p are minus."""
     assert item.formula is not None
     formula, reversed_ = item.formula, OPPOSITE.get(item.relation, item.relation)
-    for one in seen:
-        ratio = rational_ratio(formula.polynomial, one.polynomial)
+    for previous in seen:
+        ratio = rational_ratio(formula.polynomial, previous.polynomial)
         if ratio is not None:
-            return Relation(one, item.relation if ratio > 0 else reversed_, 0)
+            return Relation(previous, item.relation if ratio > 0 else reversed_, 0)
     minus = all(coefficient < 0 for coefficient in formula.polynomial.coeffs())
     seen.append(-formula if minus else formula)
     return Relation(seen[-1], reversed_ if minus else item.relation, 0)
 
 
-def _control(found: Stabilisation) -> Iterator[Inline]:
+def _control(stabilisation: Stabilisation) -> Iterator[Inline]:
     """Whether the inputs reach everything; whether a feedback was found, or why not."""
-    yield controllability(found.control[0])
-    if found.feedback is None:
-        yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
+    yield controllability(stabilisation.control[0])
+    if stabilisation.feedback is None:
+        yield say("No feedback is given: [[why]].", why=worded(stabilisation.no_feedback))
     else:
         whole = "A feedback makes the linear equations asymptotically stable at the given values (proved)."
         part = "A feedback makes a part of the linear equations asymptotically stable at the given values (proved)."
-        yield Said(part if found.feedback.of_part else whole)
+        yield Said(part if stabilisation.feedback.of_part else whole)
 
 
 def _claims(results: Results) -> Iterator[Inline]:
     """How many hold; each that does not."""
     lines = list(map(claim_line, results.analysis.claims))
-    words = [one.word for one in lines]
+    words = [claim.word for claim in lines]
     gravest = next(word for word in (REFUTED, OPEN, HELD) if word in words)
     said: Inline = say("all [[count]] hold", count=str(len(lines))) if len(lines) > 1 else Said("it holds")
     if gravest != HELD:
@@ -464,7 +478,7 @@ def _claims(results: Results) -> Iterator[Inline]:
 
 def _missing(results: Results) -> Iterator[Fact]:
     """Problems and forms without a result, and why."""
-    for reason, several in groupby(results.failures.items(), key=lambda one: one[1].reason):
+    for reason, several in groupby(results.failures.items(), key=lambda entry: entry[1].reason):
         last, failure = [*several][-1]  # what the others lead to
         more = (" (", worded(failure.hint), ")") if failure.hint else ()
         title = Said(TITLES_HERE[last]) if last in TITLES_HERE else say("Problem [[number]]", number=str(last))

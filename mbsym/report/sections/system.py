@@ -96,8 +96,13 @@ def _variables(system: System) -> Iterator[Block]:
         yield paragraph(Said("Prescribed"), ": ", law, *_unit(system, item.name), *_meaning(item.meaning), ".")
     if system.inputs:
         parts: list[Inline] = []
-        for k, one in enumerate(system.inputs):
-            parts += [*(["; "] if k else []), Name(one.name), *_unit(system, one.name), *_meaning(one.meaning)]
+        for k, system_input in enumerate(system.inputs):
+            parts += [
+                *(["; "] if k else []),
+                Name(system_input.name),
+                *_unit(system, system_input.name),
+                *_meaning(system_input.meaning),
+            ]
         yield paragraph(Said("Inputs, functions of time that are chosen later"), ": ", *parts, ".")
     if system.outputs:
         outputs = tuple(Relation(Name(output.name), "=", output.value) for output in system.outputs)
@@ -183,10 +188,10 @@ def _body(body: Body, number: int, accepted: dict[str, str]) -> Iterator[Inline]
         text = "told by unit vectors, in its axes, along the axes of the frame that it hangs on"
         yield from ("; ", Said(text), ": ")
         vectors: list[Inline] = []
-        for k, one in enumerate(body.orientation):
-            assert isinstance(one, UnitVector)
-            along = Listed(tuple(map(Name, one.components)), brackets=True)
-            vectors += [*([", "] if k else []), along, " (", Said("axis"), f" {one.axis})"]
+        for k, unit_vector in enumerate(body.orientation):
+            assert isinstance(unit_vector, UnitVector)
+            along = Listed(tuple(map(Name, unit_vector.components)), brackets=True)
+            vectors += [*([", "] if k else []), along, " (", Said("axis"), f" {unit_vector.axis})"]
         yield from vectors
     yield "."
 

@@ -158,19 +158,19 @@ def _size(root: complex, blocks: Sequence[Any], weights: Any) -> float:
 def _grouped(roots: Sequence[Root]) -> Iterator[tuple[complex, int]]:
     """Midpoints of the upper half with multiplicities; roots that lie together are one."""
     largest = max((abs(complex(x.ball.mid())) for x in roots), default=0.0)
-    found: list[tuple[complex, int]] = []
+    groups: list[tuple[complex, int]] = []
     for root in roots:
         parts = (0.0 if part.contains(0) else float(part.mid()) for part in (root.ball.real, root.ball.imag))
         value = complex(*parts)
         if value.imag < 0:
             continue
-        for k, (other, count) in enumerate(found):
+        for k, (other, count) in enumerate(groups):
             if abs(value - other) <= SAME * largest:
-                found[k] = other, count + root.multiplicity
+                groups[k] = other, count + root.multiplicity
                 break
         else:
-            found.append((value, root.multiplicity))
-    yield from found
+            groups.append((value, root.multiplicity))
+    yield from groups
 
 
 def modes_json(found: Modes) -> dict[str, Any]:

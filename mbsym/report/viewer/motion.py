@@ -137,8 +137,8 @@ def _frames(count: int, stride: int) -> Message:
 
 def drift_of(run: Simulation) -> Message:
     """What is conserved drifts by errors alone; anything else may well change."""
-    kept, quantity = run.conservation.standing.conserved is True, Message(run.conservation.quantity)
-    return Message("drift of the [[quantity]]" if kept else "change of the [[quantity]]", quantity=quantity)
+    conserved, quantity = run.conservation.standing.conserved is True, Message(run.conservation.quantity)
+    return Message("drift of the [[quantity]]" if conserved else "change of the [[quantity]]", quantity=quantity)
 
 
 def doubts(run: Simulation) -> Iterator[Message]:
@@ -167,10 +167,10 @@ def run_sentences(run: Simulation) -> Iterator[Message]:
         yield _error(messages)
 
 
-def _error(told: Sequence[Message]) -> Message:
-    if not told:
+def _error(messages: Sequence[Message]) -> Message:
+    if not messages:
         return Message("The error of the run was not estimated.")
-    return Message("Error of the run: [[error]].", error=joined(told, "; "))
+    return Message("Error of the run: [[error]].", error=joined(messages, "; "))
 
 
 def rounded(values: Iterable[float]) -> list[float | None]:
@@ -178,12 +178,12 @@ def rounded(values: Iterable[float]) -> list[float | None]:
     return [float(f"{x:.10g}") if isfinite(x) else None for x in values]
 
 
-def motion_json(found: Motion, wanted: Sequence[str] = ()) -> dict[str, Any]:
-    """What a page reads; of the velocities those that are ``wanted`` (inputs of the picture's program)."""
+def motion_json(found: Motion, velocity_names: Sequence[str] = ()) -> dict[str, Any]:
+    """What a page reads; of the velocities those that are ``velocity_names`` (inputs of the picture's program)."""
     return {
         "times": rounded(found.times),
         "coordinates": {name: rounded(values) for name, values in found.coordinates.items()},
-        "velocities": {name: rounded(found.velocities[name]) for name in wanted if name in found.velocities},
+        "velocities": {name: rounded(found.velocities[name]) for name in velocity_names if name in found.velocities},
         "kinetic": rounded(found.kinetic),
         "energy": rounded(found.energy),
         "drift": rounded(found.drift),

@@ -227,12 +227,12 @@ def equilibria_part(system: System, overrides: Values) -> dict[str, Any]:
 def exact_values(system: System, overrides: Values) -> dict[str, Fraction]:
     """The ``overrides`` of parameters that are rational numbers, those in terms of other parameters evaluated."""
     known = {item.name: item.value for item in system.parameters if item.value is not None} | dict(overrides)
-    found = {}
+    fractions = {}
     for name in (x for x in overrides if x in system.parameter_names):
         value = rational(substitute(overrides[name], {k: v for k, v in known.items() if k != name}))
         if value is not None:
-            found[name] = value
-    return found
+            fractions[name] = value
+    return fractions
 
 
 # Relative equilibria as positions to click through, each with its verdict.
@@ -294,7 +294,7 @@ def _resting(
     )
 
 
-def at_rest_json(found: AtRest) -> dict[str, Any]:
+def at_rest_json(equilibria: AtRest) -> dict[str, Any]:
     """What a page reads."""
     return {
         "equilibria": [
@@ -307,9 +307,9 @@ def at_rest_json(found: AtRest) -> dict[str, Any]:
                 "otherAngles": x.other_angles,
                 "family": x.family,
             }
-            for x in found.listed
+            for x in equilibria.listed
         ],
-        "complete": found.complete,
-        "remarks": list(found.remarks),
-        "turning": {name: number(value) for name, value in found.turning.items()},
+        "complete": equilibria.complete,
+        "remarks": list(equilibria.remarks),
+        "turning": {name: number(value) for name, value in equilibria.turning.items()},
     }

@@ -124,12 +124,12 @@ def _differences(result: ClaimResult) -> Iterator[str]:
         yield Writer().said(counterexample(result.counterexample, "for example at [[at]]: [[shows]]"))
 
 
-def counterexample(found: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
+def counterexample(example: Counterexample, text: str = "For example at [[at]]: [[shows]].") -> Said:
     """``For example at A = 1, C = 3: C - (7*A) = -4, the motion is stable (Routh).``"""
-    at = [Relation(Name(name), "=", Number(value)) for name, value in found.at]
+    at = [Relation(Name(name), "=", Number(value)) for name, value in example.at]
     shows = [
         say("the motion is [[verdict]]", verdict=worded(value)) if what == THE_MOTION else f"{what} = {value}"
-        for what, value in found.shows
+        for what, value in example.shows
     ]
     return say(text, at=at, shows=shows)
 
@@ -198,13 +198,13 @@ def _by(theorems: Sequence[str]) -> tuple[Inline, ...]:
     return (" (", *names, ")") if names else ()
 
 
-def verdict(found: Verdict, key: str = "") -> tuple[Inline, ...]:
+def verdict(conclusion: Verdict, key: str = "") -> tuple[Inline, ...]:
     """Its word, with its theorems."""
-    return concluded(found.word, found.theorems, key)
+    return concluded(conclusion.word, conclusion.theorems, key)
 
 
-def decided(found: Stability) -> str:
+def decided(stability: Stability) -> str:
     """How the verdict at given values was found, if it is one: irrational values have enclosures."""
-    if found.numerical is None or found.numerical.word == Word.UNDECIDED:
+    if stability.numerical is None or stability.numerical.word == Word.UNDECIDED:
         return ""
-    return ", decided by rigorous enclosures" if found.enclosed else ", decided exactly"
+    return ", decided by rigorous enclosures" if stability.enclosed else ", decided exactly"

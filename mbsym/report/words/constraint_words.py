@@ -13,20 +13,20 @@ from mbsym.problems.reduction import Reduction
 from mbsym.report.content import Listed, Name, Phrase, Relation, Said, Symbol, joined, named, say, speeds
 
 
-def sentences(found: Constraints) -> Iterator[Said]:
+def sentences(constraints: Constraints) -> Iterator[Said]:
     """Counts, redundant rows, integrability, and what depends on what."""
-    n = len(found.coordinates)
+    n = len(constraints.coordinates)
     yield say(
         "Coordinates: [[n]]; independent constraints on positions: [[h]], on velocities: [[r]] in all; degrees of "
         "freedom: [[f]].",
         n=str(n),
-        h=str(found.position_rank),
-        r=str(found.velocity_rank),
-        f=str(n - found.velocity_rank),
+        h=str(constraints.position_rank),
+        r=str(constraints.velocity_rank),
+        f=str(n - constraints.velocity_rank),
     )
-    if not found.exact_points:
+    if not constraints.exact_points:
         yield Said("The ranks were taken at certified enclosures of points that keep the constraints.")
-    for redundant in found.redundant:
+    for redundant in constraints.redundant:
         if not redundant.from_rows:
             yield say(
                 "Redundant: [[row]] is satisfied by every motion ([[sure]]).",
@@ -40,77 +40,77 @@ def sentences(found: Constraints) -> Iterator[Said]:
             others=[label(from_row) for from_row in redundant.from_rows],
             sure=worded(redundant.certainty.value),
         )
-    if found.demanded.count:
-        yield from _demanded(found.demanded)
-    if found.rank_beside is not None:
+    if constraints.demanded.count:
+        yield from _demanded(constraints.demanded)
+    if constraints.rank_beside is not None:
         yield say(
             "These ranks are those at the given values of the parameters; at other values near them [[other]] "
             "constraints on velocities are independent.",
-            other=str(found.rank_beside),
+            other=str(constraints.rank_beside),
         )
-    if found.integrability is not None:
-        yield from _integrable(found.integrability, n - found.position_rank)
+    if constraints.integrability is not None:
+        yield from _integrable(constraints.integrability, n - constraints.position_rank)
     for whole, sentence in (
         (True, "Integrable by itself (proved): [[rows]]."),
         (False, "Not integrable by itself (proved): [[rows]]."),
     ):
-        rows = [name for name, decided in found.alone if decided is whole]
-        if rows and len(found.alone) > 1:  # of one alone it has been said
+        rows = [name for name, decided in constraints.alone if decided is whole]
+        if rows and len(constraints.alone) > 1:  # of one alone it has been said
             yield say(sentence, rows=_labels(rows))
-    if found.dependent and found.free and found.in_speeds:
+    if constraints.dependent and constraints.free and constraints.in_speeds:
         yield say(
             "Dependent speeds: [[dependent]]; independent ones: [[free]].",
-            dependent=speeds(found.dependent),
-            free=speeds(found.free),
+            dependent=speeds(constraints.dependent),
+            free=speeds(constraints.free),
         )
-    elif found.dependent and not found.free:
+    elif constraints.dependent and not constraints.free:
         yield Said("The constraints determine all velocities: nothing is left to be integrated.")
-    elif found.dependent and found.free:
+    elif constraints.dependent and constraints.free:
         yield say(
             "Dependent velocities: those of [[dependent]]; independent ones: those of [[free]].",
-            dependent=named(found.dependent),
-            free=named(found.free),
+            dependent=named(constraints.dependent),
+            free=named(constraints.free),
         )
 
 
-def _demanded(found: Demanded) -> Iterator[Said]:
+def _demanded(demands: Demanded) -> Iterator[Said]:
     """Which relations between parameters, and what the given values make of them."""
     yield say(
         "The constraints can be kept, and leave this freedom, only where the parameters satisfy further relations; "
         "their number: [[k]].",
-        k=str(found.count),
+        k=str(demands.count),
     )
-    if found.relations:
+    if demands.relations:
         yield say(
             "The parameters have to satisfy [[relations]] ([[sure]]).",
-            relations=[Relation(x, "=", 0) for x in found.relations],
+            relations=[Relation(x, "=", 0) for x in demands.relations],
             sure=worded(Certainty.VERIFIED.value),
         )
-    if found.satisfied:
+    if demands.satisfied:
         yield Said("The given values do so.")
-    elif found.satisfied is not None:
+    elif demands.satisfied is not None:
         yield Said("The given values do not: what is said of the motion here is not about them.")
-        if found.freedom is None:
+        if demands.freedom is None:
             yield Said("At the given values no configuration that keeps all constraints was found.")
-        elif not found.freedom:
+        elif not demands.freedom:
             yield Said("At the given values nothing can move in any configuration that was found.")
         else:
             yield say(
                 "At the given values the configurations that were found have [[f]] degrees of freedom at most.",
-                f=str(found.freedom),
+                f=str(demands.freedom),
             )
 
 
-def reaction_sentences(found: Reaction) -> Iterator[Said]:
+def reaction_sentences(reaction: Reaction) -> Iterator[Said]:
     """What is not determined of a reaction; nothing where all is."""
-    if not found.balances:
+    if not reaction.balances:
         return
     yield say(
         "The joint of [[body]] is statically indeterminate: the equations do not determine [[components]].",
-        body=found.body,
-        components=Listed(_components(found.undetermined)),
+        body=reaction.body,
+        components=Listed(_components(reaction.undetermined)),
     )
-    for balance in found.balances:
+    for balance in reaction.balances:
         if balance.added is None:
             yield say(
                 "Forces of [[rows]] may be in balance within the mechanism, whatever their size, and change "
@@ -127,13 +127,14 @@ def reaction_sentences(found: Reaction) -> Iterator[Said]:
                 force=force,
                 moment=moment,
             )
-    if found.combinations:
+    if reaction.combinations:
         yield say(
             "Combinations of these components to which they add nothing are determined: [[k]] in number.",
-            k=str(found.combinations),
+            k=str(reaction.combinations),
         )
     yield say(
-        "The formulas are those without the forces of [[rows]].", rows=_labels([one.rows[0] for one in found.balances])
+        "The formulas are those without the forces of [[rows]].",
+        rows=_labels([reaction_balance.rows[0] for reaction_balance in reaction.balances]),
     )
 
 
@@ -141,71 +142,71 @@ def _components(places: Iterable[int]) -> tuple[Symbol, ...]:
     return tuple(Symbol("RL"[k // 3], str(k % 3 + 1)) for k in places)
 
 
-def reduction_sentences(found: Reduction) -> Iterator[Said]:
+def reduction_sentences(reduction: Reduction) -> Iterator[Said]:
     """Which quantities the first approximation is about, and what became of the others."""
     yield say(
         "The first approximation is about the independent velocities, those of [[free]], and what they depend on.",
-        free=named(found.speeds),
+        free=named(reduction.speeds),
     )
-    if found.dependent_coordinates:
+    if reduction.dependent_coordinates:
         yield say(
             "Dependent coordinates are expanded about the motion, not solved for: [[names]].",
-            names=named(found.dependent_coordinates),
+            names=named(reduction.dependent_coordinates),
         )
-    if found.leaf:
+    if reduction.leaf:
         yield say(
             "The velocity constraints are integrable (Frobenius; proved): they keep relations between the coordinates, "
             "[[k]] in number, and the first approximation is that of disturbances that keep the values of these; the "
             "zero roots of others, as many, are not among those below.",
-            k=str(found.leaf),
+            k=str(reduction.leaf),
         )
-    if found.rates:
-        rates = [Relation(Name(name, 1), "=", x) for name, x in found.rates]
+    if reduction.rates:
+        rates = [Relation(Name(name, 1), "=", x) for name, x in reduction.rates]
         yield say("On the motion the constraints demand [[rates]].", rates=rates)
-    if found.idle:
-        yield say("No equation of these velocities depends on [[names]].", names=named(found.idle))
-    if found.following:
+    if reduction.idle:
+        yield say("No equation of these velocities depends on [[names]].", names=named(reduction.idle))
+    if reduction.following:
         yield say(
             "The equations depend on [[names]], of which the velocities are dependent: each of them has an equation of "
             "first order of its own, and M has a row of zeros for it.",
-            names=named(found.following),
+            names=named(reduction.following),
         )
-    for value in found.assumed:
+    for value in reduction.assumed:
         yield say("This holds where [[value]].", value=Relation(value, "!=", 0))
-    if not found.holonomic:
+    if not reduction.holonomic:
         yield say(
             "Velocities are constrained besides coordinates, so D, G, K and N are taken as no more than the symmetric "
             "and skew parts of two matrices: nothing is said about forces of a kind."
         )
 
 
-def _integrable(found: Integrability, dimension: int) -> Iterator[Said]:
+def _integrable(integrability: Integrability, dimension: int) -> Iterator[Said]:
     """Frobenius' verdict; its word falls with its certainty."""
-    growth = list(map(str, found.growth))
-    sure = worded(found.certainty.value)
-    if found.kept is None:
+    growth = list(map(str, integrability.growth))
+    sure = worded(integrability.certainty.value)
+    if integrability.kept is None:
         yield Said("Whether the velocity constraints are integrable is undecided: the formulas outgrew their budget.")
         return
-    if found.word == "holonomic" and found.rheonomic:
+    if integrability.word == "holonomic" and integrability.rheonomic:
         yield say(
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
             "configurations that can be reached at any one time are of dimension [[k]].",
             sure=sure,
-            k=str(dimension - found.kept),
+            k=str(dimension - integrability.kept),
         )
-    elif found.word == "holonomic":
+    elif integrability.word == "holonomic":
         yield say(
             "The velocity constraints are integrable (Frobenius; [[sure]]): the system is holonomic, and the "
             "configurations that can be reached are of dimension [[k]].",
             sure=sure,
-            k=str(dimension - found.kept),
+            k=str(dimension - integrability.kept),
         )
-    elif found.word == "partly":
+    elif integrability.word == "partly":
         yield say(
             "The velocity constraints are integrable in part ([[sure]]): they keep [[kept]] further relations between "
             "the coordinates; the fields and their Lie brackets span [[growth]] dimensions.",
             sure=sure,
-            kept=str(found.kept),
+            kept=str(integrability.kept),
             growth=growth,
         )
     else:

@@ -34,26 +34,26 @@ VANISHING = {
 DIGITS = 20
 
 
-def lines(found: Along) -> Iterator[str]:
+def lines(interval: Along) -> Iterator[str]:
     """From the lower end to the upper one: what holds between values, and at each of them."""
-    if found.cyclic:
+    if interval.cyclic:
         text = "without the cyclic coordinates [[names]]"
-        if found.hamiltonian:
+        if interval.hamiltonian:
             text = "without the cyclic coordinates [[names]], their momenta unperturbed"
-        yield Message(text, names=", ".join(found.cyclic))
-    ends = [str(found.low), *(_number(one) for one in found.specials), str(found.high)]
-    for k, between in enumerate(found.between):
+        yield Message(text, names=", ".join(interval.cyclic))
+    ends = [str(interval.low), *(_number(special_value) for special_value in interval.specials), str(interval.high)]
+    for k, between in enumerate(interval.between):
         short = [end if "/" in end or len(end) < 9 else f"{float(end):.6g}" for end in ends[k : k + 2]]
         text = "[[name]] from [[low]] to [[high]]: [[verdict]]"
-        yield Message(text, name=found.name, low=short[0], high=short[1], verdict=_said(between.judged))
-        if k < len(found.specials):
-            special = found.specials[k]
-            yield joined((f"{found.name} = {ends[k + 1]}", _told(special)), ": ")
+        yield Message(text, name=interval.name, low=short[0], high=short[1], verdict=_said(between.judged))
+        if k < len(interval.specials):
+            special = interval.specials[k]
+            yield joined((f"{interval.name} = {ends[k + 1]}", _told(special)), ": ")
             yield Message(
                 "  [[what]]; [[name]] is a root of [[polynomial]]",
                 what=joined((worded(VANISHING[key]) for key in special.vanishing), ", "),
-                name=found.name,
-                polynomial=_polynomial(special.polynomial, found.name),
+                name=interval.name,
+                polynomial=_polynomial(special.polynomial, interval.name),
             )
             yield from (joined(("  ", number), "") for number in _numbers(special.judged))
             if special.verdict is not None:
@@ -140,14 +140,14 @@ def _polynomial(coefficients: Sequence[int], name: str) -> str:
     return text
 
 
-def as_text(system: System, found: Along) -> str:
+def as_text(system: System, interval: Along) -> str:
     """JSON: ``between`` has one entry more than ``values``."""
     whole = doc.Nonlinear.from_result(
-        found,
+        interval,
         system=system.name,
-        parameter=found.name,
-        low=str(found.low),
-        high=str(found.high),
+        parameter=interval.name,
+        low=str(interval.low),
+        high=str(interval.high),
         values=[
             doc.ExceptionalValue.from_result(
                 special.judged,
@@ -158,9 +158,9 @@ def as_text(system: System, found: Along) -> str:
                 vanishing=[VANISHING[key] for key in special.vanishing],
                 **_of_problem_6(special.verdict),
             )
-            for special in found.specials
+            for special in interval.specials
         ],
-        between=[doc.Between.from_result(one.judged, enclosure, sample=str(one.sample)) for one in found.between],
+        between=[doc.Between.from_result(gap.judged, enclosure, sample=str(gap.sample)) for gap in interval.between],
     )
     return written(whole)
 

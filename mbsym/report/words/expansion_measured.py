@@ -42,85 +42,87 @@ _AVERAGES: WeakKeyDictionary[SmallParameters, tuple[JudgedAverage, ...]] = WeakK
 class JudgedAverage:
     """An effective potential with what was measured of it; ``withdrawn``: the measurement contradicts it."""
 
-    one: Averaging
+    averaging: Averaging
     measured: Measured | str
     withdrawn: bool
 
     @property
-    def found(self) -> Averaged | None:
+    def averaged(self) -> Averaged | None:
         """The result, where there is one that stands."""
-        return None if self.withdrawn else self.one.found
+        return None if self.withdrawn else self.averaging.averaged
 
 
-def contradicts(told: Measured | str) -> bool:
+def contradicts(measurement: Measured | str) -> bool:
     """Whether the distances do not shrink as they would by the averaging theorem: the result must not be told then."""
     from mbsym.simulation.averaged import NOISE
 
-    if isinstance(told, str) or not told.orders:
+    if isinstance(measurement, str) or not measurement.orders:
         return False
-    first, last = told.orders[0], told.orders[-1]
+    first, last = measurement.orders[0], measurement.orders[-1]
     # Where several phases beat the last distance alone scatters; better than expected is no contradiction.
-    short = last < told.expected - SLACK and sum(told.orders) < told.expected * len(told.orders)
-    slow = told.distances[-1] > NOISE and short
-    away = told.distances[0] >= FAR and first < told.expected - 2 * SLACK
-    gone = told.distances[0] >= GONE and first > told.expected + 2 * SLACK
+    short = last < measurement.expected - SLACK and sum(measurement.orders) < measurement.expected * len(
+        measurement.orders
+    )
+    slow = measurement.distances[-1] > NOISE and short
+    away = measurement.distances[0] >= FAR and first < measurement.expected - 2 * SLACK
+    gone = measurement.distances[0] >= GONE and first > measurement.expected + 2 * SLACK
     return slow or away or gone
 
 
-def flow_measured(found: SmallParameters, system: System) -> Measured | str:
+def flow_measured(small_parameters: SmallParameters, system: System) -> Measured | str:
     """The error of the flow on the slow manifold; why it was not measured."""
-    if found not in _FLOWS:
-        assert found.slow is not None
-        _FLOWS[found] = measured_or_why(in_free_coordinates(system), found.slow)
-    return _FLOWS[found]
+    if small_parameters not in _FLOWS:
+        assert small_parameters.slow is not None
+        _FLOWS[small_parameters] = measured_or_why(in_free_coordinates(system), small_parameters.slow)
+    return _FLOWS[small_parameters]
 
 
 def measured_or_why(
-    system: System, found: Expansion, time: float | None = None, values: Mapping[str, Fraction] | None = None
+    system: System, expansion: Expansion, time: float | None = None, values: Mapping[str, Fraction] | None = None
 ) -> Measured | str:
     """The error of the flow over ``time``, with ``values`` in place of the description's; why it was not measured."""
     from mbsym.simulation.expanded import measured
 
-    return _or_why(lambda: measured(system, found, time, values))
+    return _or_why(lambda: measured(system, expansion, time, values))
 
 
-def oscillation_measured(found: SmallParameters, system: System) -> MeasuredOrders | str:
+def oscillation_measured(small_parameters: SmallParameters, system: System) -> MeasuredOrders | str:
     """The errors of the periodic solution at parts of the small parameter; why they were not measured."""
-    if found not in _WAVES:
-        assert found.oscillation is not None
-        _WAVES[found] = orders_or_why(in_free_coordinates(system), found.oscillation)
-    return _WAVES[found]
+    if small_parameters not in _WAVES:
+        assert small_parameters.oscillation is not None
+        _WAVES[small_parameters] = orders_or_why(in_free_coordinates(system), small_parameters.oscillation)
+    return _WAVES[small_parameters]
 
 
 def orders_or_why(
-    system: System, told: Oscillating, values: Mapping[str, Fraction] | None = None
+    system: System, solution: Oscillating, values: Mapping[str, Fraction] | None = None
 ) -> MeasuredOrders | str:
     """The same of any periodic solution, with the ``values`` that it was made with."""
     from mbsym.simulation.oscillating import measured_orders
 
-    return _or_why(lambda: measured_orders(system, told, values))
+    return _or_why(lambda: measured_orders(system, solution, values))
 
 
-def averages(found: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
+def averages(small_parameters: SmallParameters, system: System) -> tuple[JudgedAverage, ...]:
     """All effective potentials, each held against the motion itself: what any output shows of them."""
-    if found not in _AVERAGES:
-        _AVERAGES[found] = tuple(_judged(found, in_free_coordinates(system)))
-    return _AVERAGES[found]
+    if small_parameters not in _AVERAGES:
+        _AVERAGES[small_parameters] = tuple(_judged(small_parameters, in_free_coordinates(system)))
+    return _AVERAGES[small_parameters]
 
 
-def _judged(found: SmallParameters, system: System) -> Iterator[JudgedAverage]:
-    for averaging in found.averaged:
-        told: Measured | str = ""
-        if averaging.found is not None and averaging.analysis is not None:
-            told = average_or_why(system, averaging.analysis.system, averaging.found)
-        yield JudgedAverage(averaging, told, contradicts(told))
+def _judged(small_parameters: SmallParameters, system: System) -> Iterator[JudgedAverage]:
+    for averaging in small_parameters.averaged:
+        measurement: Measured | str = ""
+        if averaging.averaged is not None and averaging.analysis is not None:
+            measurement = average_or_why(system, averaging.analysis.system, averaging.averaged)
+        yield JudgedAverage(averaging, measurement, contradicts(measurement))
 
 
-def average_or_why(system: System, averaged: System, found: Averaged, time: float | None = None) -> Measured | str:
+def average_or_why(system: System, averaged: System, average: Averaged, time: float | None = None) -> Measured | str:
     """The distance of the motion from the averaged one; why it was not measured."""
     from mbsym.simulation.averaged import measured
 
-    return _or_why(lambda: measured(system, averaged, found, time))
+    return _or_why(lambda: measured(system, averaged, average, time))
 
 
 def _or_why(measure: Callable[[], M]) -> M | str:

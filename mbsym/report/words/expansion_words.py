@@ -149,38 +149,38 @@ _OMEGA = {
 }
 
 
-def coefficients(found: Expansion) -> Iterator[Coefficient]:
+def coefficients(expansion: Expansion) -> Iterator[Coefficient]:
     """All of the manifold, then all of the flow, but for what only says that the rate of a variable is its rate."""
-    manifold = found.manifold
-    rates = {without_velocity(name) for name in (*manifold.fast, *manifold.slow) if name in found.velocities}
+    manifold = expansion.manifold
+    rates = {without_velocity(name) for name in (*manifold.fast, *manifold.slow) if name in expansion.velocities}
     for rate, names, series in ((False, manifold.fast, manifold.functions), (True, manifold.slow, manifold.flow)):
-        for name, one in zip(names, series, strict=True):
-            if rate and name in rates - {*found.velocities}:
+        for name, component in zip(names, series, strict=True):
+            if rate and name in rates - {*expansion.velocities}:
                 continue
-            for k, formula in of_series(found, one):
-                plain = without_velocity(name) if name in found.velocities else name
+            for k, formula in of_series(expansion, component):
+                plain = without_velocity(name) if name in expansion.velocities else name
                 yield Coefficient(plain, rate + (plain != name), k, formula, rate)
 
 
-def of_series(found: Expansion, series: Series) -> Iterator[tuple[int, Formula]]:
+def of_series(expansion: Expansion, series: Series) -> Iterator[tuple[int, Formula]]:
     """Exponents and coefficients, in order; 0 where there are none."""
     listed = series.coefficients or {0: series.coefficient(0)}
     for k in sorted(listed):
-        yield k, found.formula(listed[k])
+        yield k, expansion.formula(listed[k])
 
 
-def opening(found: Expansion) -> Iterator[Said]:
+def opening(expansion: Expansion) -> Iterator[Said]:
     """What is expanded in what."""
-    manifold = found.manifold
+    manifold = expansion.manifold
     small = Name(manifold.field.small)
     yield from scaled(manifold.field.powers, manifold.field.small)
-    fast, slow = (tuple(_variable(found, name) for name in names) for names in (manifold.fast, manifold.slow))
+    fast, slow = (tuple(_variable(expansion, name) for name in names) for names in (manifold.fast, manifold.slow))
     gaps: Gaps = {"order": str(manifold.order), "small": small, "fast": fast}
     yield Said(SERIES, gaps | {"slow": slow}) if slow else Said(CONSTANTS, gaps)
 
 
-def _variable(found: Expansion, name: str) -> Name:
-    return Name(without_velocity(name), 1) if name in found.velocities else Name(name)
+def _variable(expansion: Expansion, name: str) -> Name:
+    return Name(without_velocity(name), 1) if name in expansion.velocities else Name(name)
 
 
 def scaled(powers: Iterable[tuple[str, int]], small: str) -> Iterator[Said]:
@@ -190,9 +190,9 @@ def scaled(powers: Iterable[tuple[str, int]], small: str) -> Iterator[Said]:
         yield say(text, name=Name(name), power=str(power), small=Name(small))
 
 
-def sentences(found: Expansion) -> Iterator[Said]:
+def sentences(expansion: Expansion) -> Iterator[Said]:
     """What was checked, and what is known of the motion on the manifold and towards it."""
-    manifold = found.manifold
+    manifold = expansion.manifold
     least = [residual for residual in manifold.residuals if residual is not None]
     values: Gaps = {"small": Name(manifold.field.small), "order": str(manifold.order)}
     if least:
@@ -202,24 +202,24 @@ def sentences(found: Expansion) -> Iterator[Said]:
         )
     else:
         yield Said("Put into the equations at a random rational state, it leaves nothing (verified).", values)
-    yield from _choice(found)
-    if found.real:
-        yield say("It is real where [[conditions]].", conditions=_told(found, found.real))
-    if found.provided:
+    yield from _choice(expansion)
+    if expansion.real:
+        yield say("It is real where [[conditions]].", conditions=_told(expansion, expansion.real))
+    if expansion.provided:
         yield say(
             "It holds where these are not zero, which were divided by: [[provided]].",
-            provided=found.provided,
+            provided=expansion.provided,
         )
     if manifold.steady is None:
-        yield say("Nothing is said of stability: [[missing]].", missing=worded(found.missing))
+        yield say("Nothing is said of stability: [[missing]].", missing=worded(expansion.missing))
         return
     values["zeros"] = str(manifold.steady.zeros)
-    outcome, conditions = found.fast
-    yield Said(_FAST[outcome], values | {"conditions": _told(found, conditions)})
+    outcome, conditions = expansion.fast
+    yield Said(_FAST[outcome], values | {"conditions": _told(expansion, conditions)})
     if len(manifold.steady.slow.polynomial) > 1:
-        outcome, conditions = found.slow
-        told = _SLOW if manifold.steady.zeros else _SLOW | _ALL
-        yield Said(told[outcome], values | {"conditions": _told(found, conditions)})
+        outcome, conditions = expansion.slow
+        wording = _SLOW if manifold.steady.zeros else _SLOW | _ALL
+        yield Said(wording[outcome], values | {"conditions": _told(expansion, conditions)})
     elif manifold.steady.free:
         yield Said("All roots of the flow on it are zero.")
     elif manifold.steady.zeros:
@@ -229,8 +229,10 @@ def sentences(found: Expansion) -> Iterator[Said]:
         "[[known]] (verified).",
         values | {"known": str(manifold.steady.remainder - 1)},
     )
-    yield from _of_set(found, manifold.steady.free, values)
-    if found.fast[0] is Outcome.FAILS:  # a negative minor: a root to the right, whatever the flow on the manifold does
+    yield from _of_set(expansion, manifold.steady.free, values)
+    if (
+        expansion.fast[0] is Outcome.FAILS
+    ):  # a negative minor: a root to the right, whatever the flow on the manifold does
         yield Said(
             "A fast root has a positive real part: this motion is unstable for all sufficiently small $[[small]] > 0$.",
             values,
@@ -253,36 +255,36 @@ _CHOICE = {
 }
 
 
-def _choice(found: Expansion) -> Iterator[Said]:
+def _choice(expansion: Expansion) -> Iterator[Said]:
     """Which solution of the lowest order this one begins with, and the others."""
-    if found.choice is Choice.ONLY:
+    if expansion.choice is Choice.ONLY:
         return
-    fast = tuple(_variable(found, name) for name in found.manifold.fast)
+    fast = tuple(_variable(expansion, name) for name in expansion.manifold.fast)
     text = "At the lowest order the fast variables have solutions; their number: [[count]]."
-    yield say(text, count=str(1 + len(found.others)))
-    attracting = found.choice is Choice.ATTRACTING
-    gaps: Gaps = {"small": Name(found.manifold.field.small), "fast": fast} if attracting else {}
-    yield Said(_CHOICE[found.choice], gaps)
-    for values in found.others:
+    yield say(text, count=str(1 + len(expansion.others)))
+    attracting = expansion.choice is Choice.ATTRACTING
+    gaps: Gaps = {"small": Name(expansion.manifold.field.small), "fast": fast} if attracting else {}
+    yield Said(_CHOICE[expansion.choice], gaps)
+    for values in expansion.others:
         shown = tuple(Relation(Raised(name, 0), "=", value) for name, value in zip(fast, values, strict=True))
         yield say("Another one begins with [[values]].", values=shown)
-    if found.unknown:
+    if expansion.unknown:
         text = "Solutions that need other roots, real or not, are not expanded; their number: [[count]]."
-        yield say(text, count=str(found.unknown))
+        yield say(text, count=str(expansion.unknown))
 
 
-def _of_set(found: Expansion, free: Sequence[str], values: Gaps) -> Iterator[Said]:
+def _of_set(expansion: Expansion, free: Sequence[str], values: Gaps) -> Iterator[Said]:
     """The set of steady states, in the words of Rumyantsev."""
-    known = {*found.manifold.fast, *found.manifold.slow}
-    order = [name for name in found.transfer.variables if name in known]
+    known = {*expansion.manifold.fast, *expansion.manifold.slow}
+    order = [name for name in expansion.transfer.variables if name in known]
     others = [name for name in order if name not in free]
     if not (free and others):
         return
-    outcome, conditions = found.stabilizable
+    outcome, conditions = expansion.stabilizable
     values = values | {
-        "free": tuple(_variable(found, name) for name in free),
-        "others": tuple(_variable(found, name) for name in others),
-        "conditions": _told(found, conditions),
+        "free": tuple(_variable(expansion, name) for name in free),
+        "others": tuple(_variable(expansion, name) for name in others),
+        "conditions": _told(expansion, conditions),
     }
     yield Said(
         "Every state near this motion with any [[free]], and with [[others]] as on the motion, is steady: a set "
@@ -292,14 +294,14 @@ def _of_set(found: Expansion, free: Sequence[str], values: Gaps) -> Iterator[Sai
     yield Said(_OMEGA[outcome], values)
 
 
-def of_measured(small: str, told: Measured | str) -> Iterator[Said]:
+def of_measured(small: str, measurement: Measured | str) -> Iterator[Said]:
     """The error of the flow against all equations."""
-    if isinstance(told, str):
-        yield say("The error of the flow was not measured: [[why]].", why=worded(told))
+    if isinstance(measurement, str):
+        yield say("The error of the flow was not measured: [[why]].", why=worded(measurement))
         return
-    values: Gaps = {"small": Name(small), "time": f"{told.time:.4g}"}
-    values["distances"] = ", ".join(f"{x:.2g}" for x in told.distances)
-    if told.exact:
+    values: Gaps = {"small": Name(small), "time": f"{measurement.time:.4g}"}
+    values["distances"] = ", ".join(f"{x:.2g}" for x in measurement.distances)
+    if measurement.exact:
         yield Said(
             "Measured against a simulation of all equations over a time of [[time]]: the distance of the slow "
             "variables is no larger than the errors of the integrations.",
@@ -312,64 +314,67 @@ def of_measured(small: str, told: Measured | str) -> Iterator[Said]:
         "and a quarter of it.",
         values,
     )
-    if told.orders:
+    if measurement.orders:
         yield Said(
             "It shrinks like the power [[orders]] of [[small]]; [[expected]] is expected where [[small]] is small "
             "enough.",
-            values | {"orders": ", ".join(f"{x:.1f}" for x in told.orders), "expected": str(told.expected)},
+            values
+            | {"orders": ", ".join(f"{x:.1f}" for x in measurement.orders), "expected": str(measurement.expected)},
         )
-        if too_slow(told.orders, told.expected):
+        if too_slow(measurement.orders, measurement.expected):
             yield Said(TOO_SLOW)
 
 
-def of_averaging(told: JudgedAverage) -> Iterator[Said]:
+def of_averaging(average: JudgedAverage) -> Iterator[Said]:
     """The effective potential, what problem 6 says with it, and the error that was measured.
 
     Of one that the measurement contradicts nothing is said but that.
     """
-    one = told.one
-    phase = named(one.phases)
-    if one.found is None:
-        yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=worded(one.failure))
+    averaging = average.averaging
+    phase = named(averaging.phases)
+    if averaging.averaged is None:
+        yield say("Averaging over [[phase]] gives nothing: [[why]].", phase=phase, why=worded(averaging.failure))
         return
     yield say(
         "Averaged over the phase [[phase]]. Its rate [[rate]] is taken as of order $1/\\epsilon$, and what is not "
         "named here as of order 1."
-        if len(one.phases) == 1
+        if len(averaging.phases) == 1
         else "Averaged over the phases [[phase]]. Their rates [[rate]] are taken as of order $1/\\epsilon$, and what "
         "is not named here as of order 1.",
         phase=phase,
-        rate=named(one.found.rates),
+        rate=named(averaging.averaged.rates),
     )
-    if one.found.apart:
-        yield say("Taken as of order $1/\\epsilon$, too, as phases meet: [[rates]].", rates=one.found.apart)
-    for power in sorted({power for _, power in one.found.orders}):
-        names = [name for name, k in one.found.orders if k == power]
+    if averaging.averaged.apart:
+        yield say("Taken as of order $1/\\epsilon$, too, as phases meet: [[rates]].", rates=averaging.averaged.apart)
+    for power in sorted({power for _, power in averaging.averaged.orders}):
+        names = [name for name, k in averaging.averaged.orders if k == power]
         yield say(
             "Taken as of the order of the power [[power]] of $\\epsilon$: [[names]].",
             power=str(power),
             names=named(names),
         )
-    if told.withdrawn:
-        assert not isinstance(told.measured, str)
-        yield say(WITHDRAWN, phase=phase, **_measures(told.measured))
+    if average.withdrawn:
+        assert not isinstance(average.measured, str)
+        yield say(WITHDRAWN, phase=phase, **_measures(average.measured))
         return
     yield Said(
         "For times of order 1 the motion stays within order $\\epsilon$ of one in the effective potential below "
         "(averaging theorem)."
     )
     yield say(
-        "What the fast phase adds: [[formula]]." if len(one.phases) == 1 else "What the fast phases add: [[formula]].",
-        formula=one.found.vibrational,
+        "What the fast phase adds: [[formula]]."
+        if len(averaging.phases) == 1
+        else "What the fast phases add: [[formula]].",
+        formula=averaging.averaged.vibrational,
     )
-    yield say("Effective potential: [[formula]].", formula=one.found.potential)
-    if one.found.beside:
+    yield say("Effective potential: [[formula]].", formula=averaging.averaged.potential)
+    if averaging.averaged.beside:
         yield say(
             "Beside it act the forces on [[names]] that have no force function here, as they did.",
-            names=named(one.found.beside),
+            names=named(averaging.averaged.beside),
         )
-    yield from _of_averaged_motion(one)
-    yield from _of_measured_average(told.measured)
+    yield from _of_averaged_motion(averaging)
+    yield from _of_measured_average(average.measured)
 
 
 def _of_averaged_motion(averaging: Averaging) -> Iterator[Said]:
@@ -405,11 +410,11 @@ def _of_averaged_motion(averaging: Averaging) -> Iterator[Said]:
         yield say("At the given values: [[word]].", word=worded(stability.numerical.word.value))
 
 
-def _of_measured_average(told: Measured | str) -> Iterator[Said]:
-    if isinstance(told, str):
-        yield say("The distance to the averaged motion was not measured: [[why]].", why=worded(told))
+def _of_measured_average(measurement: Measured | str) -> Iterator[Said]:
+    if isinstance(measurement, str):
+        yield say("The distance to the averaged motion was not measured: [[why]].", why=worded(measurement))
         return
-    values: Gaps = {**_measures(told)}
+    values: Gaps = {**_measures(measurement)}
     yield Said(
         "Measured over a time of [[time]]: the largest distance of the motion from the averaged one, as a part of its "
         "size, is [[distances]] at the given values, and with $\\epsilon$ a half and a quarter of it.",
@@ -420,28 +425,28 @@ def _of_measured_average(told: Measured | str) -> Iterator[Said]:
     )
 
 
-def _measures(told: Measured) -> dict[str, str]:
+def _measures(measurement: Measured) -> dict[str, str]:
     return {
-        "time": f"{told.time:.4g}",
-        "distances": ", ".join(f"{x:.2g}" for x in told.distances),
-        "orders": ", ".join(f"{x:.1f}" for x in told.orders),
+        "time": f"{measurement.time:.4g}",
+        "distances": ", ".join(f"{x:.2g}" for x in measurement.distances),
+        "orders": ", ".join(f"{x:.1f}" for x in measurement.orders),
     }
 
 
-def of_none(found: SmallParameters) -> Iterator[Said]:
+def of_none(small_parameters: SmallParameters) -> Iterator[Said]:
     """What is said where there is nothing to expand in, or no slow manifold was found."""
-    if found.nothing:
+    if small_parameters.nothing:
         yield Said(NOTHING)
-    elif found.small and found.slow is None:
+    elif small_parameters.small and small_parameters.slow is None:
         yield say(
             "No slow manifold was found in powers of [[small]]: [[why]].",
-            small=Name(found.small),
-            why=worded(found.no_slow),
+            small=Name(small_parameters.small),
+            why=worded(small_parameters.no_slow),
         )
 
 
-def _told(found: Expansion, conditions: Sequence[Condition]) -> tuple[Inline, ...]:
-    ring = found.transfer.ring
+def _told(expansion: Expansion, conditions: Sequence[Condition]) -> tuple[Inline, ...]:
+    ring = expansion.transfer.ring
     parts: dict[str, Inline] = {}  # each once
     for condition in conditions:
         if condition.kind == "inequality":

@@ -71,8 +71,8 @@ def _annotation(finding: Finding) -> str:
         last = finding.column + finding.length - 1
         properties |= {"line": str(finding.line), "col": str(finding.column), "endColumn": str(last)}
     properties["title"] = finding.code
-    told = ",".join(f"{key}={_property(value)}" for key, value in properties.items())
-    return f"::{finding.severity} {told}::{_data(finding.text)}"
+    attributes = ",".join(f"{key}={_property(value)}" for key, value in properties.items())
+    return f"::{finding.severity} {attributes}::{_data(finding.text)}"
 
 
 def _data(text: str) -> str:

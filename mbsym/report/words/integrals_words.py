@@ -59,15 +59,15 @@ def undecided_at(name: str, values: Sequence[object], polynomials: Sequence[obje
         yield Message("undecided at the zeros of [[polynomial]]", polynomial=str(p).replace("x", name))
 
 
-def weights_text(variables: Sequence[Inline], given: Sequence[int]) -> str:
+def weights_text(variables: Sequence[Inline], weights: Sequence[int]) -> str:
     """``p, q, r: 1; gamma1, gamma2, gamma3: 2``."""
-    return Writer().inline(weighted(variables, given))
+    return Writer().inline(weighted(variables, weights))
 
 
-def weighted(variables: Sequence[Inline], given: Sequence[int]) -> Phrase:
+def weighted(variables: Sequence[Inline], weights: Sequence[int]) -> Phrase:
     """The same as a value: those of each weight together."""
     groups: dict[int, list[Inline]] = {}
-    for variable, weight in zip(variables, given, strict=True):
+    for variable, weight in zip(variables, weights, strict=True):
         groups.setdefault(weight, []).append(variable)
     return joined((Phrase((joined(items, ", "), f": {weight}")) for weight, items in groups.items()), "; ")
 
@@ -111,47 +111,65 @@ def _equation(p: Any, write: Callable[[Any], str]) -> str:
     return f"{write(p)} = 0"
 
 
-def sentences(found: PolynomialIntegrals) -> Iterator[Said]:
+def sentences(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
     """What is known of the list as a whole."""
-    values: Gaps = {"degree": str(found.degree), "count": str(found.independent), "names": named(found.aside)}
-    if not found.generators:
-        vectors = found.field.relations and all(name.isidentifier() for name in found.field.variables)
+    values: Gaps = {
+        "degree": str(polynomial_integrals.degree),
+        "count": str(polynomial_integrals.independent),
+        "names": named(polynomial_integrals.aside),
+    }
+    if not polynomial_integrals.generators:
+        vectors = polynomial_integrals.field.relations and all(
+            name.isidentifier() for name in polynomial_integrals.field.variables
+        )
         none = _NONE_BUT_LENGTHS if vectors else _NONE
-        none = _NONE_WITHOUT if found.aside and not vectors else none
-        yield Said(none[bool(found.field.parameters)] if found.complete else "None was found.", values)
-        yield from _left_out(found)
+        none = _NONE_WITHOUT if polynomial_integrals.aside and not vectors else none
+        yield Said(
+            none[bool(polynomial_integrals.field.parameters)] if polynomial_integrals.complete else "None was found.",
+            values,
+        )
+        yield from _left_out(polynomial_integrals)
         return
     yield Said("As functions at least [[count]] of them are independent (proved: rank of the gradients).", values)
-    if any(one.name.startswith("product of ") for one in found.generators):
+    if any(integral.name.startswith("product of ") for integral in polynomial_integrals.generators):
         yield Said(_TRIVIAL, values)
-    for generator in found.generators:
+    for generator in polynomial_integrals.generators:
         if not generator.independent:
             yield say(_DEPENDENT[generator.certainty], name=worded(title(generator)), weight=str(generator.weight))
-    if found.complete:
-        yield Said(_EVERY[bool(found.aside)][bool(found.field.parameters)], values)
-    yield from _left_out(found)
-    for count in found.counts:
+    if polynomial_integrals.complete:
+        yield Said(_EVERY[bool(polynomial_integrals.aside)][bool(polynomial_integrals.field.parameters)], values)
+    yield from _left_out(polynomial_integrals)
+    for count in polynomial_integrals.counts:
         if not count.complete:
             yield say(
                 "Of weight [[weight]] there are at most [[more]] more; they were not found within the budget.",
                 weight=str(count.weight),
                 more=str(count.most - count.products),
             )
-    if found.complete and not found.new and all(one.name != FUNCTION for one in found.generators):
-        yield Said((_NO_OTHER_WITHOUT if found.aside else _NO_OTHER)[bool(found.field.parameters)], values)
+    if (
+        polynomial_integrals.complete
+        and not polynomial_integrals.new
+        and all(integral.name != FUNCTION for integral in polynomial_integrals.generators)
+    ):
+        yield Said(
+            (_NO_OTHER_WITHOUT if polynomial_integrals.aside else _NO_OTHER)[
+                bool(polynomial_integrals.field.parameters)
+            ],
+            values,
+        )
 
 
-def _left_out(found: PolynomialIntegrals) -> Iterator[Said]:
+def _left_out(polynomial_integrals: PolynomialIntegrals) -> Iterator[Said]:
     """x' - B y, of a charge in a magnetic field, is not looked for, nor the area integral of a free body."""
-    if found.tied:
+    if polynomial_integrals.tied:
         yield Said("Constraints may have several branches: those of one branch alone are not looked for.")
-    if found.aside:
+    if polynomial_integrals.aside:
         text = "The equations do not contain [[names]]: integrals that do are not looked for here."
-        yield say(text, names=named(found.aside))
-    if found.rational:
+        yield say(text, names=named(polynomial_integrals.aside))
+    if polynomial_integrals.rational:
         text = "Integrals of problem 7 that are no polynomials in these variables, but quotients of such: [[names]]."
-        yield say(text, names=joined((worded(x) for x in found.rational), ", "))
-    if any(name.startswith("exp(") for name in found.field.variables):
+        yield say(text, names=joined((worded(x) for x in polynomial_integrals.rational), ", "))
+    if any(name.startswith("exp(") for name in polynomial_integrals.field.variables):
         yield Said("Polynomials are those in these variables: what stands in exponentials is none by itself.")
 
 

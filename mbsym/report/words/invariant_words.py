@@ -36,38 +36,39 @@ from mbsym.report.content import (
 )
 
 
-def ring_of(found: InvariantSets) -> Ring | None:
+def ring_of(invariant_sets: InvariantSets) -> Ring | None:
     """The ring of its formulas."""
-    return next((x.ring for _, x in found.integrals), None)
+    return next((x.ring for _, x in invariant_sets.integrals), None)
 
 
-def opening(found: InvariantSets) -> Iterator[Said]:
+def opening(invariant_sets: InvariantSets) -> Iterator[Said]:
     """What the families are made of."""
     yield Said(
         "Families $K$ of first integrals with constant multipliers; a motion that begins where $\\mathrm{grad}\\, K = "
         "0$ stays there."
     )
-    for k, (name, formula) in enumerate(found.integrals):
+    for k, (name, formula) in enumerate(invariant_sets.integrals):
         yield say("[[symbol]], [[name]]: [[formula]].", symbol=_integral(k), name=worded(name), formula=formula)
-    if found.left_out:
-        names = tuple(map(worded, found.left_out))
+    if invariant_sets.left_out:
+        names = tuple(map(worded, invariant_sets.left_out))
         yield say(
             "Left out of the families, as functions of these (verified at a random state): [[names]].", names=names
         )
-    if found.relations:
-        yield say("Between the variables: [[relations]].", relations=compared(found.relations))
+    if invariant_sets.relations:
+        yield say("Between the variables: [[relations]].", relations=compared(invariant_sets.relations))
         text = "Of the zero roots of a first approximation so many belong to these relations, and to no motion: [[n]]."
-        yield say(text, n=str(len(found.relations)))
+        yield say(text, n=str(len(invariant_sets.relations)))
     yield say(
-        "What is said of stability is about these variables: [[names]].", names=named(found.variables, ring_of(found))
+        "What is said of stability is about these variables: [[names]].",
+        names=named(invariant_sets.variables, ring_of(invariant_sets)),
     )
-    if found.in_angles and found.relations:
+    if invariant_sets.in_angles and invariant_sets.relations:
         yield Said("Multipliers of the geometry are Lagrange's: along a motion only the others are constant.")
 
 
-def told_families(found: InvariantSets) -> list[Family]:
+def told_families(invariant_sets: InvariantSets) -> list[Family]:
     """Those of which there is something to tell; where there is nothing of any of them, that."""
-    return [family for family in found.families if not _is_empty(family)] or list(found.families)
+    return [family for family in invariant_sets.families if not _is_empty(family)] or list(invariant_sets.families)
 
 
 def _is_empty(family: Family) -> bool:
@@ -105,38 +106,40 @@ def of_family(family: Family) -> Iterator[Said]:
         yield say("Pieces that are not invariant by themselves, left aside: [[n]].", n=str(family.parts))
 
 
-def of_set(one: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]:
+def of_set(stationary_set: StationarySet, number: int, ring: Ring | None) -> Iterator[Said]:
     """What is known of one set."""
     gaps: Gaps = {
         "number": str(number),
-        "equations": (*_values(one.solved, ring), *compared(one.relations)),
-        "dimension": str(one.dimension),
-        "union": str(one.union),
+        "equations": (*_values(stationary_set.solved, ring), *compared(stationary_set.relations)),
+        "dimension": str(stationary_set.dimension),
+        "union": str(stationary_set.union),
     }
-    if one.kind is Kind.STEADY:
+    if stationary_set.kind is Kind.STEADY:
         yield Said("Set [[number]], steady motions: [[equations]].", gaps)
-        if one.union:
+        if stationary_set.union:
             yield Said("They form a family of dimension [[union]].", gaps)
     else:
         text = "Set [[number]], an invariant manifold of dimension [[dimension]] for fixed multipliers: [[equations]]."
         yield Said(text, gaps)
-    if one.nonzero:
-        yield say("There [[nonzero]].", nonzero=compared(one.nonzero, "!="))
-    relations = _values([(name, x) for name, x in one.multipliers if x is not None], ring)
+    if stationary_set.nonzero:
+        yield say("There [[nonzero]].", nonzero=compared(stationary_set.nonzero, "!="))
+    relations = _values([(name, x) for name, x in stationary_set.multipliers if x is not None], ring)
     if relations:
         yield say("Multipliers: [[told]].", told=relations)
-    rates = dict(one.solved)
-    motion = [(name, x) for name, x in one.motion if str(x) not in (f"{name}_dot", str(rates.get(f"{name}_dot")))]
+    rates = dict(stationary_set.solved)
+    motion = [
+        (name, x) for name, x in stationary_set.motion if str(x) not in (f"{name}_dot", str(rates.get(f"{name}_dot")))
+    ]
     if motion:  # that y' is y', or what an equation of the set says, is told already
         yield say("On it: [[motion]].", motion=_values(motion, ring, 1))
-    yield Said(_INVARIANT[one.invariant])
-    if not one.real:
+    yield Said(_INVARIANT[stationary_set.invariant])
+    if not stationary_set.real:
         yield Said("No real point was found at the parameters that were tried: whether it has any is open.")
-    if one.variation is not None:
-        yield from _variation(one, one.variation, ring)
-    if one.first is not None:
-        yield from _first(one.first)
-        yield from _gap(one)
+    if stationary_set.variation is not None:
+        yield from _variation(stationary_set, stationary_set.variation, ring)
+    if stationary_set.first is not None:
+        yield from _first(stationary_set.first)
+        yield from _gap(stationary_set)
 
 
 _INVARIANT = {
@@ -146,30 +149,30 @@ _INVARIANT = {
 }
 
 
-def _values(given: Iterable[tuple[str, Formula]], ring: Ring | None, dots: int = 0) -> tuple[Relation, ...]:
-    return tuple(Relation(Name(name, dots, ring), "=", x) for name, x in given)
+def _values(pairs: Iterable[tuple[str, Formula]], ring: Ring | None, dots: int = 0) -> tuple[Relation, ...]:
+    return tuple(Relation(Name(name, dots, ring), "=", x) for name, x in pairs)
 
 
 def _all(signs: Iterable[Sign]) -> tuple[Relation, ...]:
     return tuple(Relation(sign.formula, sign.relation, 0) for sign in signs)
 
 
-def _variation(stationary_set: StationarySet, found: SecondVariation, ring: Ring | None) -> Iterator[Said]:
+def _variation(stationary_set: StationarySet, variation: SecondVariation, ring: Ring | None) -> Iterator[Said]:
     if not stationary_set.invariant:
         return
     steady = stationary_set.kind is Kind.STEADY
-    if found.outcome is Definiteness.STABLE:
+    if variation.outcome is Definiteness.STABLE:
         yield Said(
             "Stable (proved: the second variation of $K$ on the level of the integrals is definite)."
             if steady
             else "Stable as a set, near motions on it that stay bounded (proved: $K$ is definite across it)."
         )
-    elif found.outcome is Definiteness.CONDITIONAL:
-        sides = [_all(side) for side in (found.positive, found.negative) if side is not None]
-        chosen: Gaps = {"chosen": named(found.chosen, ring), "first": sides[0], "second": sides[-1]}
-        if found.chosen and steady:
+    elif variation.outcome is Definiteness.CONDITIONAL:
+        sides = [_all(side) for side in (variation.positive, variation.negative) if side is not None]
+        chosen: Gaps = {"chosen": named(variation.chosen, ring), "first": sides[0], "second": sides[-1]}
+        if variation.chosen and steady:
             yield Said("Sufficient for stability, for some value of [[chosen]]: [[first]].", chosen)
-        elif found.chosen:
+        elif variation.chosen:
             yield Said(_AS_A_SET_FOR_SOME, chosen)
         elif steady:
             yield Said("Sufficient for stability: [[first]].", chosen)
@@ -178,7 +181,7 @@ def _variation(stationary_set: StationarySet, found: SecondVariation, ring: Ring
         if len(sides) == 2:
             yield Said("Or, with $K$ of the other sign: [[second]].", chosen)
     else:
-        yield Said(_NOTHING[found.outcome])
+        yield Said(_NOTHING[variation.outcome])
 
 
 _AS_A_SET_FOR_SOME = (
@@ -192,34 +195,34 @@ _NOTHING = {
 }
 
 
-def _first(found: FirstApproximation) -> Iterator[Said]:
-    if found.factors:
-        factors = tuple(map(_even, found.factors))
-        if found.left:
+def _first(approximation: FirstApproximation) -> Iterator[Said]:
+    if approximation.factors:
+        factors = tuple(map(_even, approximation.factors))
+        if approximation.left:
             text = "First approximation: zero roots: [[zeros]]; among the others are the roots of [[factors]]."
-            yield say(text, zeros=str(found.zeros), factors=factors)
-        elif found.zeros:
+            yield say(text, zeros=str(approximation.zeros), factors=factors)
+        elif approximation.zeros:
             text = "First approximation: zero roots: [[zeros]]; the others are roots of [[factors]]."
-            yield say(text, zeros=str(found.zeros), factors=factors)
+            yield say(text, zeros=str(approximation.zeros), factors=factors)
         else:
             yield say("First approximation: roots of [[factors]].", factors=factors)
-    if found.left:
+    if approximation.left:
         text = (
             "Roots of factors that are not even in $\\lambda$, not looked at here but for signs of coefficients: [[n]]."
         )
-        yield say(text, n=str(found.left))
-    if found.unstable:
+        yield say(text, n=str(approximation.left))
+    if approximation.unstable:
         yield Said("Unstable (proved by the first approximation).")
         return
-    plain = [one for one in found.necessary if not one.unless]
+    plain = [condition for condition in approximation.necessary if not condition.unless]
     if plain:
         yield say("Necessary for stability: [[conditions]].", conditions=_all(plain))
-    for relation in found.necessary:
+    for relation in approximation.necessary:
         if relation.unless:
             unless = joined(compared(relation.unless), " ", Said("or"), " ")
             gaps: Gaps = {"condition": _all([relation]), "unless": unless}
             yield Said("Necessary for stability: [[condition]], unless [[unless]].", gaps)
-    if not found.complete:
+    if not approximation.complete:
         yield Said("Further necessary conditions were not written out.")
 
 
@@ -250,7 +253,7 @@ _NO_GAP = (
 )
 
 
-def closing(found: InvariantSets) -> Iterator[Said]:
-    if found.generic:
+def closing(invariant_sets: InvariantSets) -> Iterator[Said]:
+    if invariant_sets.generic:
         text = "All this is for parameters with [[zeros]]; others were not looked at."
-        yield say(text, zeros=compared(found.generic, "!="))
+        yield say(text, zeros=compared(invariant_sets.generic, "!="))

@@ -89,11 +89,11 @@ THEOREMS = {
 }
 
 
-def sentences(found: NormalForms) -> Iterator[Said]:
+def sentences(normal_forms: NormalForms) -> Iterator[Said]:
     """Everything, in order."""
-    if found.cyclic:
-        names: Gaps = {"names": named(found.cyclic)}
-        if found.conservative:
+    if normal_forms.cyclic:
+        names: Gaps = {"names": named(normal_forms.cyclic)}
+        if normal_forms.conservative:
             yield Said(
                 "What is said is about the system without its cyclic coordinates [[names]], whose momenta keep their "
                 "unperturbed values.",
@@ -101,46 +101,46 @@ def sentences(found: NormalForms) -> Iterator[Said]:
             )
         else:
             yield Said("What is said is about the other coordinates and all velocities; [[names]] are cyclic.", names)
-    if found.conservative and not found.coordinates:
+    if normal_forms.conservative and not normal_forms.coordinates:
         yield Said("All coordinates are cyclic: without them nothing is left that could be judged.")
         return
-    if found.taken_in:
+    if normal_forms.taken_in:
         yield Said(
             "The applied forces have a generalized potential (Helmholtz's conditions): Lagrange's function takes it in."
         )
-    if found.first is not None:
+    if normal_forms.first is not None:
         yield say(
             "At the given values problem 6 says without terms of higher order: [[word]].",
-            word=worded(found.first.value),
+            word=worded(normal_forms.first.value),
         )
-    if found.at_values is not None:
-        yield from _judged(found.at_values, found)
-    if isinstance(found.in_symbols, InSymbols):
-        yield from _in_symbols(found.in_symbols, found.everywhere)
-    elif isinstance(found.in_symbols, Focus):
-        yield from _focus(found.in_symbols, found)
-    elif found.no_symbols:
-        yield say("There is no formula in parameters: [[why]].", why=worded(found.no_symbols))
-    elif found.at_values is None:
+    if normal_forms.at_values is not None:
+        yield from _judged(normal_forms.at_values, normal_forms)
+    if isinstance(normal_forms.in_symbols, InSymbols):
+        yield from _in_symbols(normal_forms.in_symbols, normal_forms.everywhere)
+    elif isinstance(normal_forms.in_symbols, Focus):
+        yield from _focus(normal_forms.in_symbols, normal_forms)
+    elif normal_forms.no_symbols:
+        yield say("There is no formula in parameters: [[why]].", why=worded(normal_forms.no_symbols))
+    elif normal_forms.at_values is None:
         yield Said("There is no formula in parameters here; with numbers for all of them it may be decided.")
 
 
-def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
-    if found.frequencies and whole.conservative:
+def _judged(normal_form: Judged, whole: NormalForms) -> Iterator[Said]:
+    if normal_form.frequencies and whole.conservative:
         text = "Frequencies with the signs of their energies: [[values]] (enclosed)."
-        yield say(text, values=tuple(map(_number, found.frequencies)))
-    for resonance in found.resonances:
+        yield say(text, values=tuple(map(_number, normal_form.frequencies)))
+    for resonance in normal_form.resonances:
         text = "A resonance of order [[order]] holds exactly: [[relation]]."
-        yield say(text, order=str(resonance.order), relation=_relation(resonance.vector, found.frequencies))
-    if found.quadratic:
-        yield say("Normal form of fourth order in the actions: [[form]].", form=_form(found.quadratic))
-    for order, value in found.determinants:
+        yield say(text, order=str(resonance.order), relation=_relation(resonance.vector, normal_form.frequencies))
+    if normal_form.quadratic:
+        yield say("Normal form of fourth order in the actions: [[form]].", form=_form(normal_form.quadratic))
+    for order, value in normal_form.determinants:
         yield say("$[[symbol]] = [[value]]$.", symbol=Notation(f"D_{order}"), value=_number(value))
-    if found.theorem is Theorem.FIRST:
-        yield say("The first approximation decides: the motion is [[word]].", word=worded(found.outcome.value))
-    elif found.theorem is Theorem.FOURTH and found.sides is not None:
-        left, right = map(_number, found.sides)
-        greater = found.outcome is Outcome.STABLE
+    if normal_form.theorem is Theorem.FIRST:
+        yield say("The first approximation decides: the motion is [[word]].", word=worded(normal_form.outcome.value))
+    elif normal_form.theorem is Theorem.FOURTH and normal_form.sides is not None:
+        left, right = map(_number, normal_form.sides)
+        greater = normal_form.outcome is Outcome.STABLE
         yield say(
             "Markeev's inequality of the resonance of fourth order: [[left]] is greater than [[right]], the motion is "
             "stable."
@@ -150,33 +150,39 @@ def _judged(found: Judged, whole: NormalForms) -> Iterator[Said]:
             left=left,
             right=right,
         )
-    elif found.theorem is Theorem.REDUCTION:
-        yield from _centre(found)
-    elif found.theorem in THEOREMS:
-        if found.theorem is Theorem.EQUAL and found.coefficient is not None:
+    elif normal_form.theorem is Theorem.REDUCTION:
+        yield from _centre(normal_form)
+    elif normal_form.theorem in THEOREMS:
+        if normal_form.theorem is Theorem.EQUAL and normal_form.coefficient is not None:
             text = "In Sokolskii's normal form of equal frequencies $\\delta A = [[value]]$."
-            yield say(text, value=_number(found.coefficient))
-        absent = found.theorem is Theorem.ARNOLD_MOSER and any(one.order <= 4 for one in found.resonances)
-        yield Said(ABSENT if absent else THEOREMS[found.theorem], _gaps(found))
-    if found.why in REASONS and found.outcome is Outcome.UNDECIDED:
-        yield Said(LINEAR if whole.linear_at_values else REASONS[found.why])
-    weak = found.outcome in (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)
+            yield say(text, value=_number(normal_form.coefficient))
+        absent = normal_form.theorem is Theorem.ARNOLD_MOSER and any(
+            exact_resonance.order <= 4 for exact_resonance in normal_form.resonances
+        )
+        yield Said(ABSENT if absent else THEOREMS[normal_form.theorem], _gaps(normal_form))
+    if normal_form.why in REASONS and normal_form.outcome is Outcome.UNDECIDED:
+        yield Said(LINEAR if whole.linear_at_values else REASONS[normal_form.why])
+    weak = normal_form.outcome in (Outcome.UNDECIDED, Outcome.FORMAL, Outcome.MOST)
     if weak and whole.first is not None and not whole.first.open:
         yield Said("That is no matter: problem 6 has decided already.")
 
 
-def _gaps(found: Judged) -> Gaps:
+def _gaps(normal_form: Judged) -> Gaps:
     """What the sentence of a theorem names."""
-    text = THEOREMS[found.theorem]
-    gaps: Gaps = {"word": worded(found.outcome.value)} if "[[word]]" in text else {}
+    text = THEOREMS[normal_form.theorem]
+    gaps: Gaps = {"word": worded(normal_form.outcome.value)} if "[[word]]" in text else {}
     if "[[degree]]" in text:
-        gaps |= {"name": named((found.along,)), "degree": str(found.degree), "a": _number(found.coefficient)}
+        gaps |= {
+            "name": named((normal_form.along,)),
+            "degree": str(normal_form.degree),
+            "a": _number(normal_form.coefficient),
+        }
     return gaps
 
 
-def _centre(found: Judged) -> Iterator[Said]:
-    if not found.frequencies:
-        unstable = found.outcome is Outcome.UNSTABLE
+def _centre(normal_form: Judged) -> Iterator[Said]:
+    if not normal_form.frequencies:
+        unstable = normal_form.outcome is Outcome.UNSTABLE
         yield Said(
             "One root is zero, the others are to the left: the first coefficient on the centre manifold that is not "
             "zero makes the motion unstable."
@@ -185,8 +191,8 @@ def _centre(found: Judged) -> Iterator[Said]:
             "is zero and that of third order negative, the motion is asymptotically stable."
         )
         return
-    soft = found.outcome is Outcome.ASYMPTOTIC
-    if found.degree is not None:
+    soft = normal_form.outcome is Outcome.ASYMPTOTIC
+    if normal_form.degree is not None:
         yield say(
             "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
             "the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times its "
@@ -195,10 +201,10 @@ def _centre(found: Judged) -> Iterator[Said]:
             else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre "
             "manifold the growth of the amplitude of [[name]] has no term of third order and begins with [[a]] times "
             "its power [[degree]]: unstable.",
-            w=_number(found.frequencies[0]),
-            a=_number(found.coefficient),
-            name=named((found.amplitude_of,)),
-            degree=str(found.degree),
+            w=_number(normal_form.frequencies[0]),
+            a=_number(normal_form.coefficient),
+            name=named((normal_form.amplitude_of,)),
+            degree=str(normal_form.degree),
         )
         return
     yield say(
@@ -207,29 +213,29 @@ def _centre(found: Judged) -> Iterator[Said]:
         if soft
         else "One pair of roots is imaginary, of frequency [[w]], the others are to the left; on the centre manifold "
         "the amplitude of [[name]] grows at the rate [[a]] times its cube: unstable, a hard border.",
-        w=_number(found.frequencies[0]),
-        a=_number(found.coefficient),
-        name=named((found.amplitude_of,)),
+        w=_number(normal_form.frequencies[0]),
+        a=_number(normal_form.coefficient),
+        name=named((normal_form.amplitude_of,)),
     )
 
 
-def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
+def _in_symbols(symbols: InSymbols, everywhere: Word | None) -> Iterator[Said]:
     yield say(
         "In parameters, for the frequencies $\\omega_1$ and $\\omega_2$: the sum of their squares is [[trace]], the "
         "product of these [[product]], the discriminant [[discriminant]].",
-        trace=found.trace,
-        product=found.product,
-        discriminant=found.discriminant,
+        trace=symbols.trace,
+        product=symbols.product,
+        discriminant=symbols.discriminant,
     )
-    zero = found.zero if found.vanishing is None else found.vanishing.determinant
-    resonances = found.resonances if found.vanishing is None else found.vanishing.resonances
-    if found.determinant.is_zero:
+    zero = symbols.zero if symbols.vanishing is None else symbols.vanishing.determinant
+    resonances = symbols.resonances if symbols.vanishing is None else symbols.vanishing.resonances
+    if symbols.determinant.is_zero:
         yield Said("$D_4$ is zero for all parameters: the theorem of Arnold and Moser decides nothing at this order.")
     elif zero.is_number:
-        yield say("$D_4 = [[determinant]]$; it vanishes for no parameters.", determinant=found.determinant)
+        yield say("$D_4 = [[determinant]]$; it vanishes for no parameters.", determinant=symbols.determinant)
     else:
         yield say(
-            "$D_4 = [[determinant]]$; it vanishes where $[[zero]] = 0$.", determinant=found.determinant, zero=zero
+            "$D_4 = [[determinant]]$; it vanishes where $[[zero]] = 0$.", determinant=symbols.determinant, zero=zero
         )
     for vector, formula in resonances:
         if not formula.is_number:
@@ -241,7 +247,7 @@ def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
     if everywhere is not None:
         yield say("For all parameters problem 6 has decided already: [[word]].", word=worded(everywhere.value))
         return
-    if found.determinant.is_zero:
+    if symbols.determinant.is_zero:
         return
     yield Said(
         "Where sum, product and discriminant are positive the motion is stable (Arnold-Moser) but for parameters at "
@@ -249,23 +255,23 @@ def _in_symbols(found: InSymbols, everywhere: Word | None) -> Iterator[Said]:
     )
 
 
-def _focus(found: Focus, whole: NormalForms) -> Iterator[Said]:
-    if found.coefficient.is_zero and (whole.everywhere is not None or whole.linear):
+def _focus(focus: Focus, whole: NormalForms) -> Iterator[Said]:
+    if focus.coefficient.is_zero and (whole.everywhere is not None or whole.linear):
         text = "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]."
-        yield say(text, square=found.square)
+        yield say(text, square=focus.square)
         if whole.linear and whole.at_values is None:
             yield Said(LINEAR)
         if whole.everywhere is not None:
-            told = "For all parameters problem 6 has decided already: [[word]]."
-            yield say(told, word=worded(whole.everywhere.value))
+            sentence = "For all parameters problem 6 has decided already: [[word]]."
+            yield say(sentence, word=worded(whole.everywhere.value))
         return
-    if found.coefficient.is_zero:
+    if focus.coefficient.is_zero:
         yield say(
             "Two roots have the sum zero for all parameters, the square of their frequency is [[square]]; on the "
             "centre manifold the growth of the amplitude of [[name]] is without a term of third order for all "
             "parameters: those of higher order may decide.",
-            square=found.square,
-            name=named((found.amplitude_of,)),
+            square=focus.square,
+            name=named((focus.amplitude_of,)),
         )
         return
     yield say(
@@ -273,9 +279,9 @@ def _focus(found: Focus, whole: NormalForms) -> Iterator[Said]:
         "manifold the amplitude of [[name]] grows, but for terms of higher order, at the rate [[a]] times its cube.  "
         "Where that square is positive and all other roots are to the left the motion is asymptotically stable if this "
         "rate is negative and unstable if it is positive.",
-        square=found.square,
-        a=found.coefficient,
-        name=named((found.amplitude_of,)),
+        square=focus.square,
+        a=focus.coefficient,
+        name=named((focus.amplitude_of,)),
     )
 
 

@@ -126,114 +126,125 @@ _NONE = "No periodic solution was expanded in powers of [[small]]: [[why]]."
 _NOT_ASKED = "Periodic solutions in powers of [[small]] are looked for by mbsym oscillations."
 
 
-def opening(told: Oscillating) -> Iterator[Said]:
+def opening(solution: Oscillating) -> Iterator[Said]:
     """What is expanded in what."""
-    oscillation = told.found
+    oscillation = solution.oscillation
     yield from scaled(oscillation.powers, oscillation.small)
-    yield Said(_SERIES, _values(told))
+    yield Said(_SERIES, _values(solution))
 
 
-def coefficients(told: Oscillating) -> Iterator[Coefficient]:
+def coefficients(solution: Oscillating) -> Iterator[Coefficient]:
     """Of all variables, then of the rate of the phase; those that are zero are left out."""
-    oscillation = told.found
+    oscillation = solution.oscillation
     for name, series in zip(oscillation.names, oscillation.series, strict=True):
-        plain = without_velocity(name) if name in told.velocities else name
+        plain = without_velocity(name) if name in solution.velocities else name
         for order, harmonics in enumerate(series):
             if not harmonics.is_zero:
-                yield Coefficient(plain, plain != name, order, told.wave(harmonics))
+                yield Coefficient(plain, plain != name, order, solution.wave(harmonics))
     for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
         if not x.is_zero():
-            yield Coefficient(told.phase, True, order, told.formula(oscillation.frequency * x))
+            yield Coefficient(solution.phase, True, order, solution.formula(oscillation.frequency * x))
 
 
-def as_function(told: Oscillating) -> Sums:
+def as_function(solution: Oscillating) -> Sums:
     """The solution as a function of the time."""
-    return summed("periodic_solution", told.found.small, coefficients(told), told.found.powers, told.phase)
+    return summed(
+        "periodic_solution",
+        solution.oscillation.small,
+        coefficients(solution),
+        solution.oscillation.powers,
+        solution.phase,
+    )
 
 
-def collected(told: Oscillating) -> Iterator[Relation]:
+def collected(solution: Oscillating) -> Iterator[Relation]:
     """The same for people: factors that divide several coefficients have letters (``denominators``)."""
-    oscillation = told.found
+    oscillation = solution.oscillation
     for name, series in zip(oscillation.names, oscillation.series, strict=True):
-        plain = without_velocity(name) if name in told.velocities else name
+        plain = without_velocity(name) if name in solution.velocities else name
         for order, harmonics in enumerate(series):
             if not harmonics.is_zero:
-                yield Coefficient(plain, plain != name, order, told.shortest(harmonics)).equation
+                yield Coefficient(plain, plain != name, order, solution.shortest(harmonics)).equation
     for order, x in enumerate((oscillation.tower.one, *oscillation.corrections)):
         if not x.is_zero():
-            value = told.shortest(Harmonics.constant(oscillation.tower, oscillation.frequency * x))
-            yield Coefficient(told.phase, True, order, value).equation
+            value = solution.shortest(Harmonics.constant(oscillation.tower, oscillation.frequency * x))
+            yield Coefficient(solution.phase, True, order, value).equation
 
 
-def denominators(told: Oscillating, equations: Iterable[Relation]) -> Definitions | None:
+def denominators(solution: Oscillating, equations: Iterable[Relation]) -> Definitions | None:
     """What the letters in the equations stand for."""
-    tower, ring = told.found.tower, told.told_ring
+    tower, ring = solution.oscillation.tower, solution.told_ring
     parts = [
-        x for one in equations for part in one.parts for x in (part.items if isinstance(part, Listed) else (part,))
+        x
+        for equation in equations
+        for part in equation.parts
+        for x in (part.items if isinstance(part, Listed) else (part,))
     ]
     formulas = [x.polynomial for x in parts if isinstance(x, Formula) and x.ring is ring]
     held = {ring.generators[k].name for k in ring.held(formulas)}
-    made = [(name, tower.made(factor, tower.context.constant(1))) for factor, name in told.denominators if name in held]
-    items = tuple(Relation(Name(name, ring=ring), "=", told.formula(x)) for name, x in made)
+    made = [
+        (name, tower.made(factor, tower.context.constant(1))) for factor, name in solution.denominators if name in held
+    ]
+    items = tuple(Relation(Name(name, ring=ring), "=", solution.formula(x)) for name, x in made)
     return Definitions(Said("with"), items) if items else None
 
 
-def drifting(told: Oscillating) -> Iterator[Relation]:
+def drifting(solution: Oscillating) -> Iterator[Relation]:
     """Coefficients of variables that follow by integration: a rate times t, and what is periodic."""
-    for drift in told.found.drifts:
-        plain = without_velocity(drift.variable) if drift.variable in told.velocities else drift.variable
+    for drift in solution.oscillation.drifts:
+        plain = without_velocity(drift.variable) if drift.variable in solution.velocities else drift.variable
         for order, (rate, wave) in enumerate(zip_longest(drift.rates, drift.waves)):
             parts: list[Math | str] = []
             if rate is not None and not rate.is_zero():
                 parts += [
                     Notation("t"),
-                    Listed((told.shortest(Harmonics.constant(told.found.tower, rate)),), brackets=True),
+                    Listed((solution.shortest(Harmonics.constant(solution.oscillation.tower, rate)),), brackets=True),
                 ]
             if wave is not None and not wave.is_zero:
-                parts += [*(["+"] if parts else []), told.shortest(wave)]
+                parts += [*(["+"] if parts else []), solution.shortest(wave)]
             if parts:
                 yield Relation(Raised(Name(plain, int(plain != drift.variable)), order), "=", *parts)
 
 
-def sentences(told: Oscillating) -> Iterator[Said]:
+def sentences(solution: Oscillating) -> Iterator[Said]:
     """What kind of solution it is, what was checked and where it holds."""
-    oscillation, values = told.found, _values(told)
+    oscillation, values = solution.oscillation, _values(solution)
     least = [residual for residual in oscillation.residuals if residual is not None]
     if oscillation.kind is Amplitude.FREE:
-        yield say(_FREE, **values, amplitude=told.formula(oscillation.amplitude), sine=_wave(told, False))
-        if least or told.taylor:  # else it is a solution
+        yield say(_FREE, **values, amplitude=solution.formula(oscillation.amplitude), sine=_wave(solution, False))
+        if least or solution.taylor:  # else it is a solution
             yield Said(_FORMAL)
     else:
-        yield say(_DETERMINED, **values, value=_wave(told, True))
-        if not told.real_amplitude:
-            square = told.formula(oscillation.amplitude * oscillation.amplitude)
+        yield say(_DETERMINED, **values, value=_wave(solution, True))
+        if not solution.real_amplitude:
+            square = solution.formula(oscillation.amplitude * oscillation.amplitude)
             yield say(_REAL_AMPLITUDE, condition=Relation(square, ">", 0))
         if oscillation.other_amplitudes is not None:
-            yield say(_OTHER_AMPLITUDES, condition=Relation(told.formula(oscillation.other_amplitudes), "=", 0))
+            yield say(_OTHER_AMPLITUDES, condition=Relation(solution.formula(oscillation.other_amplitudes), "=", 0))
     if oscillation.exponent is not None:
         power, x = oscillation.exponent
-        yield say(_EXPONENT[told.attracts], **values, exponent=told.formula(x), power=str(power))
+        yield say(_EXPONENT[solution.attracts], **values, exponent=solution.formula(x), power=str(power))
     if oscillation.constants:
-        names = tuple(told.formula(x) for _, x in oscillation.constants)
+        names = tuple(solution.formula(x) for _, x in oscillation.constants)
         yield say(_CONSTANTS, **values, names=names, variables=named(name for name, _ in oscillation.constants))
     left = values | {"left": str(min(least, default="")), "next": str(oscillation.order + 1)}
-    if told.taylor:
+    if solution.taylor:
         yield say(_TAYLOR, degree=str(oscillation.order + 1))
         yield Said(_LEFT_OF_TAYLOR if least else _NOTHING_OF_TAYLOR, left)
     else:
         yield Said(_LEFT if least else _NOTHING, left)
-    if not told.real:
+    if not solution.real:
         rooted = any(d > 0 for d in oscillation.frequency.top.degrees()[: -len(oscillation.tower.parameters)])
-        real = Relation(told.formula(oscillation.frequency * oscillation.frequency), ">", 0)
-        nonzero = Relation(told.formula(oscillation.frequency), "!=", 0)
+        real = Relation(solution.formula(oscillation.frequency * oscillation.frequency), ">", 0)
+        nonzero = Relation(solution.formula(oscillation.frequency), "!=", 0)
         yield say(_REAL, **values, condition=real) if rooted else say(_NONZERO, **values, condition=nonzero)
-    for one in told.resonances:
-        zeros = (Relation(numerator(told, x), "=", 0) for x in one.parts)
-        gaps: Gaps = {"harmonic": str(one.harmonic), "order": str(one.order), "names": named(one.variables)}
+    for divisor in solution.resonances:
+        zeros = (Relation(numerator(solution, x), "=", 0) for x in divisor.parts)
+        gaps: Gaps = {"harmonic": str(divisor.harmonic), "order": str(divisor.order), "names": named(divisor.variables)}
         gaps |= dict(zip(("condition", "other"), zeros, strict=False))
-        yield Said(_RESONANCE if one.damping is None else _BOTH, gaps)
+        yield Said(_RESONANCE if divisor.damping is None else _BOTH, gaps)
     for group, other in oscillation.others:
-        yield say(_OTHERS, names=named(group), square=told.formula(other))
+        yield say(_OTHERS, names=named(group), square=solution.formula(other))
     for sentence, groups in (
         (_DAMPED, oscillation.damped),
         (_ZERO, oscillation.with_zero),
@@ -243,31 +254,33 @@ def sentences(told: Oscillating) -> Iterator[Said]:
             yield Said(sentence, values | {"names": named(group)})
 
 
-def _values(told: Oscillating) -> Gaps:
-    oscillation = told.found
-    names = {"small": Name(oscillation.small), "leading": Name(oscillation.leading), "phase": Name(told.phase)}
+def _values(solution: Oscillating) -> Gaps:
+    oscillation = solution.oscillation
+    names = {"small": Name(oscillation.small), "leading": Name(oscillation.leading), "phase": Name(solution.phase)}
     return {"order": str(oscillation.order), **names}
 
 
-def _wave(told: Oscillating, whole: bool) -> Formula:
+def _wave(solution: Oscillating, whole: bool) -> Formula:
     """The amplitude times the cosine of the phase; or its sine."""
-    zero, element = told.found.tower.zero, told.found.tower.one
-    return told.wave(Harmonics(told.found.tower, {1: (told.found.amplitude, zero) if whole else (zero, element)}))
+    zero, element = solution.oscillation.tower.zero, solution.oscillation.tower.one
+    return solution.wave(
+        Harmonics(solution.oscillation.tower, {1: (solution.oscillation.amplitude, zero) if whole else (zero, element)})
+    )
 
 
-def numerator(told: Oscillating, value: Element) -> Formula:
+def numerator(solution: Oscillating, value: Element) -> Formula:
     """What has to vanish for a quotient to vanish."""
-    tower = told.found.tower
-    return told.formula(tower.made(value.top, tower.context.constant(1)))
+    tower = solution.oscillation.tower
+    return solution.formula(tower.made(value.top, tower.context.constant(1)))
 
 
-def measured_sentences(told: Oscillating, measured: MeasuredOrders | str) -> Iterator[Said]:
+def measured_sentences(solution: Oscillating, measured: MeasuredOrders | str) -> Iterator[Said]:
     """The slopes, and whether they are what they have to be; or why there are none."""
     if isinstance(measured, str):
         yield say(_NOT_MEASURED, why=worded(measured))
         return
-    expected = told.found.order + 1
-    values: Gaps = {"small": Name(told.found.small), "expected": str(expected)}
+    expected = solution.oscillation.order + 1
+    values: Gaps = {"small": Name(solution.oscillation.small), "expected": str(expected)}
     rows = tuple(zip(measured.names, measured.orders, measured.halved, strict=True))
     at = [f"{measured.small * float(part):.3g}" for part in measured.parts]
     within = next((k for k, error in enumerate(measured.relative) if error <= VALID), None)

@@ -27,7 +27,7 @@ class Passage:
 
 
 def passages(
-    told: Told[Meaning], system: System, formulas: Iterable[Formula], known: Iterable[str] = ()
+    definitions: Told[Meaning], system: System, formulas: Iterable[Formula], known: Iterable[str] = ()
 ) -> tuple[Passage, ...]:
     """What formulas need to be understood, besides the names ``known`` before.
 
@@ -35,16 +35,16 @@ def passages(
     """
     groups: list[list[Definition[Meaning]]] = []
     home: dict[int, int] = {}
-    for item in told.wanted(formulas, known):
-        used = [home[k] for k in told.held_by[item.name] if k in home]
+    for item in definitions.wanted(formulas, known):
+        used = [home[k] for k in definitions.held_by[item.name] if k in home]
         earliest = max(used, default=0)
         place = next((k for k in range(earliest, len(groups)) if _together(groups[k][0], item)), len(groups))
         if place == len(groups):
             groups.append([])
         groups[place].append(item)
-        home[told.index(item.name)] = place
+        home[definitions.index(item.name)] = place
     speaker = _Speaker(system)
-    return tuple(Passage(*speaker(group[0].meaning), _by_component(told, group)) for group in groups)
+    return tuple(Passage(*speaker(group[0].meaning), _by_component(definitions, group)) for group in groups)
 
 
 def _together(first: Definition[Meaning], second: Definition[Meaning]) -> bool:
@@ -54,9 +54,9 @@ def _together(first: Definition[Meaning], second: Definition[Meaning]) -> bool:
     return (a.quantity, a.body, a.coordinate, a.load) == (b.quantity, b.body, b.coordinate, b.load)
 
 
-def _by_component(told: Told[Meaning], group: Sequence[Definition[Meaning]]) -> tuple[Definition[Meaning], ...]:
-    own = {told.index(item.name) for item in group}
-    if any(own & told.held_by[item.name] for item in group):
+def _by_component(definitions: Told[Meaning], group: Sequence[Definition[Meaning]]) -> tuple[Definition[Meaning], ...]:
+    own = {definitions.index(item.name) for item in group}
+    if any(own & definitions.held_by[item.name] for item in group):
         return tuple(group)
     return tuple(sorted(group, key=lambda item: () if item.meaning is None else item.meaning.place))
 
@@ -120,8 +120,8 @@ class _Speaker:
         body = self.system.body(meaning.body) if meaning.body else None
         gravity = self._gravity(meaning.body) if meaning.quantity in _LESS_GRAVITY else []
         about = self._expanded_about(meaning.load) if meaning.quantity in _FROM_ORIGIN else ""
-        found = _LESS_GRAVITY if gravity else _FROM_ORIGIN if about == INERTIAL else _WORDS
-        template = found[meaning.quantity]
+        templates = _LESS_GRAVITY if gravity else _FROM_ORIGIN if about == INERTIAL else _WORDS
+        template = templates[meaning.quantity]
         makers: dict[str, Callable[[], str]] = {
             "b": lambda: self._body(meaning.body),
             "it": lambda: self._carried(meaning.body),

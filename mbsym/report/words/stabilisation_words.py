@@ -20,44 +20,44 @@ from mbsym.problems.stabilisation import (
 from mbsym.report.content import Gaps, Phrase, Polynomial, Relation, Said, compared, joined, named, say
 
 
-def sentences(found: Stabilisation) -> Iterator[Said]:
+def sentences(stabilisation: Stabilisation) -> Iterator[Said]:
     """Everything but the matrices of the feedback, in order."""
-    if found.nonholonomic:
+    if stabilisation.nonholonomic:
         yield Said(
             "The theorems on gyroscopic forces, dissipation and energy do not apply to constraints in velocities: "
             "constraint forces stand in $D$, $G$, $K$ and $N$, which may feed a motion or damp it although energy is "
             "kept."
         )
-    if found.left_out:
+    if stabilisation.left_out:
         yield Said(
             "These equations are about the independent velocities and what acts on them; what they show carries over "
             "where the equations of motion do not depend on [[names]], and of these nothing is said.",
-            {"names": named(found.left_out)},
+            {"names": named(stabilisation.left_out)},
         )
-    if found.circulatory:
+    if stabilisation.circulatory:
         yield Said(
             "Of [[names]] nothing is said of gyroscopic forces, dissipation and energy: the theorems ask for $N = 0$.",
-            {"names": named(found.circulatory)},
+            {"names": named(stabilisation.circulatory)},
         )
-    elif not (found.gyroscopic or found.control or found.nonholonomic):
+    elif not (stabilisation.gyroscopic or stabilisation.control or stabilisation.nonholonomic):
         yield Said(
             "There are no inputs, and the theorems on gyroscopic forces, dissipation and energy are not about "
             "equations of first order: nothing is said."
         )
-    for part in found.gyroscopic:
+    for part in stabilisation.gyroscopic:
         yield from _gyroscopic(part)
-    yield from _together(found.gyroscopic)
-    for energy in found.energy:
+    yield from _together(stabilisation.gyroscopic)
+    for energy in stabilisation.energy:
         yield from _energy(energy)
-    for damped in found.dissipation:
+    for damped in stabilisation.dissipation:
         yield from _dissipation(damped)
-    for control in found.control:
+    for control in stabilisation.control:
         yield from _control(control)
-    if found.least:
-        sets = joined(map(named, found.least), "; ")
+    if stabilisation.least:
+        sets = joined(map(named, stabilisation.least), "; ")
         yield say("The smallest sets of inputs that suffice for almost all parameters (proved): [[sets]].", sets=sets)
-    if found.control and found.feedback is None:
-        yield say("No feedback is given: [[why]].", why=worded(found.no_feedback))
+    if stabilisation.control and stabilisation.feedback is None:
+        yield say("No feedback is given: [[why]].", why=worded(stabilisation.no_feedback))
 
 
 # --- gyroscopic forces ---

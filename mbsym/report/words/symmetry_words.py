@@ -39,27 +39,29 @@ def field(symmetry: Symmetry) -> tuple[Inline, ...]:
     return tuple(shown)
 
 
-def gives(one: Symmetry, field: Inline | Sequence[Inline]) -> Said:
+def gives(symmetry: Symmetry, field: Inline | Sequence[Inline]) -> Said:
     """What a symmetry gives; behind those of what has no name the integral stands."""
-    if one.name:
-        return say(DEPENDS if one.certainty is Certainty.VERIFIED else KNOWN, field=field, name=worded(one.name))
-    return say(GIVES if one.is_new else OPEN, field=field)
+    if symmetry.name:
+        return say(
+            DEPENDS if symmetry.certainty is Certainty.VERIFIED else KNOWN, field=field, name=worded(symmetry.name)
+        )
+    return say(GIVES if symmetry.is_new else OPEN, field=field)
 
 
-def sentences(found: Symmetries) -> Iterator[Said]:
+def sentences(symmetries: Symmetries) -> Iterator[Said]:
     """What is known of the list as a whole."""
-    proof = say(_COMPARED if found.compared else _BY_RANK, unknowns=str(found.unknowns))
-    if not found.symmetries and found.complete:
-        yield say(_NONE[found.symbols], proof=proof)
-    elif not found.symmetries:
+    proof = say(_COMPARED if symmetries.compared else _BY_RANK, unknowns=str(symmetries.unknowns))
+    if not symmetries.symmetries and symmetries.complete:
+        yield say(_NONE[symmetries.symbols], proof=proof)
+    elif not symmetries.symmetries:
         yield Said("None was found; that there is none is not proved.")
     else:
         yield Said("Each of them is an identity of the exact ring (proved).")
         for certainty, text in _SUBSTITUTED.items():
-            count = sum(symmetry.substituted is certainty for symmetry in found.symmetries)
+            count = sum(symmetry.substituted is certainty for symmetry in symmetries.symmetries)
             if count:
                 yield say(text, count=str(count))
-        yield say(_NO_OTHER[found.symbols], proof=proof) if found.complete else Said(_MAYBE_OTHERS)
+        yield say(_NO_OTHER[symmetries.symbols], proof=proof) if symmetries.complete else Said(_MAYBE_OTHERS)
 
 
 #: How dI/dt = 0 is known besides the identity.

@@ -130,12 +130,12 @@ class _Writer:
 
     def _told(self) -> str:
         """What reports have to say besides: what of the file is no part of the model."""
-        told = []
+        sentences = []
         if self.robot.left_out:
-            told.append(f"Of the robot's file is left out: {'; '.join(self.robot.left_out)}.")
+            sentences.append(f"Of the robot's file is left out: {'; '.join(self.robot.left_out)}.")
         if self.still:
-            told.append(f"Held still, because they move no inertia, are the joints {', '.join(self.still)}.")
-        return self._comment(" ".join(told))
+            sentences.append(f"Held still, because they move no inertia, are the joints {', '.join(self.still)}.")
+        return self._comment(" ".join(sentences))
 
     def _numbered(self, carrying: set[str]) -> list[tuple[Link, list[str]]]:
         """The links with the joints that move, and what the coordinates of these begin with, "" where one is led."""
@@ -177,7 +177,7 @@ class _Writer:
             and link.name == self.robot.links[0].name
             and not self.floating
         )
-        others = any(one.parent == GROUND for one in self.robot.links[1:])
+        others = any(other.parent == GROUND for other in self.robot.links[1:])
         return alone and not (others or link.joints or link.inertials or link.shapes)
 
     @staticmethod
@@ -242,7 +242,7 @@ class _Writer:
             and not any(joint.kind == "free" for joint in link.joints)
         ):
             moving.insert(0, _FREE)
-        if any(one.joint.kind == "free" for one in moving):
+        if any(motion.joint.kind == "free" for motion in moving):
             place, turned = NOWHERE, ()  # its coordinates say where it is, from the ground
         number = len(self.names) + 1
         *before, last = steps(
@@ -265,9 +265,9 @@ class _Writer:
                     self._lengths(inertial.centre, f"c{number}", f"mass centre of {link.name}"), inertial.turned
                 )
                 self._body(name, own, there, self._matter(inertial, number, link.name, apart=True))
-        for one in moving:
-            if one.joint.armature != "0":
-                self._rotor(one)
+        for motion in moving:
+            if motion.joint.armature != "0":
+                self._rotor(motion)
 
     def _rotor(self, moving: Moving) -> None:
         """A body without mass whose angular velocity is q': T has armature |q'|^2/2, and nothing else feels it."""
@@ -279,15 +279,15 @@ class _Writer:
         matter = ["mass: 0", "inertia about: mass centre", f"inertia: {accept}"]
         self._body(self._free_name(f"rotor of {joint.name}"), GROUND, Step(turns=turns), matter)
 
-    def _free_name(self, wanted: str) -> str:
+    def _free_name(self, preferred: str) -> str:
         """A name that a body may have and no other has."""
-        name = re.sub(r"[^\w ./-]", "-", wanted, flags=re.ASCII)[:60]
+        name = re.sub(r"[^\w ./-]", "-", preferred, flags=re.ASCII)[:60]
         name = name if is_body_name(name) else f"link {name}"
-        found, index = name, 2
-        while found in self.taken:
-            found, index = f"{name} {index}", index + 1
-        self.taken.add(found)
-        return found
+        free_name, index = name, 2
+        while free_name in self.taken:
+            free_name, index = f"{name} {index}", index + 1
+        self.taken.add(free_name)
+        return free_name
 
     def _moving(self, joint: Joint, stem: str) -> Moving:
         if joint.led is not None:
@@ -338,10 +338,10 @@ class _Writer:
         """``tau_`` and the joint's name, as descriptions take it: letters, digits and single underscores."""
         name = "_".join(["tau", *re.findall("[A-Za-z0-9]+", joint)])[: MAX_NAME - 10].rstrip("_")
         name = f"{name}_joint" if is_rate(name) else name
-        found, index = name, 2
-        while any(line.startswith(f"  {found}:") for line in self.inputs):
-            found, index = f"{name}_{index}", index + 1
-        return found
+        free_name, index = name, 2
+        while any(line.startswith(f"  {free_name}:") for line in self.inputs):
+            free_name, index = f"{name}_{index}", index + 1
+        return free_name
 
     def _note(self, name: str) -> str:
         return f" # {self._comment(name)}" if name else ""
@@ -365,15 +365,15 @@ class _Writer:
             lines += ["shapes:", *(f"  - {_shape(shape)}" for shape in link.shapes)]
         self.bodies += [f"  {'-' if k == 0 else ' '} {line}" for k, line in enumerate(lines)]
 
-    def _matter(self, found: Inertial, number: int, link: str, apart: bool = False) -> list[str]:
+    def _matter(self, inertial: Inertial, number: int, link: str, apart: bool = False) -> list[str]:
         lines = []
-        if not apart and found.centre != NOWHERE:
-            centre = self._lengths(found.centre, f"c{number}", f"mass centre of {link}")
+        if not apart and inertial.centre != NOWHERE:
+            centre = self._lengths(inertial.centre, f"c{number}", f"mass centre of {link}")
             lines.append(f"mass centre: {_list(centre)}")
-        lines.append(f"mass: {self._named(f'm{number}', found.mass, f'mass of {link}')}")
-        xx, xy, xz, yy, yz, zz = found.tensor
-        if any(value != "0" for value in found.tensor):
-            real = not all(map(_NUMBER.match, found.tensor)) or is_of_a_body(*map(Fraction, found.tensor))
+        lines.append(f"mass: {self._named(f'm{number}', inertial.mass, f'mass of {link}')}")
+        xx, xy, xz, yy, yz, zz = inertial.tensor
+        if any(value != "0" for value in inertial.tensor):
+            real = not all(map(_NUMBER.match, inertial.tensor)) or is_of_a_body(*map(Fraction, inertial.tensor))
             parts = zip(("xx", "xy", "xz", "yy", "yz", "zz"), (xx, xy, xz, yy, yz, zz), strict=True)
             named = {part: self._named(f"J{number}{part}", value, f"inertia of {link}") for part, value in parts}
             keys = [["xx", "xy", "xz"], ["xy", "yy", "yz"], ["xz", "yz", "zz"]]

@@ -186,8 +186,8 @@ def _sizes(geom: Element, reader: Reader) -> tuple[str, ...]:
     count = _SIZES[kind]
     ends = _ends(geom, reader)
     if ends is None:
-        given = geom.get("size").split()
-        return reader.numbers(Element("geom", {"size": " ".join(given[:count])}, geom.span), "size", count)
+        sizes = geom.get("size").split()
+        return reader.numbers(Element("geom", {"size": " ".join(sizes[:count])}, geom.span), "size", count)
     half = _shown(math.dist(*ends) / 2)
     radius = reader.numbers(Element("geom", {"size": (geom.get("size").split() or ["0"])[0]}, geom.span), "size", 1)[0]
     return (radius, half) if count == 2 else (radius, radius, half)
@@ -234,9 +234,9 @@ def matter_of(geom: Element, angles: Angles, reader: Reader) -> Inertial | None:
     kind = geom.get("type", "sphere")
     sizes = [Fraction(size) for size in _sizes(geom, reader)]
     place, turned = _pose(geom, angles, reader)
-    given = geom.get("mass")
+    mass_text = geom.get("mass")
     density = Fraction(reader.number(geom, "density", _DENSITY))
-    if given:
+    if mass_text:
         mass = Fraction(reader.number(geom, "mass"))
         parts = _parts(kind, sizes)
         whole = sum(volume for volume, _ in parts)

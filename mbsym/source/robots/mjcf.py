@@ -193,9 +193,9 @@ def _together(root: Element, tag: str) -> Element:
 def _gravity(root: Element, reader: Reader) -> Texts:
     option = _together(root, "option")
     gravity = reader.three(option, "gravity", "0 0 -9.81")
-    for key, told in (("density", "density"), ("viscosity", "viscosity")):
+    for key, label in (("density", "density"), ("viscosity", "viscosity")):
         if float(reader.number(option, key)):
-            reader.leave_out(f"forces of a fluid ({told})")
+            reader.leave_out(f"forces of a fluid ({label})")
     return NOWHERE if "gravity" in _disabled(root) else gravity
 
 
@@ -210,7 +210,7 @@ def _driven(root: Element, reader: Reader, defaults: Defaults, joints: set[str])
 
     The input is the torque or force in the joint: that of an actuator times its gear.
     """
-    found = set()
+    driven = set()
     for section in root.all("actuator"):
         for element in (defaults.of(child, "") for child in section.children):
             joint = element.get("joint") or element.get("jointinparent")
@@ -219,7 +219,7 @@ def _driven(root: Element, reader: Reader, defaults: Defaults, joints: set[str])
                 continue
             if joint not in joints:
                 reader.error("unknown-name", f"there is no joint {ascii_safe(joint)}", element)
-            found.add(joint)
+            driven.add(joint)
             if element.tag != "motor":
                 reader.leave_out(f"law of an actuator ({element.tag})")
             if any(element.get(key) for key in ("ctrlrange", "forcerange")):
@@ -227,7 +227,7 @@ def _driven(root: Element, reader: Reader, defaults: Defaults, joints: set[str])
             count = len(element.get("gear").split())
             if count and float(reader.numbers(element, "gear", count)[0]) != 1:
                 reader.leave_out("gear of an actuator (the input is the torque or force in the joint)")
-    return found
+    return driven
 
 
 class _Bodies:
@@ -265,9 +265,9 @@ class _Bodies:
     def tied(self, root: Element) -> Iterator[Element]:
         """The elements of <equality>, with what their classes say of them; none where constraints are switched off."""
         for element in (child for section in root.all("equality") for child in section.children):
-            given = self.defaults.of(element, "", "equality")
+            resolved = self.defaults.of(element, "", "equality")
             off = self.disabled & {"equality", "constraint"}
-            yield replace(given, attributes={**given.attributes, "active": "false"}) if off else given
+            yield replace(resolved, attributes={**resolved.attributes, "active": "false"}) if off else resolved
 
     def nameless(self, body: str) -> str:
         """What a joint without a name is called: as its body, or so that no other joint is called so."""
@@ -352,17 +352,20 @@ class _Bodies:
         for child in element.children:
             if child.tag in _INSIDE:
                 reader.leave_out(_INSIDE[child.tag])
-        for attribute, none, told in (("gravcomp", "0", "compensation of gravity"), ("mocap", "false", "mocap body")):
+        for attribute, none, feature in (
+            ("gravcomp", "0", "compensation of gravity"),
+            ("mocap", "false", "mocap body"),
+        ):
             if element.get(attribute, none) != none:
-                reader.leave_out(told)
+                reader.leave_out(feature)
         geoms = self.geoms(element, childclass)
         solid = [geom for geom in geoms if is_solid(geom)]
         shapes = tuple(shape_of(geom, self.angles, reader) for geom in solid)
-        given = element.first("inertial")
+        inertial = element.first("inertial")
         if self.takes_geoms(element):
             matter = self.of_geoms(geoms)
         else:
-            matter = () if given is None else (self.inertial(given),)
+            matter = () if inertial is None else (self.inertial(inertial),)
         return Link(name, parent, place, turned, joints, matter, shapes, element.span)
 
     def geoms(self, element: Element, childclass: str) -> list[Element]:
@@ -523,10 +526,10 @@ class Defaults:
         ``tag``: what classes call it, where that is not its own.
         """
         name = self.checked(element, "class") or childclass or _MAIN
-        given = self.known.get(name, {}).get(tag or element.tag, {})
+        defaults = self.known.get(name, {}).get(tag or element.tag, {})
         if any(key in element.attributes for key in TURNING):  # one way to turn stands for all others
-            given = {key: value for key, value in given.items() if key not in TURNING}
-        return Element(element.tag, {**given, **element.attributes}, element.span, element.children)
+            defaults = {key: value for key, value in defaults.items() if key not in TURNING}
+        return Element(element.tag, {**defaults, **element.attributes}, element.span, element.children)
 
     def checked(self, element: Element, attribute: str) -> str:
         """The class that an attribute names, "" for none; complains about one that there is not."""

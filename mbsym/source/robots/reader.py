@@ -35,10 +35,10 @@ class Reader:
 
     def name(self, element: Element, attribute: str = "name") -> str:
         """A required name."""
-        found = element.get(attribute)
-        if not found:
+        value = element.get(attribute)
+        if not value:
             self.error("missing-key", f"<{element.tag}> has no attribute '{attribute}'", element)
-        return found
+        return value
 
     def number(self, element: Element, attribute: str, default: str | None = "0") -> str:
         """One number as it is printed; ``default`` None: it must be there."""
@@ -62,8 +62,10 @@ class Reader:
         if not text:
             self.error("missing-key", f"<{element.tag}> has no attribute '{attribute}'", element)
         elif len(parts) != count:
-            wanted = counted(count, "number", "numbers")
-            self.error("wrong-shape", f"'{attribute}' of <{element.tag}> has {len(parts)} parts, not {wanted}", element)
+            required = counted(count, "number", "numbers")
+            self.error(
+                "wrong-shape", f"'{attribute}' of <{element.tag}> has {len(parts)} parts, not {required}", element
+            )
         else:
             bad = [part for part in parts if decimal(part) is None]
             if not bad:
@@ -74,10 +76,10 @@ class Reader:
     def angle(self, text: str) -> str:
         """An angle in radians as it is printed, or the part of pi that it rounds."""
         plain = number(text)
-        found = plain if self.exact else angle(text)
-        if found != plain:
-            self.parts_of_pi[text.strip()] = found
-        return found
+        radians = plain if self.exact else angle(text)
+        if radians != plain:
+            self.parts_of_pi[text.strip()] = radians
+        return radians
 
     def snapped(self) -> tuple[str, ...]:
         """``1.5708 as pi/2``, in the order of the file."""
@@ -148,9 +150,9 @@ def check_spelling(elements: Iterator[tuple[str, Element]], spelling: Spelling, 
             if child.tag not in inside and ":" not in child.tag:
                 what = f"element <{ascii_safe(child.tag).strip(chr(39))}> in <{tag}>"
                 _tell(what, child.tag, inside, child, reader)
-        for one in sorted(spelling.once.get(tag, frozenset())):
-            for child in element.all(one)[1:]:
-                reader.error("repeated-key", f"a second <{one}> in <{tag}>", child)
+        for child_tag in sorted(spelling.once.get(tag, frozenset())):
+            for child in element.all(child_tag)[1:]:
+                reader.error("repeated-key", f"a second <{child_tag}> in <{tag}>", child)
 
 
 def _of_more_words(long: str, short: str) -> bool:
@@ -361,14 +363,14 @@ def include(root: Element, beside: Callable[[str], str | None], complaints: Comp
         if child.tag == "include" and text is not None:
             seen.add(file)
             own = Complaints()
-            found = parsed(text, own)
+            included = parsed(text, own)
             for item in own.items:
                 complaints.error(item.code, f"in {ascii_safe(file)}: {item.message}", child.span)
-            if found is not None:
-                for element in found.walk():
+            if included is not None:
+                for element in included.walk():
                     element.span = child.span
-                include(found, beside, complaints, seen)
-                children += found.children
+                include(included, beside, complaints, seen)
+                children += included.children
             continue
         include(child, beside, complaints, seen)
         children.append(child)

@@ -152,17 +152,17 @@ def ties(
         if element.get("active") == "false":
             reader.leave_out(f"inactive constraint (<{element.tag}>)")
             continue
-        found: JointTie | PointTie | None = None
+        tie: JointTie | PointTie | None = None
         if element.tag == "joint":
-            found = _of_joints(element, joints, reader)
+            tie = _of_joints(element, joints, reader)
         elif element.tag in ("connect", "weld"):
-            found = _of_points(element, links, sites, reader)
+            tie = _of_points(element, links, sites, reader)
         else:
             reader.leave_out(f"constraint (<{element.tag}> in <equality>)")
             continue
-        if found is not None:
+        if tie is not None:
             reader.leave_out("softness of constraints (they hold exactly)")
-            yield found
+            yield tie
 
 
 def _of_joints(element: Element, joints: set[str], reader: Reader) -> JointTie | None:
@@ -170,13 +170,15 @@ def _of_joints(element: Element, joints: set[str], reader: Reader) -> JointTie |
     unknown = [name for name in (first, second) if name and name not in joints]
     if unknown:
         reader.error("unknown-name", f"there is no hinge or slide {ascii_safe(unknown[0])}", element)
-    given = list(_COEFFICIENTS)
-    count = len(element.get("polycoef").split()) or len(given)
-    if count > len(given):
+    coefficients = list(_COEFFICIENTS)
+    count = len(element.get("polycoef").split()) or len(coefficients)
+    if count > len(coefficients):
         reader.error("wrong-shape", "'polycoef' has at most five numbers", element)
     else:
-        given[:count] = reader.numbers(element, "polycoef", count, " ".join(given[:count]))
-    return None if unknown or not first else JointTie(first, second, tuple(given if second else given[:1]))
+        coefficients[:count] = reader.numbers(element, "polycoef", count, " ".join(coefficients[:count]))
+    return (
+        None if unknown or not first else JointTie(first, second, tuple(coefficients if second else coefficients[:1]))
+    )
 
 
 def _of_points(
@@ -216,12 +218,12 @@ def _of_points(
     else:
         axis, across = (_by(quaternion, list(map(float, x))) for x in (_UNITS[2], _UNITS[0]))
         there = list(map(float, place))  # as MuJoCo has it: where the anchor is, not the origin of the body
-    one = [a + b for a, b in zip(there, across, strict=True)]
-    other = [float(a) + float(b) for a, b in zip(anchor, _UNITS[1], strict=True)]
+    first_point = [a + b for a, b in zip(there, across, strict=True)]
+    second_point = [float(a) + float(b) for a, b in zip(anchor, _UNITS[1], strict=True)]
     tie = PointTie(first, _texts(there), second, anchor)
     if not welded:
         return tie
-    return replace(tie, axes=(_texts(axis), _UNITS[2]), apart=(_texts(one), _texts(other)))
+    return replace(tie, axes=(_texts(axis), _UNITS[2]), apart=(_texts(first_point), _texts(second_point)))
 
 
 def _by(quaternion: list[float], v: list[float]) -> list[float]:
@@ -264,9 +266,9 @@ def _turned(v: list[float], axis: int, angle: float) -> list[float]:
     """Rotated about a coordinate axis, actively."""
     i, j = axis % 3, (axis + 1) % 3
     c, s = math.cos(angle), math.sin(angle)
-    found = list(v)
-    found[i], found[j] = c * v[i] - s * v[j], s * v[i] + c * v[j]
-    return found
+    rotated = list(v)
+    rotated[i], rotated[j] = c * v[i] - s * v[j], s * v[i] + c * v[j]
+    return rotated
 
 
 def _value(words: str) -> float:

@@ -110,10 +110,10 @@ def read_urdf(root: Element, complaints: Complaints, exact: bool = False) -> Rob
             reader.leave_out("contact (<collision>)")
     roots = [name for name in links if name not in joints]
     if len(roots) != 1 and links and not complaints.errors:
-        told = (
+        reason = (
             "no link stands on the ground: the joints run in a circle" if not roots else f"links apart: {_few(roots)}"
         )
-        reader.error("no-tree", told, root, "every link but one hangs on exactly one joint")
+        reader.error("no-tree", reason, root, "every link but one hangs on exactly one joint")
     if not links:
         reader.error("missing-key", "there is no <link>", root)
     if complaints.errors:
@@ -257,17 +257,21 @@ def _led(element: Element, named: Mapping[str, Element], reader: Reader) -> tupl
         leader = reader.name(mimic, "joint")
         offset += multiplier * Fraction(reader.number(mimic, "offset"))
         multiplier *= Fraction(reader.number(mimic, "multiplier", "1"))
-        found = named.get(leader)
-        if found is None or leader in seen:
-            what = "joints that mimic each other" if found is not None else f"there is no joint {ascii_safe(leader)}"
-            reader.error("no-tree" if found is not None else "unknown-name", what, mimic)
+        leader_element = named.get(leader)
+        if leader_element is None or leader in seen:
+            what = (
+                "joints that mimic each other"
+                if leader_element is not None
+                else f"there is no joint {ascii_safe(leader)}"
+            )
+            reader.error("no-tree" if leader_element is not None else "unknown-name", what, mimic)
             return None
-        if found.get("type") in ("fixed", "floating"):
-            if found.get("type") == "floating":
+        if leader_element.get("type") in ("fixed", "floating"):
+            if leader_element.get("type") == "floating":
                 reader.error("unsupported", "a floating joint cannot be mimicked", mimic)
             return leader, "0", _decimal(offset)
         seen.append(leader)
-        element = found
+        element = leader_element
     return (seen[-1], _decimal(multiplier), _decimal(offset)) if len(seen) > 1 else None
 
 
@@ -315,8 +319,8 @@ def _shape(visual: Element, reader: Reader) -> Shape | None:
 
 def _origin(element: Element, reader: Reader) -> tuple[Texts, Turns]:
     """(place, turns)."""
-    found = element.first("origin")
-    return reader.three(found, "xyz"), fixed_turns(reader.three(found, "rpy", raw=True), reader)
+    origin = element.first("origin")
+    return reader.three(origin, "xyz"), fixed_turns(reader.three(origin, "rpy", raw=True), reader)
 
 
 def fixed_turns(rpy: Texts, reader: Reader) -> Turns:

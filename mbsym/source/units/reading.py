@@ -100,27 +100,27 @@ def unit(text: str) -> Unit | str:
     except Wrong as wrong:
         return str(wrong)
     factor: Fraction | float = Fraction(1)
-    found: Dimension = ()
+    base_powers: Dimension = ()
     for name, power in powers.items():
-        one = _named(name)
-        if isinstance(one, str):
-            return one
-        found = times(found, one.dimension, power)
+        named = _named(name)
+        if isinstance(named, str):
+            return named
+        base_powers = times(base_powers, named.dimension, power)
         try:
-            factor *= one.factor ** (int(power) if power.denominator == 1 else float(power))
+            factor *= named.factor ** (int(power) if power.denominator == 1 else float(power))
         except OverflowError:
             return "it is too large or too small"
-    if any(abs(value) > MAX_EXPONENT for _, value in found):
+    if any(abs(value) > MAX_EXPONENT for _, value in base_powers):
         return Message("powers of units go to [[most]]", most=MAX_EXPONENT)
     if not 1e-300 < factor < 1e300:
         return "it is too large or too small"
-    return Unit(factor, found)
+    return Unit(factor, base_powers)
 
 
 def _likely(text: str) -> str | None:
     """What was meant by ``Nm/rad``, ``ms^-2`` or ``m/s2``, if it is one of these."""
-    if found := _MILLISECONDS.match(text):
-        return "m/s" if found[1] == "1" else "m/s^2"
+    if milliseconds := _MILLISECONDS.match(text):
+        return "m/s" if milliseconds[1] == "1" else "m/s^2"
     made = re.sub(r"[A-Za-z_]\w*", lambda match: _CONFUSED.get(match[0], match[0]), text)
     made = _DIGIT.sub(r"\1^\2", made)
     return None if made == text else made
@@ -151,9 +151,9 @@ def _in_kilograms(factor: Any, power: Fraction, registry: Any) -> Any:
     return factor if str(base) == "kilogram" else factor / size ** int(power)
 
 
-def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -> tuple[Declared, ...]:
+def read_units(node: Node | None, declared: Iterable[Declared], reading: Reading) -> tuple[Declared, ...]:
     """The units of ``units`` and those that records of parameters and prescribed motions have, each name once."""
-    found = {one.name: one for one in given}
+    declared_by_name = {declaration.name: declaration for declaration in declared}
     allowed = Allowed("a unit's name", ("parameter", "coordinate", "prescribed", "table", "input"))
     entries = [] if node is None else list(reading.entries(node, "'units'", "write {x: m}"))
     for entry in entries:
@@ -163,23 +163,28 @@ def read_units(node: Node | None, given: Iterable[Declared], reading: Reading) -
         scalar = reading.scalar(entry.value, Message("the unit of [[name]]", name=ascii_safe(name)))
         if scalar is None:
             continue
-        if name in found:
+        if name in declared_by_name:
             reading.error("repeated-key", Message("the unit of '[[name]]' is given twice", name=name), entry.key.span)
-        found[name] = Declared(name, scalar.text.strip(), scalar.span)
-    for one in found.values():
-        reason = unit(one.text)
+        declared_by_name[name] = Declared(name, scalar.text.strip(), scalar.span)
+    for declaration in declared_by_name.values():
+        reason = unit(declaration.text)
         if isinstance(reason, str):
-            close = _likely(one.text)
-            close = close if close and isinstance(unit(close), Unit) else closest(one.text, _WRITTEN)
+            close = _likely(declaration.text)
+            close = close if close and isinstance(unit(close), Unit) else closest(declaration.text, _WRITTEN)
             hint = (
                 Message("did you mean '[[other]]'?", other=close)
                 if close
                 else "for example kg, m, s, N, kg*m^2, rad, m/s^2, or 1"
             )
             reading.error(
-                "bad-unit", "[[what]] is no unit: [[reason]]", one.span, hint, what=ascii_safe(one.text), reason=reason
+                "bad-unit",
+                "[[what]] is no unit: [[reason]]",
+                declaration.span,
+                hint,
+                what=ascii_safe(declaration.text),
+                reason=reason,
             )
-    return tuple(found.values())
+    return tuple(declared_by_name.values())
 
 
 # The text of a unit as a product of names with powers, ``kg*m^2/s^2``: read without computing anything of it.
@@ -229,10 +234,10 @@ class _Reader:
             end = match.end()
 
     def whole(self) -> Powers:
-        found = self.product(0)
+        powers = self.product(0)
         if self.place < len(self.tokens):
             raise Wrong(_FORM)
-        return {name: power for name, power in found.items() if power}
+        return {name: power for name, power in powers.items() if power}
 
     def next(self) -> str:
         return self.tokens[self.place] if self.place < len(self.tokens) else ""
@@ -256,16 +261,16 @@ class _Reader:
         token = self.next()
         self.place += 1
         if token == "(":
-            found = self.product(depth + 1)
+            powers = self.product(depth + 1)
             if not self.take(")"):
                 raise Wrong(_FORM)
         elif token == "1":
-            found = {}
+            powers = {}
         elif re.match("[A-Za-z_]", token):
-            found = {token: Fraction(1)}
+            powers = {token: Fraction(1)}
         else:
             raise Wrong(_FORM)
-        return _times({}, found, self.exponent()) if self.take("^") else found
+        return _times({}, powers, self.exponent()) if self.take("^") else powers
 
     def exponent(self) -> Fraction:
         """``2``, ``-2``, ``0.5``, ``(1/2)``."""

@@ -64,18 +64,18 @@ class Dimensions:
         known = self.name_form
         return replace(self, name_form=lambda other: form if other == name else known(other)) if name else self
 
-    def expect(self, expression: Expression, wanted: Form, what: str) -> None:
+    def expect(self, expression: Expression, expected: Form, what: str) -> None:
         """An expression must have a dimension.  A number alone may stand for anything, in the units of the rest."""
         if not names(expression):
             return
         form = self.of(expression)
-        if form is not None and not self.inference.equate(form, wanted):
+        if form is not None and not self.inference.equate(form, expected):
             message = Message(
                 "[[shown]] is [[told]], and [[what]] is [[told2]]",
                 shown=_shown(expression),
                 told=self.told(form),
                 what=what,
-                told2=self.told(wanted),
+                told2=self.told(expected),
             )
             self.complain(message, _place(expression), None)
 
@@ -127,14 +127,14 @@ class Dimensions:
                 return self._sum(expression, left, right)
         raise TypeError(expression)
 
-    def _tabulated(self, name: str, argument: Expression, found: Form) -> None:
+    def _tabulated(self, name: str, argument: Expression, argument_form: Form) -> None:
         """All arguments of a table have one dimension."""
         form = self.name_form(Message("the argument of [[name]]", name=name))
-        if not self.inference.equate(found, form):
+        if not self.inference.equate(argument_form, form):
             message = Message(
                 "[[shown]] is [[told]], and the argument of [[name]] is [[told2]]",
                 shown=_shown(argument),
-                told=self.told(found),
+                told=self.told(argument_form),
                 name=name,
                 told2=self.told(form),
             )
@@ -238,8 +238,8 @@ class Form:
         powers = dict(self.unknown)
         for name, exponent in other.unknown:
             powers[name] = powers.get(name, Fraction(0)) + exponent * power
-        kept = tuple((name, exponent) for name, exponent in sorted(powers.items()) if exponent)
-        return Form(times(self.known, other.known, power), kept)
+        unknown = tuple((name, exponent) for name, exponent in sorted(powers.items()) if exponent)
+        return Form(times(self.known, other.known, power), unknown)
 
     def to_the(self, power: Fraction | int) -> Form:
         return Form().times(self, power)
@@ -263,7 +263,7 @@ class Inference:
             if name is None:
                 return form
             power = dict(form.unknown)[name]
-            rest = Form(form.known, tuple(one for one in form.unknown if one[0] != name))
+            rest = Form(form.known, tuple(unknown for unknown in form.unknown if unknown[0] != name))
             form = rest.times(self.solved[name], power)
 
     def equate(self, left: Form, right: Form) -> bool:
@@ -311,7 +311,11 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
 
     Without declared units nothing is checked, and there are none.
     """
-    known = {one.name: found for one in declared if isinstance(found := unit(one.text), Unit)}
+    known = {
+        declaration.name: known_unit
+        for declaration in declared
+        if isinstance(known_unit := unit(declaration.text), Unit)
+    }
     if len(known) < len(declared) or not declared:
         return Units(declared)
     base = _base_units(declared, known, reading)
@@ -319,13 +323,16 @@ def checked_units(system: System, declared: tuple[Declared, ...], reading: Readi
     def complain(message: str, span: Span | None, hint: str | None) -> None:
         reading.error("dimension", message, span, hint)
 
-    inference = Inference({name: Form(found.dimension) for name, found in known.items()})
+    inference = Inference({name: Form(known_unit.dimension) for name, known_unit in known.items()})
     _System(system, Dimensions(inference, _form_of(system), complain)).check()
     names = (*system.coordinates, *system.parameter_names, *(prescribed.name for prescribed in system.prescribed))
     names = (*names, *system.variables, *system.input_names, *(output.name for output in system.outputs))
-    more = (*(one.name for one in system.notation), *(abbreviation.name for abbreviation in system.abbreviations))
+    more = (
+        *(notation.name for notation in system.notation),
+        *(abbreviation.name for abbreviation in system.abbreviations),
+    )
     follows = ((name, inference.dimension(name)) for name in (*names, *more))
-    inferred = tuple((name, found) for name, found in follows if found is not None)
+    inferred = tuple((name, dimension) for name, dimension in follows if dimension is not None)
     return Units(declared, inferred, base)
 
 
@@ -337,7 +344,9 @@ def dimensions_of(
     ``complain`` is told of what is asked afterwards, not of what contradicts itself in the description.
     """
     known = {
-        one.name: Form(found.dimension) for one in system.units.declared if isinstance(found := unit(one.text), Unit)
+        declaration.name: Form(known_unit.dimension)
+        for declaration in system.units.declared
+        if isinstance(known_unit := unit(declaration.text), Unit)
     }
     inference = Inference({**known, **forms})
     _System(system, Dimensions(inference, _form_of(system), lambda *_: None)).check()
@@ -376,8 +385,8 @@ def _base_units(
     elimination; a pure number has size one.
     """
     rows: list[tuple[str, Dimension, float]] = []  # the pivot, with exponent one, and what it stands with
-    for one in declared:
-        left, size = known[one.name].dimension, math.log(known[one.name].factor)
+    for declaration in declared:
+        left, size = known[declaration.name].dimension, math.log(known[declaration.name].factor)
         for pivot, row, value in rows:
             power = dict(left).get(pivot, Fraction(0))
             left, size = times(left, row, -power), size - float(power) * value
@@ -390,28 +399,30 @@ def _base_units(
             ]
             rows.append((pivot, row, value))
         elif abs(size) > _EXACT:
-            reading.error("incoherent-units", *_incoherent(one, known[one.name], math.exp(size)))
+            reading.error("incoherent-units", *_incoherent(declaration, known[declaration.name], math.exp(size)))
     alone = {row[0][0]: math.exp(value) for _, row, value in rows if len(row) == 1}
     return tuple((base, name) for base in BASES if base in alone and (name := _called(base, alone[base])) is not None)
 
 
-def _incoherent(one: Declared, found: Unit, factor: float) -> tuple[str, Span | None, str]:
-    if not found.dimension:
+def _incoherent(declaration: Declared, known_unit: Unit, factor: float) -> tuple[str, Span | None, str]:
+    if not known_unit.dimension:
         hint = Message(
             "numbers are taken as they stand: multiply them by [[factor]], and write rad or 1", factor=f"{factor:.6g}"
         )
         return (
-            Message("angles are in radians, and pure numbers without a factor: '[[what]]' is neither", what=one.text),
-            one.span,
+            Message(
+                "angles are in radians, and pure numbers without a factor: '[[what]]' is neither", what=declaration.text
+            ),
+            declaration.span,
             hint,
         )
-    message = Message("'[[what]]' does not belong to the system of units of the names before", what=one.text)
+    message = Message("'[[what]]' does not belong to the system of units of the names before", what=declaration.text)
     return (
         message,
-        one.span,
+        declaration.span,
         Message(
             "in their units the numbers of '[[name]]' are [[factor]] times as large",
-            name=one.name,
+            name=declaration.name,
             factor=f"{factor:.6g}",
         ),
     )
@@ -430,9 +441,9 @@ class _System:
         self.system = system
         self.dimensions = dimensions
 
-    def expect(self, expression: Expression | None, wanted: Dimension | Form, what: str) -> None:
+    def expect(self, expression: Expression | None, dimension: Dimension | Form, what: str) -> None:
         if expression is not None:
-            form = wanted if isinstance(wanted, Form) else Form(wanted)
+            form = dimension if isinstance(dimension, Form) else Form(dimension)
             self.dimensions.expect(expression, form, what)
 
     def vector(self, vector: Vector | None, dimension: Dimension, what: str) -> None:
@@ -455,8 +466,8 @@ class _System:
             self.load(load)
         for constraint in system.constraints:
             self.constraint(constraint)
-        for one in system.inputs:
-            self.expect(one.held, self.of(one.name), f"'{one.name}'")
+        for system_input in system.inputs:
+            self.expect(system_input.held, self.of(system_input.name), f"'{system_input.name}'")
         for output in system.outputs:
             self.expect(output.value, self.of(output.name), f"'{output.name}'")
         for relation in system.relations:
@@ -501,8 +512,8 @@ class _System:
     def load(self, load: Load) -> None:
         self.points(load.points)
         for formula, dimension, what, coordinate, power in load.measured():
-            wanted = Form(dimension).times(self.of(coordinate), power) if coordinate else dimension
-            self.expect(formula, wanted, what)
+            expected = Form(dimension).times(self.of(coordinate), power) if coordinate else dimension
+            self.expect(formula, expected, what)
 
     def constraint(self, constraint: Constraint) -> None:
         match constraint:
@@ -538,8 +549,8 @@ def check_claim(claim: Claim, dimensions: Dimensions, scaled: bool, variables: C
     if claim.right is not None:
         dimensions.alike(claim.equals, claim.right, "compared")
     elif claim.kind in _FIXED:
-        wanted, what = _FIXED[claim.kind]
-        dimensions.expect(claim.equals, Form(wanted), what)
+        dimension, what = _FIXED[claim.kind]
+        dimensions.expect(claim.equals, Form(dimension), what)
     elif claim.kind == "acceleration":
         rate = Name(velocity_name(claim.of) if claim.of in variables else acceleration_name(claim.of))
         dimensions.alike(rate, claim.equals, "equal")

@@ -75,13 +75,13 @@ class Request:
         return "" if self.vary is None else self.vary.name
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.mechanics.rest import missing_values
 
-    system = asked.system
-    if "vary" not in asked.typed:
+    system = context.system
+    if "vary" not in context.typed:
         for name in ("format", "language"):
-            if name in asked.typed:
+            if name in context.typed:
                 yield Unfit(f"--{name}", *UNWRITTEN)
     elif request.vary is None:
         return
@@ -113,15 +113,15 @@ def _exact(request: Request, system: System) -> Iterator[tuple[str, Value | Unfi
     known = {item.name: item.value for item in system.parameters if item.value is not None} | sound
     for name, expression in sound.items():
         if name not in system.parameter_names:
-            told, hint = "equilibria are what is looked for", "set parameters only"
-            yield name, Unfit("--set", "misplaced-name", told, hint, name)
+            reason, hint = "equilibria are what is looked for", "set parameters only"
+            yield name, Unfit("--set", "misplaced-name", reason, hint, name)
             continue
         whole = substitute(expression, {k: v for k, v in known.items() if k != name})
         value = rational(whole)
         if value is None and (request.vary is not None or names_in(whole)):
-            told = "an exact rational number is needed"
+            reason = "an exact rational number is needed"
             hint = Message("write for example [[example]]", example=f"{name}=3/2")
-            yield name, Unfit("--set", "not-rational", told, hint, name)
+            yield name, Unfit("--set", "not-rational", reason, hint, name)
         else:
             yield name, whole if value is None else value
 
@@ -157,29 +157,29 @@ class Listed:
     permanent: PermanentRotations | None
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Listed | Branches:
+def derive(context: Asked, request: Request, watch: Watch) -> Listed | Branches:
     from mbsym.analysis.resting import relative_equilibria
     from mbsym.problems.relative_equilibria.permanent_rotations import permanent_rotations
     from mbsym.studies.equilibria.branches import followed
 
-    values = _numbers(asked.system, request)
+    values = _numbers(context.system, request)
     if request.vary is not None:
-        return followed(asked.system, request.vary, cast("Mapping[str, Fraction]", values), watch)
+        return followed(context.system, request.vary, cast("Mapping[str, Fraction]", values), watch)
     watch("relative equilibria")
-    equilibria = relative_equilibria(asked.system, values, request.within)
-    return Listed(equilibria, permanent_rotations(asked.system, values))
+    equilibria = relative_equilibria(context.system, values, request.within)
+    return Listed(equilibria, permanent_rotations(context.system, values))
 
 
-def answer(asked: Asked, request: Request, found: Listed | Branches) -> Answer:
+def answer(context: Asked, request: Request, derived: Listed | Branches) -> Answer:
     from mbsym.studies.equilibria import branches
     from mbsym.studies.equilibria.listed import lines
 
-    if isinstance(found, Listed):
-        return Answer(lines(asked.system, found.equilibria, found.permanent))
-    return branches.answer(asked.system, request, found)
+    if isinstance(derived, Listed):
+        return Answer(lines(context.system, derived.equilibria, derived.permanent))
+    return branches.answer(context.system, request, derived)
 
 
-def as_json(asked: Asked, request: Request, found: Listed | Branches) -> str:
+def as_json(context: Asked, request: Request, derived: Listed | Branches) -> str:
     from msgspec import UNSET
 
     from mbsym.expressions.tree import text
@@ -187,19 +187,19 @@ def as_json(asked: Asked, request: Request, found: Listed | Branches) -> str:
     from mbsym.report.documents import equilibria as doc
     from mbsym.report.documents.base import written
 
-    assert isinstance(found, Listed)
-    values = _numbers(asked.system, request)
+    assert isinstance(derived, Listed)
+    values = _numbers(context.system, request)
     whole = doc.Equilibria.from_result(
-        found.equilibria,
-        system=asked.system.name,
-        units=units_by_name(asked.system) or UNSET,
+        derived.equilibria,
+        system=context.system.name,
+        units=units_by_name(context.system) or UNSET,
         values={name: x if isinstance(x, Fraction) else text(x) for name, x in values.items()},
-        permanent_rotations=found.permanent,
+        permanent_rotations=derived.permanent,
     )
     return written(whole)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.studies.equilibria.branches import Withdrawn
 
     if isinstance(error, Withdrawn):

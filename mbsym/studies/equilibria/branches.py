@@ -30,70 +30,72 @@ def followed(system: System, axis: Axis, values: Mapping[str, Fraction], watch: 
     from mbsym.analysis import Analysis
     from mbsym.maps.branches import branches
 
-    found = branches(system, axis, values, watch=watch)
+    branch_map = branches(system, axis, values, watch=watch)
     withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
     if withdrawn is not None:
         raise Withdrawn(withdrawn.reason)
-    return found
+    return branch_map
 
 
-def answer(system: System, request: Request, found: Branches) -> Answer:
+def answer(system: System, request: Request, branches: Branches) -> Answer:
     from mbsym.studies.map.answer import files_of
 
-    lines, files = _lines(found), files_of(system, found, request.files, request.language or system.language)
-    if found.interrupted:
+    lines, files = _lines(branches), files_of(system, branches, request.files, request.language or system.language)
+    if branches.interrupted:
         message = Message("interrupted; what was proved before that is written")
         return Answer(lines, files, (message,), Exit.INTERRUPTED)
-    unbalanced = any(found.critical(critical).balance is False for critical in found.criticals)
+    unbalanced = any(branches.critical(critical).balance is False for critical in branches.criticals)
     return Answer(lines, files, code=Exit.FAILED if unbalanced else Exit.OK)
 
 
-def _lines(found: Branches) -> Iterator[Block]:
+def _lines(branches: Branches) -> Iterator[Block]:
     """Intervals and critical values in their order, then what there is to know besides."""
     from mbsym.report.maps.words import critical_words, remark_words
 
     columns = (
-        column(found.axes[0].name),
+        column(branches.axes[0].name),
         column(Message("equilibria"), right=True),
         column(Message("stable"), right=True),
         column(Message("what happens"), fold=True),
     )
-    yield aligned(columns, rows(found))
-    for one in found.criticals:
-        if (polynomial := _minimal(one.sample)) and critical_words(found, one):
-            message = Message("[[value]] is a root of [[polynomial]]", value=value(one.sample), polynomial=polynomial)
+    yield aligned(columns, rows(branches))
+    for critical in branches.criticals:
+        if (polynomial := _minimal(critical.sample)) and critical_words(branches, critical):
+            message = Message(
+                "[[value]] is a root of [[polynomial]]", value=value(critical.sample), polynomial=polynomial
+            )
             yield paragraph(message)
-    for remark in found.remarks:
+    for remark in branches.remarks:
         yield paragraph(remark_words(remark))
-    lost = sum(not piece.throughout for piece in found.pieces)
+    lost = sum(not piece.throughout for piece in branches.pieces)
     if lost:
         text = "verdicts proved at the sample only, not along the whole piece: [[lost]] of [[all]]"
-        yield paragraph(Message(text, lost=lost, all=len(found.pieces)))
-    if found.proved:
+        yield paragraph(Message(text, lost=lost, all=len(branches.pieces)))
+    if branches.proved:
         yield paragraph(Message("the numbers of equilibria are proved in every open interval"))
 
 
-def rows(found: Branches) -> list[tuple[str, str, str, str]]:
+def rows(branches: Branches) -> list[tuple[str, str, str, str]]:
     """(interval or value, equilibria, stable ones, what happens); intervals between which nothing happens as one."""
-    told: list[tuple[str, str, str, str]] = []
+    table: list[tuple[str, str, str, str]] = []
     from mbsym.report.maps.words import stable_words
 
-    for first, last in found.spans():
-        told += _critical_row(found, found.between(first)[0])
-        count = f"{len(found.equilibria(first))}" + ("" if first.certainty is Certainty.PROVED else " ?")
-        stable = stable_words(x.verdict for x in found.equilibria(first))
-        told.append((f"{value(found.ends(first)[0])} .. {value(found.ends(last)[1])}", count, stable, ""))
-    return told + (_critical_row(found, found.between(found.intervals[-1])[1]) if found.intervals else [])
+    for first, last in branches.spans():
+        table += _critical_row(branches, branches.between(first)[0])
+        count = f"{len(branches.equilibria(first))}" + ("" if first.certainty is Certainty.PROVED else " ?")
+        stable = stable_words(x.verdict for x in branches.equilibria(first))
+        table.append((f"{value(branches.ends(first)[0])} .. {value(branches.ends(last)[1])}", count, stable, ""))
+    return table + (_critical_row(branches, branches.between(branches.intervals[-1])[1]) if branches.intervals else [])
 
 
-def _critical_row(found: Branches, at: Cell | None) -> list[tuple[str, str, str, str]]:
+def _critical_row(branches: Branches, at: Cell | None) -> list[tuple[str, str, str, str]]:
     """The row of the critical value at the end of an interval, if there is one at which something happens."""
     from mbsym.report.maps.words import critical_words, stable_words
 
-    words = "" if at is None else critical_words(found, at)
+    words = "" if at is None else critical_words(branches, at)
     if at is None or not words:
         return []
-    critical = found.critical(at)
+    critical = branches.critical(at)
     counted = critical.meetings is not None and not critical.continuum
     stable = stable_words(x.verdict for x in critical.meetings or ())
     count = str(len(critical.meetings or ())) if counted else Message("not counted")

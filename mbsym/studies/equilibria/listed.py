@@ -34,32 +34,34 @@ from mbsym.report.unit_text import labelled, pretty
 _LONGEST = 100
 
 
-def lines(system: System, found: Equilibria, permanent: PermanentRotations | None = None) -> Iterator[Block]:
+def lines(system: System, equilibria: Equilibria, permanent: PermanentRotations | None = None) -> Iterator[Block]:
     """How many there are and how far the list is complete, then all that was found."""
-    yield from _summary(found)
-    if found.equilibria:
-        yield _table(system, found.equilibria)
+    yield from _summary(equilibria)
+    if equilibria.equilibria:
+        yield _table(system, equilibria.equilibria)
     angles = {name for body in system.bodies for _, angle in body.rotation.turns() for name in names(angle)}
-    for name, rate in found.turning:
+    for name, rate in equilibria.turning:
         value = with_unit(f"{rate:.10g}", pretty(system.units.rate_of(name)))
         text = "[[name]] turns at the rate [[rate]]" if name in angles else "[[name]] moves at the rate [[rate]]"
         yield paragraph(Message(text, name=name, rate=value))
-    if found.singular:
+    if equilibria.singular:
         text = "[[solutions]], the coordinates are singular there: equilibria or not is undecided"
-        solutions = Counted(len(found.singular), "more solution", "more solutions")
+        solutions = Counted(len(equilibria.singular), "more solution", "more solutions")
         yield paragraph(Strong(Message(text, solutions=solutions)))
-        yield _table(system, found.singular, judged=False)
-    if found.beyond:
-        lengths = ", ".join(f"{name} < 0" for name in dict.fromkeys(x for one in found.beyond for x in one.beyond))
+        yield _table(system, equilibria.singular, judged=False)
+    if equilibria.beyond:
+        lengths = ", ".join(
+            f"{name} < 0" for name in dict.fromkeys(x for equilibrium in equilibria.beyond for x in equilibrium.beyond)
+        )
         text = (
             "[[solutions]] with [[lengths]], not counted: with positive lengths the bodies would be at "
             "the same places, "
             "but other forces would act"
         )
-        solutions = Counted(len(found.beyond), "more solution", "more solutions")
+        solutions = Counted(len(equilibria.beyond), "more solution", "more solutions")
         yield paragraph(Strong(Message(text, solutions=solutions, lengths=lengths)))
-        yield _table(system, found.beyond, judged=False)
-    for number, family in enumerate(found.families, 1):
+        yield _table(system, equilibria.beyond, judged=False)
+    for number, family in enumerate(equilibria.families, 1):
         yield from _family(system, number, family)
     if permanent is not None:
         yield from _permanent(permanent)
@@ -123,35 +125,35 @@ def _shortened(polynomial: str) -> str:
     return polynomial if len(polynomial) <= _LONGEST else message
 
 
-def _permanent(found: PermanentRotations) -> Iterator[Block]:
+def _permanent(permanent: PermanentRotations) -> Iterator[Block]:
     """The family that a steady turn at the description's rate is a member of."""
     text = "permanent rotations about the fixed axis of [[angle]], at whatever rate"
-    yield Subheading((Message(text, angle=found.angle),))
+    yield Subheading((Message(text, angle=permanent.angle),))
     text = "g: that axis in the axes of [[body]], g1**2 + g2**2 + g3**2 = 1"
-    yield paragraph("  ", Message(text, body=found.body))
-    acts = [found.loaded, found.gyrostatic, found.inertial]
+    yield paragraph("  ", Message(text, body=permanent.body))
+    acts = [permanent.loaded, permanent.gyrostatic, permanent.inertial]
     where = None
-    if found.axes:
-        polynomial = "*".join(f"({x})" if len(found.axes) > 1 else x for x in found.axes)
+    if permanent.axes:
+        polynomial = "*".join(f"({x})" if len(permanent.axes) > 1 else x for x in permanent.axes)
         shown = polynomial if len(polynomial) <= 3 * _LONGEST else _shortened(polynomial)
         text = "necessary for an axis: [[polynomial]] = 0"
-        if found.family:
+        if permanent.family:
             text = "a one-parameter family, the axes on a cone: [[polynomial]] = 0"
         where = Message(text, polynomial=shown)
     elif acts == [False, False, True]:
         where = Message("nothing acts at rest: each axis that satisfies these equations, at any rate")
-    elif found.everywhere and not found.gyrostatic:
+    elif permanent.everywhere and not permanent.gyrostatic:
         where = Message("a two-parameter family: every axis for which these equations give a real rate")
     elif not any(acts):
         where = Message("nothing acts: every axis, at any rate")
     if where is not None:
         yield paragraph("  ", where)
-    for row in zip(found.constant, found.linear, found.quadratic, strict=True):
+    for row in zip(permanent.constant, permanent.linear, permanent.quadratic, strict=True):
         if any(x != "0" for x in row):
             parts = (("", row[0]), ("rate*", row[1]), ("rate**2*", row[2]))
             terms = [f"{front}({x})" if front else x for front, x in parts if x != "0"]
             yield paragraph(f"    {' + '.join(terms)} = 0")
-    if found.either and (found.axes or found.everywhere):
+    if permanent.either and (permanent.axes or permanent.everywhere):
         text = (
             "one of g and -g carries a rotation, the other none, unless what acts at rest or what grows "
             "with the square "
@@ -160,31 +162,31 @@ def _permanent(found: PermanentRotations) -> Iterator[Block]:
         yield paragraph("  ", Message(text))
 
 
-def _summary(found: Equilibria) -> Iterator[Block]:
-    count = Counted(len(found.equilibria), "relative equilibrium", "relative equilibria")
-    words = Counter(equilibrium.verdict.word for equilibrium in found.equilibria)
+def _summary(equilibria: Equilibria) -> Iterator[Block]:
+    count = Counted(len(equilibria.equilibria), "relative equilibrium", "relative equilibria")
+    words = Counter(equilibrium.verdict.word for equilibrium in equilibria.equilibria)
     kinds = joined((joined((str(n), Message(word))) for word, n in words.items()), "; ")
-    counts = [count, *([Counted(len(found.families), "family", "families")] if found.families else [])]
+    counts = [count, *([Counted(len(equilibria.families), "family", "families")] if equilibria.families else [])]
     yield paragraph(Strong(joined(counts, ", ")), *([": ", kinds] if words else []))
-    exact = all(x.proof == "exact" for x in found.equilibria)
-    if found.complete and (found.singular or found.beyond):
+    exact = all(x.proof == "exact" for x in equilibria.equilibria)
+    if equilibria.complete and (equilibria.singular or equilibria.beyond):
         text = "the list is complete apart from the solutions below that are not counted ([[how]])"
         how = Message("every one exact") if exact else Message("every one proved")
         yield paragraph(Graded(Message(text, how=how), "good"))
-    elif found.complete:
+    elif equilibria.complete:
         how = Message("every one exact") if exact else Message("every one proved")
         yield paragraph(Graded(Message("the list is complete ([[how]])", how=how), "good"))
     else:
         yield paragraph(Graded(Message("the list may be incomplete"), "open"))
-    for remark in found.remarks:
+    for remark in equilibria.remarks:
         yield paragraph(Graded(remark, "open"))
-    twice = sorted({equilibrium.described for equilibrium in found.equilibria if equilibrium.described > 1})
+    twice = sorted({equilibrium.described for equilibrium in equilibria.equilibria if equilibrium.described > 1})
     if twice:
         text = "counted as configurations: the coordinates describe one in [[ways]] ways"
         yield paragraph(Message(text, ways="/".join(map(str, twice))))
-    if found.charts > 1:
+    if equilibria.charts > 1:
         text = "singular angles were replaced by others ([[count]] sets of angles)"
-        yield paragraph(Message(text, count=found.charts))
+        yield paragraph(Message(text, count=equilibria.charts))
 
 
 def _grade(word: Word) -> str:

@@ -74,14 +74,14 @@ class Request:
     )
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
-    if "vary" in asked.typed and request.cases:
-        told = "with --vary other parameters are numbers"
-        yield Unfit("--cases", "not-together", told, "choose one of them")
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
+    if "vary" in context.typed and request.cases:
+        message = "with --vary other parameters are numbers"
+        yield Unfit("--cases", "not-together", message, "choose one of them")
     if request.vary is not None and request.vary.name in request.values:
-        told = Message("'[[name]]' has an interval and a number", name=request.vary.name)
-        yield Unfit("--set", "repeated-name", told, "leave one of them out")
-    if "budget" in asked.typed and not request.cases:
+        message = Message("'[[name]]' has an interval and a number", name=request.vary.name)
+        yield Unfit("--set", "repeated-name", message, "leave one of them out")
+    if "budget" in context.typed and not request.cases:
         yield Unfit("--budget", "missing-option", "--budget goes with --cases", "add --cases")
 
 
@@ -97,20 +97,20 @@ class Found:
     at: DarbouxAlong | None
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Found:
+def derive(context: Asked, request: Request, watch: Watch) -> Found:
     """Raises NotFit where the field has other variables or parameters than the request names."""
     from mbsym.analysis import Analysis
     from mbsym.analysis.polynomial import allowed, integrals_of, invariant_relations, setting, special_relations
     from mbsym.problems.polynomial_integrals import along_of, cases_of
 
     watch("polynomial integrals")
-    analysis = Analysis(asked.system)
+    analysis = Analysis(context.system)
     there = setting(analysis, request.values, driven=True)
     if wrong := tuple(_unfit(there, request)):
         raise NotFit(wrong)
     integrals, axis = integrals_of(there, request.degree, request.weights), request.vary
     along = None if axis is None else along_of(integrals, there.kinds, there.known, axis.low, axis.high)
-    positive = [parameter.name for parameter in asked.system.parameters if parameter.sign == "positive"]
+    positive = [parameter.name for parameter in context.system.parameters if parameter.sign == "positive"]
     special = None
     if request.cases:
         budget = BUDGET if request.budget is None else request.budget
@@ -141,55 +141,55 @@ def _unfit(there: Setting, request: Request) -> Iterator[Unfit]:
         yield Unfit("--set", "missing-value", lacks, Message("for example [[example]]", example=example))
 
 
-def answer(asked: Asked, request: Request, found: Found) -> Answer:
-    return Answer(_lines(found), code=Exit.OK if found.integrals.complete else Exit.FAILED)
+def answer(context: Asked, request: Request, derived: Found) -> Answer:
+    return Answer(_lines(derived), code=Exit.OK if derived.integrals.complete else Exit.FAILED)
 
 
-def _lines(found: Found) -> Iterator[Line | Block]:
+def _lines(derived: Found) -> Iterator[Line | Block]:
     """The integrals, what is known of them as a whole, and what is there besides."""
     from mbsym.report.content import ragged
     from mbsym.report.sections.polynomial_integrals import listed
     from mbsym.report.words.integrals_words import sentences
 
-    there, integrals = found.there, found.integrals
+    there, integrals = derived.there, derived.integrals
     formulas = [there.formula(generator.polynomial) for generator in integrals.generators]
     yield from listed(integrals, integrals.field.variables, formulas)
     yield from map(ragged, sentences(integrals))
-    for head, texts in _sections(found):
+    for head, texts in _sections(derived):
         yield heading(head)
         for text in texts:
             yield line("    ", text, whole=True)
 
 
-def _sections(found: Found) -> Iterator[tuple[str, Iterator[str]]]:
+def _sections(derived: Found) -> Iterator[tuple[str, Iterator[str]]]:
     from mbsym.studies.integrals.cases import along_lines, cases_lines
     from mbsym.studies.integrals.levels import other_lines
     from mbsym.studies.integrals.relations import darboux_lines, darboux_values, level_lines, relation_lines
 
-    there, integrals, relations = found.there, found.integrals, found.relations
-    if found.line is not None:
-        yield Message("Special values"), along_lines(there, integrals, found.line)
-    if found.cases is not None:
-        yield Message("Special cases"), cases_lines(there, found.cases)
+    there, integrals, relations = derived.there, derived.integrals, derived.relations
+    if derived.line is not None:
+        yield Message("Special values"), along_lines(there, integrals, derived.line)
+    if derived.cases is not None:
+        yield Message("Special cases"), cases_lines(there, derived.cases)
     if relations is not None:
         yield Message("Integrals where another one is zero"), level_lines(there, integrals, relations.levels)
         nonzero = Message("Integrals where another one has a value that is not zero")
         yield nonzero, other_lines(there, relations.others)
         yield Message("Linear invariant relations"), relation_lines(there, relations.linear)
         yield Message("Invariant relations f = 0 with f' = K f"), darboux_lines(there, integrals, relations.darboux)
-    if found.at is not None:
-        head = Message("Values of [[name]] with further f' = K f", name=found.at.name)
-        yield head, darboux_values(there, integrals, found.at)
+    if derived.at is not None:
+        head = Message("Values of [[name]] with further f' = K f", name=derived.at.name)
+        yield head, darboux_values(there, integrals, derived.at)
 
 
-def as_json(asked: Asked, request: Request, found: Found) -> str:
+def as_json(context: Asked, request: Request, derived: Found) -> str:
     from mbsym.report.integrals_json import integrals_json
 
-    further = (found.line, found.cases, found.relations, found.at)
-    return integrals_json(asked.system, request.values, found.there, found.integrals, *further)
+    further = (derived.line, derived.cases, derived.relations, derived.at)
+    return integrals_json(context.system, request.values, derived.there, derived.integrals, *further)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import Failure, Limit
 
     if isinstance(error, ZeroDivisionError):

@@ -24,63 +24,63 @@ if TYPE_CHECKING:
     from mbsym.problems.polynomial_integrals import Along, Cases, PolynomialIntegrals, Special
 
 
-def along_lines(there: Setting, usual: PolynomialIntegrals, found: Along) -> Iterator[str]:
+def along_lines(there: Setting, usual: PolynomialIntegrals, along: Along) -> Iterator[str]:
     """The values, what there is at each, and what is known of the others."""
-    if found.weights not in (None, usual.grading.weights):
-        yield weights_here(there.field.variables, found.weights or ())
-    length = "" if found.weights is None or not there.vectors else ANY_LENGTH
-    for one in found.values:
-        yield f"{found.name} = {one.value}"
-        yield from _special(there, one)
-    if not found.values:
-        yield no_further(found.name, found.low, found.high)
-    yield from undecided_at(found.name, found.undecided, found.irrational)
+    if along.weights not in (None, usual.grading.weights):
+        yield weights_here(there.field.variables, along.weights or ())
+    length = "" if along.weights is None or not there.vectors else ANY_LENGTH
+    for special in along.values:
+        yield f"{along.name} = {special.value}"
+        yield from _special(there, special)
+    if not along.values:
+        yield no_further(along.name, along.low, along.high)
+    yield from undecided_at(along.name, along.undecided, along.irrational)
     without = Message(" that does not contain [[names]]", names=", ".join(usual.aside)) if usual.aside else ""
-    if not found.usual:
-        yield Message(NOTHING_KNOWN, name=found.name)
+    if not along.usual:
+        yield Message(NOTHING_KNOWN, name=along.name)
         return
     text = (
         "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there is no further "
         "integral of weight up to [[degree]][[without]] (proved[[length]]); irrational values are undecided."
     )
-    ends: dict[str, object] = {"low": found.low, "high": found.high}
-    if found.whole:
+    ends: dict[str, object] = {"low": along.low, "high": along.high}
+    if along.whole:
         text = (
             "[[all]] of [[name]] from [[low]] to [[high]], rational or not, there is no further integral of weight up "
             "to [[degree]][[without]] ([[how]][[length]])."
         )
         ends["how"] = BUT_FOR_ALGEBRAIC
-    ends["all"] = all_values(found.values or found.undecided)
-    yield Message(text, name=found.name, **ends, degree=usual.degree, without=without, length=length)
+    ends["all"] = all_values(along.values or along.undecided)
+    yield Message(text, name=along.name, **ends, degree=usual.degree, without=without, length=length)
 
 
-def cases_lines(there: Setting, found: Cases) -> Iterator[str]:
+def cases_lines(there: Setting, cases: Cases) -> Iterator[str]:
     """The cases, and what the list is not."""
-    for case in found.cases:
+    for case in cases.cases:
         yield conditions_text(case, lambda p: str(there.formula(p)))
         yield from _special(there, case.special)
-    if not found.cases:
+    if not cases.cases:
         yield Message("no case was found")
     yield Message(
         "Families of parameters searched (some zero, some equal that play the same part): [[count]], with conditions "
         "of degree up to 3 in each. The integrals are proved; that there are no other cases is not.",
-        count=found.families,
+        count=cases.families,
     )
-    if found.left:
+    if cases.left:
         yield Message(
             "Families beyond the budget (--budget): [[count]]; nothing is known of them.",
-            count=found.left,
+            count=cases.left,
         )
-    if found.unread:
+    if cases.unread:
         yield Message(
             "Families in which the rank also drops under conditions that were not found: [[count]].",
-            count=found.unread,
+            count=cases.unread,
         )
 
 
-def _special(there: Setting, one: Special) -> Iterator[str]:
-    for weight, f in one.integrals:
+def _special(there: Setting, special: Special) -> Iterator[str]:
+    for weight, f in special.integrals:
         yield joined(("  ", case_title(weight), ": ", there.formula(f)), "")
-    for level in one.levels:
+    for level in special.levels:
         for weight, f in level.integrals:
             yield joined(("  ", level_title(weight, level), ": ", there.formula(f)), "")

@@ -13,18 +13,18 @@ if TYPE_CHECKING:
     from mbsym.problems.polynomial_integrals import OtherLevel, OtherLevels
 
 
-def other_lines(there: Setting, found: OtherLevels | None) -> Iterator[str]:
+def other_lines(there: Setting, other_levels: OtherLevels | None) -> Iterator[str]:
     """What holds on single levels, and what is known of all others."""
-    if found is None:
+    if other_levels is None:
         yield NOT_LOOKED_FOR
         return
-    for level in found.levels:
-        yield from _of(there, found, level)
-    if not found.levels:
+    for level in other_levels.levels:
+        yield from _of(there, other_levels, level)
+    if not other_levels.levels:
         yield Message("There is no integral in the list whose values could be looked at.")
 
 
-def _of(there: Setting, found: OtherLevels, other_level: OtherLevel) -> Iterator[str]:
+def _of(there: Setting, other_levels: OtherLevels, other_level: OtherLevel) -> Iterator[str]:
     that = Message(
         "the integral of weight [[weight]] ([[name]])",
         weight=other_level.level.weight,
@@ -32,7 +32,7 @@ def _of(there: Setting, found: OtherLevels, other_level: OtherLevel) -> Iterator
     )
     power = other_level.power
     value = that if power == 1 else Message("the power [[power]] of [[integral]]", power=power, integral=that)
-    vectors = bool(there.field.relations) and (not found.fixed or found.weights is not None)
+    vectors = bool(there.field.relations) and (not other_levels.fixed or other_levels.weights is not None)
     if not other_level.looked:
         yield Message("where [[integral]] is not zero there may be others: not found within the budget.", integral=that)
         return
@@ -66,7 +66,7 @@ def _of(there: Setting, found: OtherLevels, other_level: OtherLevel) -> Iterator
         return
     known = {
         "integral": that,
-        "degree": found.degree,
+        "degree": other_levels.degree,
         "almost": ALMOST if there.field.parameters else "",
         "length": ANY_LENGTH if vectors else "",
     }

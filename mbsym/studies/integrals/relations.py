@@ -48,42 +48,42 @@ NO_RELATION = Message("no relation of motions: it is zero nowhere, or the equati
 UNLOOKED = (Obstacle.NOT_HOMOGENEOUS, Obstacle.MIXED, Obstacle.NOT_AT_REST)
 
 
-def relation_lines(there: Setting, found: Relations) -> Iterator[str]:
+def relation_lines(there: Setting, relations: Relations) -> Iterator[str]:
     """Each relation with its conditions, and whether there are others."""
 
     def write(p: Any) -> str:
         return str(there.formula(p))
 
-    for relation in found.relations:
+    for relation in relations.relations:
         yield f"{write(relation.polynomial)} = 0"
         if relation.conditions:
             yield Message("  where [[conditions]]", conditions=equations_text(relation.conditions, write))
         if relation.nonzero:
             nonzero = ", ".join(f"{write(p)} != 0" for p in relation.nonzero)
             yield Message("  provided [[conditions]]", conditions=nonzero)
-    if not found.relations:
-        yield Message("none was found" if not found.complete else "there are none (proved)")
-    elif found.complete:
+    if not relations.relations:
+        yield Message("none was found" if not relations.complete else "there are none (proved)")
+    elif relations.complete:
         yield Message("There are no other forms that are linear in the variables of least weight (proved).")
-    if not found.complete:
+    if not relations.complete:
         yield Message(
             "Whether there are others is undecided: roots of parameters and families of forms were not followed."
         )
 
 
-def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels | None) -> Iterator[str]:
+def level_lines(there: Setting, usual: PolynomialIntegrals, levels: ZeroLevels | None) -> Iterator[str]:
     """What holds where an integral of the list is zero, and that nothing else does."""
     if levels is None:
         yield NOT_LOOKED_FOR
         return
-    if levels.weights not in (None, found.grading.weights):
+    if levels.weights not in (None, usual.grading.weights):
         yield weights_here(there.field.variables, levels.weights or ())
     length = "" if levels.weights is None or not there.vectors else ANY_LENGTH
     almost = ALMOST if there.field.parameters else ""
     for level in levels.levels:
         for weight, f in level.integrals:
             yield joined((level_title(weight, level), there.formula(f)), ": ")
-        known = {"weight": level.level.weight, "name": title(level.level), "degree": found.degree}
+        known = {"weight": level.level.weight, "name": title(level.level), "degree": usual.degree}
         if level.complete:
             text = (
                 "where the integral of weight [[weight]] ([[name]]) is zero there is none beyond those that hold "
@@ -105,19 +105,19 @@ def level_lines(there: Setting, found: PolynomialIntegrals, levels: ZeroLevels |
         yield Message("There is no integral in the list whose zeros could be looked at.")
 
 
-def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPolynomials) -> Iterator[str]:
+def darboux_lines(there: Setting, usual: PolynomialIntegrals, darboux: DarbouxPolynomials) -> Iterator[str]:
     """Each f with its K, and whether there are others."""
-    if found.weights != usual.grading.weights:
-        yield weights_here(there.field.variables, found.weights)
+    if darboux.weights != usual.grading.weights:
+        yield weights_here(there.field.variables, darboux.weights)
     almost = ALMOST if there.field.parameters else ""
     length = ANY_LENGTH if there.vectors else ""
-    for polynomial in found.polynomials:
+    for polynomial in darboux.polynomials:
         formula = there.formula(polynomial.polynomial)
         yield Message("weight [[weight]]: [[formula]] = 0", weight=polynomial.weight, formula=formula)
         yield f"  K = {there.quotient(polynomial.cofactor, there.field.denominator)}"
         if not polynomial.defined:
             yield joined(("  ", NO_RELATION), "")
-    for count in found.counts:
+    for count in darboux.counts:
         if not count.complete:
             cofactor = there.quotient(count.cofactor, there.field.denominator)
             yield Message(
@@ -127,25 +127,25 @@ def darboux_lines(there: Setting, usual: PolynomialIntegrals, found: DarbouxPoly
                 cofactor=cofactor,
                 more=count.most - count.products,
             )
-    if found.obstacle is not None:
-        yield Message("Whether there are others is undecided: [[why]].", why=UNDECIDED[found.obstacle])
-    elif found.complete:
+    if darboux.obstacle is not None:
+        yield Message("Whether there are others is undecided: [[why]].", why=UNDECIDED[darboux.obstacle])
+    elif darboux.complete:
         text = (
             "There is none of weight up to [[degree]] with K not zero and coefficients that are rational (in the "
             "parameters)[[almost]] (proved[[length]])."
         )
-        if found.polynomials:
+        if darboux.polynomials:
             text = (
                 "Every other f of weight up to [[degree]] with K not zero and coefficients that are rational (in the "
                 "parameters) is a combination of products of these and of integrals[[almost]] (proved[[length]])."
             )
-        yield Message(text, degree=found.degree, almost=almost, length=length)
+        yield Message(text, degree=darboux.degree, almost=almost, length=length)
 
 
-def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlong) -> Iterator[str]:
+def darboux_values(there: Setting, usual: PolynomialIntegrals, along: DarbouxAlong) -> Iterator[str]:
     """Each value of the parameter with its f and K, and what is known of other values."""
-    name = found.name
-    for special in found.values:
+    name = along.name
+    for special in along.values:
         yield f"{name} = {special.value}"
         for f in special.polynomials:
             formula = there.formula(f.polynomial)
@@ -153,30 +153,30 @@ def darboux_values(there: Setting, usual: PolynomialIntegrals, found: DarbouxAlo
             yield f"    K = {there.quotient_over(special.field, f.cofactor)}"
             if not f.defined:
                 yield joined(("    ", NO_RELATION), "")
-    if found.general.obstacle in UNLOOKED:
-        yield Message("not looked for: [[why]]", why=UNDECIDED[found.general.obstacle])
+    if along.general.obstacle in UNLOOKED:
+        yield Message("not looked for: [[why]]", why=UNDECIDED[along.general.obstacle])
         return
-    if not found.values:
-        yield no_further(name, found.low, found.high)
-    yield from undecided_at(name, found.undecided, found.irrational)
-    for p in found.square:
+    if not along.values:
+        yield no_further(name, along.low, along.high)
+    yield from undecided_at(name, along.undecided, along.irrational)
+    for p in along.square:
         text = "undecided where [[formula]] is the square of a rational number: there may be others at each"
         yield Message(text, formula=there.formula(p))
-    if found.left:
-        yield Message("Possible K beyond the budget: [[count]]; nothing is known of them.", count=found.left)
-    if not found.followed:
+    if along.left:
+        yield Message("Possible K beyond the budget: [[count]]; nothing is known of them.", count=along.left)
+    if not along.followed:
         yield Message("Not all K that become rational at single values were followed: nothing is known of them.")
-    if not found.general.complete:
+    if not along.general.complete:
         yield Message(NOTHING_KNOWN, name=name)
-    elif found.complete:
+    elif along.complete:
         yield Message(
             "[[all]] of [[name]] from [[low]] to [[high]] with numerator and denominator up to 10^9 there "
             "is none of weight up to [[degree]] with rational coefficients beyond those for almost all [[name]] "
             "(proved[[length]]); irrational values are undecided.",
-            all=all_values(found.values),
+            all=all_values(along.values),
             name=name,
-            low=found.low,
-            high=found.high,
+            low=along.low,
+            high=along.high,
             degree=usual.degree,
             length=ANY_LENGTH if there.vectors else "",
         )

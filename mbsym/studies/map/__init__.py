@@ -111,39 +111,41 @@ def _points(path: Path, axes: list[str]) -> tuple[Points | None, tuple[Unfit, ..
         return None, (Unfit("--locate", "unreadable", Message("[[file]] is no text in UTF-8", file=name)),)
     points, wrong = read_points(text, axes)
     hint = Message("the columns [[names]] hold rational or decimal numbers", names=", ".join(axes))
-    told = [Unfit(f"--locate {name}:{one.line}", "bad-point", one.message, hint) for one in wrong[:MOST_TOLD]]
+    complaints = [
+        Unfit(f"--locate {name}:{mistake.line}", "bad-point", mistake.message, hint) for mistake in wrong[:MOST_TOLD]
+    ]
     if len(wrong) > MOST_TOLD:
-        told.append(
+        complaints.append(
             Unfit(
                 f"--locate {name}", "bad-point", Message("[[count]] more lines are wrong", count=len(wrong) - MOST_TOLD)
             )
         )
-    return points, tuple(told)
+    return points, tuple(complaints)
 
 
-def unfit(asked: Asked, request: Request) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Request) -> Iterator[Unfit]:
     from mbsym.studies.map.answer import fitting
 
     of_one = request.of != "equilibria"
-    if "as_json" in asked.typed and "json" not in (request.format or FORMATS):
+    if "as_json" in context.typed and "json" not in (request.format or FORMATS):
         yield Unfit("--json", "conflicting-options", "--format leaves JSON out", "add json to --format")
-    if "z" in asked.typed and "y" not in asked.typed:
+    if "z" in context.typed and "y" not in context.typed:
         yield Unfit("--z", "missing-option", "slices of a line are no pictures", "give the second parameter as --y")
-    if request.by == "boxes" and of_one and ("y" not in asked.typed or "z" in asked.typed):
+    if request.by == "boxes" and of_one and ("y" not in context.typed or "z" in context.typed):
         yield Unfit("--by", "missing-option", "boxes are of planes", "give two parameters, as --x and --y")
     yield from distinct(request.axes, request.values)
-    read = len(request.axes) == sum(name in asked.typed for name in ("x", "y", "z")) > 0
+    read = len(request.axes) == sum(name in context.typed for name in ("x", "y", "z")) > 0
     if read:
         yield from request.located[1]
     if not of_one:
-        yield from fitting(asked, request)
+        yield from fitting(context, request)
 
 
 class NoMap(Exception):
     """Neither regions nor boxes."""
 
 
-def derive(asked: Asked, request: Request, watch: Watch) -> Map:
+def derive(context: Asked, request: Request, watch: Watch) -> Map:
     """Raises NotFit where the section cannot be made."""
     from mbsym.algebra.failures import Failure, TooLargeError, message_of
     from mbsym.analysis import Analysis
@@ -156,8 +158,8 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
     if request.of == "equilibria":
         from mbsym.studies.map.answer import mapped
 
-        return mapped(asked.system, request, watch)
-    of, axes, values, analysis = Of(request.of), request.axes, request.values, Analysis(asked.system)
+        return mapped(context.system, request, watch)
+    of, axes, values, analysis = Of(request.of), request.axes, request.values, Analysis(context.system)
     try:
         if len(axes) == 3:
             return stack(analysis, axes, values, of, watch)
@@ -183,13 +185,13 @@ def derive(asked: Asked, request: Request, watch: Watch) -> Map:
         raise NotFit(tuple(unfit_section(wrong.complaints, option))) from wrong
 
 
-def answer(asked: Asked, request: Request, found: Map) -> Answer:
+def answer(context: Asked, request: Request, chart: Map) -> Answer:
     from mbsym.studies.map.answer import answer
 
-    return answer(asked.system, request, found)
+    return answer(context.system, request, chart)
 
 
-def refusal(error: Exception, asked: Asked, request: Request) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Request) -> Refusal | None:
     from mbsym.algebra.failures import message_of
 
     if isinstance(error, NoMap):

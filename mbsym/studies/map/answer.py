@@ -31,39 +31,39 @@ if TYPE_CHECKING:
     from mbsym.studies.map import Request
 
 
-def answer(system: System, request: Request, found: Map) -> Answer:
+def answer(system: System, request: Request, chart: Map) -> Answer:
     from mbsym.studies.map import MOST_TOLD
 
-    lines = _lines(system, found)
-    files = files_of(system, found, request.format, request.language or system.language, request.located[0])
-    doubts = list(_doubts(found))
+    lines = _lines(system, chart)
+    files = files_of(system, chart, request.format, request.language or system.language, request.located[0])
+    doubts = list(_doubts(chart))
     if doubts:
         return Answer(lines, files, doubts[:MOST_TOLD], Exit.FAILED)
-    if found.interrupted:
-        missed = [layer for layer in found.layers if layer.lack is Lack.NOT_REACHED] if isinstance(found, Stack) else []
+    if chart.interrupted:
+        missed = [layer for layer in chart.layers if layer.lack is Lack.NOT_REACHED] if isinstance(chart, Stack) else []
         message = Message("interrupted; what was proved before that is written")
         if missed:
             text = "interrupted; [[missed]] not reached, what was proved before that is written"
             message = Message(text, missed=Counted(len(missed), "slice"))
-        if isinstance(found, BoxMap):
+        if isinstance(chart, BoxMap):
             message = joined((message, Message("other boxes are white")), "; ")
         return Answer(lines, files, (message,), Exit.INTERRUPTED)
     return Answer(lines, files)
 
 
-def _doubts(found: Map) -> Iterator[str]:
+def _doubts(chart: Map) -> Iterator[str]:
     """What the map's own check does not confirm."""
     from mbsym.report.maps.figure import number
 
-    withdrawn = [region.number for region in found.regions if region.lack is Lack.WITHDRAWN]
-    if isinstance(found, EquilibriaMap) and withdrawn:
+    withdrawn = [region.number for region in chart.regions if region.lack is Lack.WITHDRAWN]
+    if isinstance(chart, EquilibriaMap) and withdrawn:
         text = "withdrawn, as another point has another number: regions [[regions]]"
         yield Message(text, regions=", ".join(map(str, withdrawn)))
-    if not isinstance(found, Stack):
-        yield from _findings(found, "")
+    if not isinstance(chart, Stack):
+        yield from _findings(chart, "")
         return
-    for layer in found.layers:
-        at = f"{found.axis.name} = {number(layer.z)}"
+    for layer in chart.layers:
+        at = f"{chart.axis.name} = {number(layer.z)}"
         if not layer.confirmed:
             text = (
                 "at [[at]] the map's own check fails: the slice at [[second]], between the same critical "
@@ -75,22 +75,24 @@ def _doubts(found: Map) -> Iterator[str]:
             yield from _findings(layer.plane, at)
 
 
-def _findings(found: Map, at: str) -> Iterator[str]:
-    for one in found.check.findings if found.check is not None else ():
+def _findings(chart: Map, at: str) -> Iterator[str]:
+    for finding in chart.check.findings if chart.check is not None else ():
         what = Message("the whole")
-        if one.region is not None:
-            what = Message("box [[number]]" if isinstance(found, BoxMap) else "region [[number]]", number=one.region)
-        elif one.arc is not None:
-            what = Message("arc [[number]]", number=one.arc)
-        elif one.corner is not None:
-            what = Message("corner [[number]]", number=one.corner)
+        if finding.region is not None:
+            what = Message(
+                "box [[number]]" if isinstance(chart, BoxMap) else "region [[number]]", number=finding.region
+            )
+        elif finding.arc is not None:
+            what = Message("arc [[number]]", number=finding.arc)
+        elif finding.corner is not None:
+            what = Message("corner [[number]]", number=finding.corner)
         text = "withdrawn, as the map's own check fails in [[what]]: [[mistake]]"
-        message = Message(text, what=what, mistake=one.mistake)
+        message = Message(text, what=what, mistake=finding.mistake)
         yield joined((f"{at}:", message)) if at else message
 
 
 def files_of(
-    system: System, found: Map, formats: Sequence[str], language: str, points: Points | None = None
+    system: System, chart: Map, formats: Sequence[str], language: str, points: Points | None = None
 ) -> dict[str, str | bytes]:
     """The picture, JSON, LaTeX, and the given points located."""
     from mbsym.report.maps.figure import map_figure
@@ -101,23 +103,23 @@ def files_of(
     spoken, files = Language(language), dict[str, str | bytes]()
     drawn = [kind for kind in formats if kind in ("svg", "pdf", "png")]
     if drawn:
-        files |= map_figure(system, found, spoken, drawn)
+        files |= map_figure(system, chart, spoken, drawn)
     if "json" in formats:
-        files[f"{stem(found)}.json"] = map_json(system, found)
+        files[f"{stem(chart)}.json"] = map_json(system, chart)
     if "tex" in formats:
-        files[f"{stem(found)}.tex"] = map_tex(system, found, spoken)
+        files[f"{stem(chart)}.tex"] = map_tex(system, chart, spoken)
     if points is not None:
-        files["located.csv"] = located_csv(points, found)
+        files["located.csv"] = located_csv(points, chart)
     return files
 
 
 # --- the terminal -----------------------------------------------------------------------------------------------------
 
 
-def _lines(system: System, found: Map) -> Iterator[Block]:
+def _lines(system: System, chart: Map) -> Iterator[Block]:
     """A row for what is said of cells, or for each picture of a stack, then what there is to know besides."""
-    yield _pictures(found) if isinstance(found, Stack) else _table(found)
-    for text in remarks(found, system):
+    yield _pictures(chart) if isinstance(chart, Stack) else _table(chart)
+    for text in remarks(chart, system):
         yield paragraph(text)
 
 
@@ -129,18 +131,18 @@ HEADS = {
 }
 
 
-def _table(found: Map) -> Table:
+def _table(chart: Map) -> Table:
     rows: dict[tuple[str, str], tuple[set[int], float]] = {}
-    for cell, place, (area, _) in zip(found.regions, found.together, found.areas, strict=True):
-        words = row_words(found, cell)
+    for cell, place, (area, _) in zip(chart.regions, chart.together, chart.areas, strict=True):
+        words = row_words(chart, cell)
         parts, total = rows.setdefault(words, (set(), 0.0))
         rows[words] = parts | {place}, total + area
-    line = len(found.axes) == 1
-    pieces = Message("boxes") if isinstance(found, BoxMap) else Message("intervals") if line else Message("regions")
+    line = len(chart.axes) == 1
+    pieces = Message("boxes") if isinstance(chart, BoxMap) else Message("intervals") if line else Message("regions")
     size = Message("length") if line else Message("area")
-    heads = (HEADS[found.of], Message("theorem"), pieces, size, Message("share"))
+    heads = (HEADS[chart.of], Message("theorem"), pieces, size, Message("share"))
     cells = [
-        (*words, str(len(parts)), f"{area:.4g}", share(area / found.whole if len(rows) > 1 else 1))
+        (*words, str(len(parts)), f"{area:.4g}", share(area / chart.whole if len(rows) > 1 else 1))
         for words, (parts, area) in sorted(rows.items(), key=lambda item: -item[1][1])
     ]
     shown = [k for k in range(len(heads)) if k != 1 or any(theorem for _, theorem in rows)]
@@ -148,25 +150,27 @@ def _table(found: Map) -> Table:
     return aligned(columns, ([row[k] for k in shown] for row in cells))
 
 
-def _pictures(found: Stack) -> Table:
-    heads = (found.axis.name, Message("shown at"), Message("what is seen, by area"))
-    return aligned((column(name, fold=True) for name in heads), [_picture(found, one) for one in found.pictures])
+def _pictures(stack: Stack) -> Table:
+    heads = (stack.axis.name, Message("shown at"), Message("what is seen, by area"))
+    return aligned(
+        (column(name, fold=True) for name in heads), [_picture(stack, picture) for picture in stack.pictures]
+    )
 
 
-def _picture(found: Stack, picture: Picture) -> tuple[str, str, str]:
+def _picture(stack: Stack, picture: Picture) -> tuple[str, str, str]:
     from mbsym.report.maps.figure import number
 
-    shown = found.layers[picture.shown]
-    low, closed_low, high, closed_high = found.ends(picture)
-    name = found.axis.name
+    shown = stack.layers[picture.shown]
+    low, closed_low, high, closed_high = stack.ends(picture)
+    name = stack.axis.name
     alone = len(picture.layers) == 1 and shown.critical
     span = f"{number(low)} <{'=' * closed_low} {name} <{'=' * closed_high} {number(high)}" + "*" * bool(picture.unseen)
-    told = f"{name} = {number(shown.z)}" if alone else span
+    label = f"{name} = {number(shown.z)}" if alone else span
     if shown.plane is not None:
-        return told, number(shown.z), _seen(shown.plane)
+        return label, number(shown.z), _seen(shown.plane)
     assert shown.lack is not None
     broken = ", ".join(dict.fromkeys(demand.condition.about for demand in shown.broken))
-    return told, "", joined((Message(LACKS[shown.lack]), *([broken] if broken else [])), ": ")
+    return label, "", joined((Message(LACKS[shown.lack]), *([broken] if broken else [])), ": ")
 
 
 def _seen(plane: Map) -> str:
@@ -182,69 +186,69 @@ def _seen(plane: Map) -> str:
 # --- remarks ----------------------------------------------------------------------------------------------------------
 
 
-def remarks(found: Map, system: System | None = None) -> list[str]:
+def remarks(chart: Map, system: System | None = None) -> list[str]:
     """Sentences on what the table does not show."""
-    match found:
+    match chart:
         case Stack():
-            told = _of_stack(found)
+            sentences = _of_stack(chart)
         case BoxMap():
-            told = _of_boxes(found)
+            sentences = _of_boxes(chart)
         case EquilibriaMap():
-            told = _of_equilibria(found, system)
+            sentences = _of_equilibria(chart, system)
         case _:
-            told = _of_cells(found)
-    if found.admissibility.left_out:
+            sentences = _of_cells(chart)
+    if chart.admissibility.left_out:
         text = "not expressible in the axes, so not looked at: [[conditions]]"
-        told.append(Message(text, conditions=", ".join(found.admissibility.left_out)))
-    planes = found.planes if isinstance(found, Stack) else [found]
+        sentences.append(Message(text, conditions=", ".join(chart.admissibility.left_out)))
+    planes = chart.planes if isinstance(chart, Stack) else [chart]
     large = sum(cell.lack is Lack.TOO_LARGE for plane in planes for cell in plane.cells)
     if large:
         text = "no verdict at [[points]] between regions: too large to be decided"
-        told.append(Message(text, points=Counted(large, "exact point")))
-    told += borders_of_slices(planes) if isinstance(found, Stack) else borders(found)
-    told += _nonlinear(found, planes)
-    return told + list(_checked(found, planes))
+        sentences.append(Message(text, points=Counted(large, "exact point")))
+    sentences += borders_of_slices(planes) if isinstance(chart, Stack) else borders(chart)
+    sentences += _nonlinear(chart, planes)
+    return sentences + list(_checked(chart, planes))
 
 
-def _of_cells(found: Map) -> list[str]:
-    if len(found.axes) == 1:
-        corners = [corner for corner in found.corners if found.drawn(corner)]
-        told: list[str] = [
-            Message("at [[point]]: [[why]]", point=_exactly(x.sample), why=_why(found, x)) for x in corners
+def _of_cells(chart: Map) -> list[str]:
+    if len(chart.axes) == 1:
+        corners = [corner for corner in chart.corners if chart.drawn(corner)]
+        sentences: list[str] = [
+            Message("at [[point]]: [[why]]", point=_exactly(x.sample), why=_why(chart, x)) for x in corners
         ]
     else:
         text = "[[regions]], [[arcs]] and [[corners]] in map.json, each with an exact point"
-        if len({*found.together}) < len(found.regions):
+        if len({*chart.together}) < len(chart.regions):
             text = (
                 "[[regions]], [[arcs]] and [[corners]] in map.json, each with an exact point, also of "
                 "curves at which no "
                 "verdict changes"
             )
-        regions, arcs, corners_ = (len(x) for x in (found.regions, found.arcs, found.corners))
+        regions, arcs, corners_ = (len(x) for x in (chart.regions, chart.arcs, chart.corners))
         gaps = {
             "regions": Counted(regions, "region"),
             "arcs": Counted(arcs, "arc"),
             "corners": Counted(corners_, "corner"),
         }
-        told = [Message(text, **gaps)]
+        sentences = [Message(text, **gaps)]
     origins = (Origin.SIGN, Origin.ASSUMPTION, Origin.INERTIA)
-    if all(condition.origin in origins for conditions in found.boundaries.conditions for condition in conditions):
-        open_ = any(region.word is not None and region.word.open for region in found.regions)
+    if all(condition.origin in origins for conditions in chart.boundaries.conditions for condition in conditions):
+        open_ = any(region.word is not None and region.word.open for region in chart.regions)
         text = "no condition of stability depends on the axes"
         if open_:
             text = "no condition of the first approximation depends on the axes; terms of higher order may"
-        told.append(Message(text))
-    if not any(region.judged is not None for region in found.regions):
-        told.append(Message("no verdict anywhere: map.json says at every point what is not kept there"))
-    vanishing = dict.fromkeys(condition_words(condition, found) for condition in found.boundaries.vanishing)
-    return told + [Message("an equality everywhere: [[condition]]", condition=words) for words in vanishing]
+        sentences.append(Message(text))
+    if not any(region.judged is not None for region in chart.regions):
+        sentences.append(Message("no verdict anywhere: map.json says at every point what is not kept there"))
+    vanishing = dict.fromkeys(condition_words(condition, chart) for condition in chart.boundaries.vanishing)
+    return sentences + [Message("an equality everywhere: [[condition]]", condition=words) for words in vanishing]
 
 
-def _of_boxes(found: BoxMap) -> list[str]:
-    told: list[str] = []
-    if found.because:
-        told.append(Message("no exact regions: [[because]]; boxes instead", because=found.because))
-    if found.method is Method.BOUNDARIES:
+def _of_boxes(chart: BoxMap) -> list[str]:
+    sentences: list[str] = []
+    if chart.because:
+        sentences.append(Message("no exact regions: [[because]]; boxes instead", because=chart.because))
+    if chart.method is Method.BOUNDARIES:
         text = "what is said of a box holds at all of its points: no condition is an equality in it"
     else:
         text = (
@@ -252,69 +256,76 @@ def _of_boxes(found: BoxMap) -> list[str]:
             "matrices; these may say "
             "less than is true"
         )
-    told.append(Message(text))
-    if found.subdivision.end is End.BUDGET:
+    sentences.append(Message(text))
+    if chart.subdivision.end is End.BUDGET:
         text = "[[boxes]], as many as are made: smaller ones were not tried"
-        told.append(Message(text, boxes=Counted(len(found.regions), "box", "boxes")))
-    return [*told, Message("white, nothing proved: [[share]] of the area", share=share(float(found.subdivision.white)))]
+        sentences.append(Message(text, boxes=Counted(len(chart.regions), "box", "boxes")))
+    return [
+        *sentences,
+        Message("white, nothing proved: [[share]] of the area", share=share(float(chart.subdivision.white))),
+    ]
 
 
-def _of_equilibria(found: EquilibriaMap, system: System | None) -> list[str]:
-    curves = Counted(len(found.boundaries.factors), "curve")
-    told: list[str] = [Message("[[curves]], between which the number is constant", curves=curves)]
-    if found.unfinished:
-        told = [Message("not proved between samples: [[what]]", what=joined(found.unfinished, "; "))]
-    told.append(Message("on the curves and where they meet: not counted"))
-    if any(region.counted is not None and region.counted.throughout for region in found.regions):
+def _of_equilibria(chart: EquilibriaMap, system: System | None) -> list[str]:
+    curves = Counted(len(chart.boundaries.factors), "curve")
+    sentences: list[str] = [Message("[[curves]], between which the number is constant", curves=curves)]
+    if chart.unfinished:
+        sentences = [Message("not proved between samples: [[what]]", what=joined(chart.unfinished, "; "))]
+    sentences.append(Message("on the curves and where they meet: not counted"))
+    if any(region.counted is not None and region.counted.throughout for region in chart.regions):
         text = "'stable' without 'at the sample': at least so many in the whole region, by the signs of K"
-        told.append(Message(text))
+        sentences.append(Message(text))
     if system is not None and system.assumptions:
         text = "the assumptions of the description, and triangle inequalities of inertias, are not looked at"
-        told.append(Message(text))
-    checked = [one.counted for one in found.regions if one.counted is not None and one.counted.confirmed is not None]
+        sentences.append(Message(text))
+    checked = [
+        region.counted
+        for region in chart.regions
+        if region.counted is not None and region.counted.confirmed is not None
+    ]
     if checked:
         text = (
             "check at another point of [[regions]]: Newton's method from many points finds no more than "
             "the list there; "
             "as many as at the sample in [[same]]"
         )
-        if not found.unfinished:
+        if not chart.unfinished:
             text = (
                 "check at another point of [[regions]]: the exact numbers agree, and Newton's method from many points "
                 "finds no more than the list there; as many as at the sample in [[same]]"
             )
         same = Counted(sum(counted.confirmed == counted.count for counted in checked), "region")
-        told.append(Message(text, regions=Counted(len(checked), "region"), same=same))
-    if any(region.lack is Lack.INCOMPLETE for region in found.regions):
-        told.append(Message("where the list is not complete nothing is counted"))
-    return told
+        sentences.append(Message(text, regions=Counted(len(checked), "region"), same=same))
+    if any(region.lack is Lack.INCOMPLETE for region in chart.regions):
+        sentences.append(Message("where the list is not complete nothing is counted"))
+    return sentences
 
 
-def _of_stack(found: Stack) -> list[str]:
-    name = found.axis.name
-    critical = [layer for layer in found.layers if layer.critical]
+def _of_stack(stack: Stack) -> list[str]:
+    name = stack.axis.name
+    critical = [layer for layer in stack.layers if layer.critical]
     unseen = [layer for layer in critical if layer.lack is not None and not layer.broken]
     text = "the curves are arranged in one way at all values of [[name]], and regions keep their verdicts"
-    told: list[str] = [Message(text, name=name)]
+    sentences: list[str] = [Message(text, name=name)]
     if critical:
         text = (
             "[[values]] of [[name]] at which the curves may be arranged in another way; between them "
             "regions are deformed "
             "into each other with their verdicts"
         )
-        told = [Message(text, values=Counted(len(critical), "value"), name=name)]
+        sentences = [Message(text, values=Counted(len(critical), "value"), name=name)]
     if unseen:
         irrational = sum(not isinstance(layer.z, fmpq) for layer in unseen)
         text = "at [[count]] of these values nothing was looked at ([[irrational]] are irrational)"
-        told.append(Message(text, count=len(unseen), irrational=irrational))
-    if any(picture.unseen and len(picture.layers) > 1 for picture in found.pictures):
-        told.append(
+        sentences.append(Message(text, count=len(unseen), irrational=irrational))
+    if any(picture.unseen and len(picture.layers) > 1 for picture in stack.pictures):
+        sentences.append(
             Message(("* but for single values of [[name]] that were not looked at: map.json lists them"), name=name)
         )
-    return told
+    return sentences
 
 
-def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
+def _nonlinear(chart: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the nonlinear system shows at single points where the first approximation and the energy show nothing."""
     decided: dict[str, list[str]] = {}
     for plane in planes:
@@ -323,9 +334,9 @@ def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
                 point: tuple[Any, ...] = (cell.sample,)
                 if isinstance(cell.sample, Point):
                     point = (cell.sample.x, cell.sample.y)
-                if isinstance(found, Stack):  # the slice's own value; without a rational one nothing is asked
-                    point = (*point, plane.values[found.axis.name])
-                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(found.axes, point, strict=True))
+                if isinstance(chart, Stack):  # the slice's own value; without a rational one nothing is asked
+                    point = (*point, plane.values[chart.axis.name])
+                at = ", ".join(f"{axis.name} = {x}" for axis, x in zip(chart.axes, point, strict=True))
                 decided.setdefault(cell.nonlinear.word.value, []).append(at)
     for word, places in decided.items():
         where = "; ".join(places[:MOST_POINTS]) + ("; ..." if len(places) > MOST_POINTS else "")
@@ -333,20 +344,20 @@ def _nonlinear(found: Map, planes: Sequence[Map]) -> Iterator[str]:
         yield Message(text, verdict=Message(word), points=where)
 
 
-def _checked(found: Map, planes: Sequence[Map]) -> Iterator[str]:
+def _checked(chart: Map, planes: Sequence[Map]) -> Iterator[str]:
     """What the map's own check tried, where it confirms all."""
     checks = [plane.check for plane in planes if plane.check is not None]
     points = sum(check.points for check in checks)
-    if not found.sound or not points:
+    if not chart.sound or not points:
         return
-    if isinstance(found, BoxMap):
+    if isinstance(chart, BoxMap):
         text = "check: at [[points]] of boxes the verdict at the point alone agrees"
         yield Message(text, points=Counted(points, "random point"))
         return
     more = Counted(points, "more point")
-    if isinstance(found, Stack):
-        seconds = sum(layer.second is not None and layer.confirmed for layer in found.layers)
-        if seconds and any(x.critical for x in found.layers):
+    if isinstance(chart, Stack):
+        seconds = sum(layer.second is not None and layer.confirmed for layer in chart.layers)
+        if seconds and any(x.critical for x in chart.layers):
             text = (
                 "check: [[points]] in regions agree; a second slice between each two of the values, "
                 "[[seconds]] in all, "
@@ -394,22 +405,22 @@ def borders_of_slices(planes: Sequence[Map]) -> Iterator[str]:
         yield Message(text, arcs=Counted(changing, "arc"))
 
 
-def borders(found: Map) -> Iterator[str]:
+def borders(chart: Map) -> Iterator[str]:
     """Where a pair of roots is imaginary and the others are to the left: how stability is lost."""
-    soft = [border for border in found.borders if border.soft is not None]
+    soft = [border for border in chart.borders if border.soft is not None]
     for onset, words in ONSETS.items():
-        alike = [_place(found, one) for one in soft if _onset(one) is onset]
+        alike = [_place(chart, border) for border in soft if _onset(border) is onset]
         if alike:
             yield Message("imaginary pair, [[places]]: [[onset]]", places=joined(alike, ", "), onset=words)
     for cell in soft:
         stretches = cell.soft.stretches or () if cell.soft is not None else ()
         if len(stretches) > 1:
-            name = found.axes[stretches[0].axis].name
+            name = chart.axes[stretches[0].axis].name
             ends = [(x.onset, f"{float_of(x.start):.6g}", f"{float_of(x.end):.6g}") for x in stretches]
             text = "[[onset]] for [[name]] from [[start]] to [[end]]"
             parts = [Message(text, onset=Message(o), name=name, start=start, end=end) for o, start, end in ends]
             message = joined(parts, "; ")
-            yield Message("imaginary pair, [[places]]: [[onset]]", places=_place(found, cell), onset=message)
+            yield Message("imaginary pair, [[places]]: [[onset]]", places=_place(chart, cell), onset=message)
 
 
 def _onset(cell: Cell) -> Onset | None:
@@ -419,8 +430,8 @@ def _onset(cell: Cell) -> Onset | None:
     return cell.soft.onset
 
 
-def _place(found: Map, cell: Cell) -> Message:
-    if len(found.axes) == 1:
+def _place(chart: Map, cell: Cell) -> Message:
+    if len(chart.axes) == 1:
         return Message("at [[point]]", point=f"{float_of(cell.sample):.10g}")
     partial = cell.soft is not None and cell.soft.stretches is None
     return Message("arc [[number]] (at its point in map.json)" if partial else "arc [[number]]", number=cell.number)
@@ -434,10 +445,10 @@ def _exactly(x: Any) -> str:
     return Message(text, digits=f"{float(x):.10g}", degree=int(x.polynomial.degree()))
 
 
-def _why(found: Map, cell: Cell) -> Message:
+def _why(chart: Map, cell: Cell) -> Message:
     """The condition that is an equality there, and what is said of the point."""
-    of = [found.boundaries.conditions[k] for k in found.place(cell).factors]
-    words = joined(dict.fromkeys(condition_words(telling(x), found) for x in of), "; ")
+    of = [chart.boundaries.conditions[k] for k in chart.place(cell).factors]
+    words = joined(dict.fromkeys(condition_words(telling(x), chart) for x in of), "; ")
     border = cell.judged.border if cell.judged is not None else None
     return words if border is None else joined((words, Message(border)), ": ")
 
@@ -445,13 +456,13 @@ def _why(found: Map, cell: Cell) -> Message:
 # ``mbsym map --of equilibria``: what fits, and the numbers of relative equilibria over a plane.
 
 
-def fitting(asked: Asked, request: Request) -> Iterator[Unfit]:
+def fitting(context: Asked, request: Request) -> Iterator[Unfit]:
     """What keeps numbers of equilibria from being mapped."""
-    system = asked.system
-    if "y" not in asked.typed and "x" in asked.typed:
+    system = context.system
+    if "y" not in context.typed and "x" in context.typed:
         hint = "give the second parameter as --y, or use mbsym equilibria --vary"
         yield Unfit("--y", "missing-option", "numbers of equilibria are mapped over a plane", hint)
-    if "z" in asked.typed:
+    if "z" in context.typed:
         hint = "leave it out, and map at some of its values, each with an --out: --set NAME=VALUE"
         yield Unfit("--z", "not-of-equilibria", "there are no slices of numbers of equilibria", hint)
     if request.by == "boxes":
@@ -467,7 +478,7 @@ def fitting(asked: Asked, request: Request) -> Iterator[Unfit]:
 
     chosen = {axis.name for axis in request.axes}
     lacking = [name for name in missing_values(system, _numbers(system, request)) if name not in chosen]
-    if lacking and all(name not in asked.typed or getattr(request, name) is not None for name in ("x", "y", "z")):
+    if lacking and all(name not in context.typed or getattr(request, name) is not None for name in ("x", "y", "z")):
         yield missing(lacking, "rational number")
 
 
@@ -476,8 +487,8 @@ def _numbers(system: System, request: Request) -> Mapping[str, Fraction]:
     from mbsym.mechanics.rest import given_values, rational_values
 
     chosen = {axis.name for axis in request.axes}
-    given = given_values(system, {name: x for name, x in request.values.items() if name in system.parameter_names})
-    return {name: x for name, x in rational_values(given).items() if name not in chosen}
+    values = given_values(system, {name: x for name, x in request.values.items() if name in system.parameter_names})
+    return {name: x for name, x in rational_values(values).items() if name not in chosen}
 
 
 def mapped(system: System, request: Request, watch: Watch) -> EquilibriaMap:
@@ -486,8 +497,8 @@ def mapped(system: System, request: Request, watch: Watch) -> EquilibriaMap:
     from mbsym.maps.equilibria_map import equilibria_map
     from mbsym.studies.map import NoMap
 
-    found = equilibria_map(system, (request.axes[0], request.axes[1]), _numbers(system, request), watch)
+    chart = equilibria_map(system, (request.axes[0], request.axes[1]), _numbers(system, request), watch)
     withdrawn = Analysis(system, ()).broken(Analysis.equilibria.stands_on)
     if withdrawn is not None:
         raise NoMap(Message("no map: [[reason]]", reason=withdrawn.reason))
-    return found
+    return chart

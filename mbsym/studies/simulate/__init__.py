@@ -125,7 +125,9 @@ class Request:
         Whole("N", "Rows of the table.", usual="2001, more for fast motion", least=2, most=10**18, why=ENDS),
     ] = None
     every: Annotated[float | None, Number("DT", "A row every DT instead.")] = None
-    method: Annotated[str, Word(None, "auto or one of those above.", "-m", choices=_methods, what="method")] = "auto"
+    method: Annotated[
+        str, Word(None, "auto, or one that 'mbsym explain simulate' lists.", "-m", choices=_methods, what="method")
+    ] = "auto"
     tolerance: Annotated[
         float | None,
         Number("X", "Error of one step, relative and absolute.", least=FINEST, most=COARSEST, usual="1e-10 in float64"),
@@ -358,7 +360,7 @@ def _asked(source: Source, request: Request) -> Asked:
 
 
 @public(Request, _asked)
-def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
+def simulate(context: Asked, request: Request, watch: Watch) -> Simulation:
     """The motion of a description (a file, or what ``load`` returned) from 0 to ``time``.
 
         >>> import mbsym
@@ -398,17 +400,17 @@ def simulate(asked: Asked, request: Request, watch: Watch) -> Simulation:
     from mbsym import simulation
     from mbsym.studies.simulate.fitting import basic
 
-    seen = simulation.integrated_system(asked.system, request.variables)
-    wanted = basic(request, seen)
+    seen = simulation.integrated_system(context.system, request.variables)
+    run_request = basic(request, seen)
     if request.accuracy is None:
-        return simulation.simulate(asked.motion, wanted)
+        return simulation.simulate(context.motion, run_request)
     from mbsym.simulation.accurate import read_accuracy, settled_by, simulate_accurately
 
     accuracy = read_accuracy(seen, request.accuracy)
-    return simulate_accurately(asked.motion, wanted, accuracy, settled_by(wanted))
+    return simulate_accurately(context.motion, run_request, accuracy, settled_by(run_request))
 
 
-def unfit(asked: Asked, request: Command) -> Iterator[Unfit]:
+def unfit(context: Asked, request: Command) -> Iterator[Unfit]:
     from mbsym.studies.simulate.fitting import settled
 
     if "mp4" in request.formats and shutil.which("ffmpeg") is None:
@@ -418,25 +420,25 @@ def unfit(asked: Asked, request: Command) -> Iterator[Unfit]:
             Message("ffmpeg makes mp4, and there is none on the path"),
             Message("install it, or take gif or html"),
         )
-    yield from settled(asked, request).wrong
+    yield from settled(context, request).wrong
 
 
-def derive(asked: Asked, request: Command, watch: Watch) -> Result:
+def derive(context: Asked, request: Command, watch: Watch) -> Result:
     from mbsym.studies.simulate.fitting import derived
 
-    return derived(asked, request, watch)
+    return derived(context, request, watch)
 
 
-def answer(asked: Asked, request: Command, result: Result) -> Answer:
+def answer(context: Asked, request: Command, result: Result) -> Answer:
     from mbsym.studies.simulate.answer import answered
 
-    return answered(asked, request, result)
+    return answered(context, request, result)
 
 
-def refusal(error: Exception, asked: Asked, request: Command) -> Refusal | None:
+def refusal(error: Exception, context: Asked, request: Command) -> Refusal | None:
     from mbsym.studies.simulate.answer import refused
 
-    return refused(error, asked, request)
+    return refused(error, context, request)
 
 
 STUDY = Study(

@@ -30,28 +30,28 @@ if TYPE_CHECKING:
 CARRIED = ("inputs", "estimate", "certify_seconds", "variables", "fixed", "format", "bodies", "animate", "out")
 
 
-def answered(asked: Asked, request: Command, result: Result) -> Answer:
+def answered(context: Asked, request: Command, result: Result) -> Answer:
     """Lines, files, complaints and the exit code of what was found."""
     match result:
         case Planned():
-            return _planned(asked, request, result)
+            return _planned(context, request, result)
         case Many():
-            return _many(asked, request, result)
-    return _motion(asked, request, result)
+            return _many(context, request, result)
+    return _motion(context, request, result)
 
 
-def _planned(asked: Asked, request: Command, result: Planned) -> Answer:
+def _planned(context: Asked, request: Command, result: Planned) -> Answer:
     from mbsym.report.runs.plan_words import bound_lines, choice_lines
 
-    plan, unit = result.plan, pretty(time_unit(asked.motion.system))
-    lines, last = [facts((*bound_lines(plan, unit), *choice_lines(plan)))], _repeat(asked, request, result.request)
+    plan, unit = result.plan, pretty(time_unit(context.motion.system))
+    lines, last = [facts((*bound_lines(plan, unit), *choice_lines(plan)))], _repeat(context, request, result.request)
     if plan.reached:
         return Answer(lines, last=last)
     missed = Message("no plan is shown to reach the accuracy asked for")
     return Answer(lines, {}, [missed], Exit.BROKEN_DOWN, last=last)
 
 
-def _many(asked: Asked, request: Command, result: Many) -> Answer:
+def _many(context: Asked, request: Command, result: Many) -> Answer:
     from mbsym.report.runs.ensemble_tables import sentences
 
     ensemble, files = result.ensemble, ensemble_files(result, request)
@@ -66,20 +66,20 @@ def _many(asked: Asked, request: Command, result: Many) -> Answer:
     return Answer(lines, files, complaints, code, owner="ensemble")
 
 
-def _motion(asked: Asked, request: Command, result: Motion) -> Answer:
+def _motion(context: Asked, request: Command, result: Motion) -> Answer:
     from mbsym.report.runs.summary import method_lines, result_lines
 
     run = result.run
     files = motion_files(run, result.derivatives, request.formats)
     how = method_lines(run) if request.verbose else ()
-    lines: list[Line | Block] = [facts((*result_lines(run, asked.file), *how))]
+    lines: list[Line | Block] = [facts((*result_lines(run, context.file), *how))]
     if result.derivatives is not None:
         from mbsym.report.runs.sensitivity_csv import sentences  # few ask for them
 
         say = Language(run.system.language).say
         lines += [heading(say(Message("derivatives"))), facts(sentences(result.derivatives))]
-    last = [] if request.accuracy is None else _repeat(asked, request, run.request)
-    complaints, code = _ended(run, asked.folder)
+    last = [] if request.accuracy is None else _repeat(context, request, run.request)
+    complaints, code = _ended(run, context.folder)
     if code is Exit.OK:
         complaints, code = _underived(result)
     before = [Message("no first integrals: [[why]]", why=run.no_invariants)] if run.no_invariants else []
@@ -177,24 +177,24 @@ def _broken(ended: Breakdown, trajectory: Trajectory, folder: Path) -> Iterator[
     yield Message(text, folder=safe(str(folder)), time=with_unit(until, time), count=trajectory.samples)
 
 
-def _repeat(asked: Asked, request: Command, run: simulation.Request) -> list[Line]:
+def _repeat(context: Asked, request: Command, run: simulation.Request) -> list[Line]:
     """The command that makes the same trajectory without choosing, on a line of its own to be pasted."""
     from mbsym.report.runs.plan_words import repeating_command
     from mbsym.studies.request import words_typed
 
-    say, typed = Language(asked.motion.system.language).say, asked.typed
+    say, typed = Language(context.motion.system.language).say, context.typed
     carried = words_typed(type(request), {name: typed[name] for name in CARRIED if name in typed})
-    command = repeating_command(asked.file, typed.get("values", ()), run, carried)
+    command = repeating_command(context.file, typed.get("values", ()), run, carried)
     return [line(f"  {say(Message('to repeat:'))}"), line(command, whole=True)]
 
 
-def refused(error: Exception, asked: Asked, request: Command) -> Refusal | None:
+def refused(error: Exception, context: Asked, request: Command) -> Refusal | None:
     """Of a run that cannot be begun."""
     from mbsym.algebra.failures import Failure, SingularPoint
     from mbsym.numerics.closing import NothingMoves
     from mbsym.numerics.methods.interface import Breakdown
 
-    say = Language(asked.motion.system.language).say
+    say = Language(context.motion.system.language).say
     nothing = say(Message("nothing was written."))
     if isinstance(error, MemoryError):
         many = "out of memory; ask for fewer members"
@@ -209,7 +209,7 @@ def refused(error: Exception, asked: Asked, request: Command) -> Refusal | None:
         hint = say(Message("hint: [[hint]]", hint=error.remedy))
         return Refusal(f"error[{error.code}]: {say(error.reason)}", Exit.BROKEN_DOWN, (f"  {hint}", nothing))
     if isinstance(error, Failure):
-        return not_closed(error, asked.motion.system) or Refusal(
+        return not_closed(error, context.motion.system) or Refusal(
             f"error[no-program]: {say(Message('there is no program for these equations: [[why]]', why=error.reason))}",
             Exit.FAILED,
             (nothing,),

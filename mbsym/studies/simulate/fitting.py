@@ -107,15 +107,15 @@ def _several(texts: str | Iterable[str]) -> tuple[str, ...]:
     return tuple(" ".join(text.splitlines()) for text in ((texts,) if isinstance(texts, str) else texts))
 
 
-def settled(asked: Asked, request: Command) -> Settled:
+def settled(context: Asked, request: Command) -> Settled:
     """What the options say, held against each other, before anything is compiled."""
-    scenario, typed, wrong = asked.scenario, asked.typed, Reasons()
-    system = asked.system if scenario is None else scenario.system
+    scenario, typed, wrong = context.scenario, context.typed, Reasons()
+    system = context.system if scenario is None else scenario.system
     seen = integrated(system, request.variables or simulation.request.DECLARED)
     _check_names(typed, wrong)
-    wanted = basic(request, seen, wrong)
+    run_request = basic(request, seen, wrong)
     if request.certify_seconds is None:
-        wanted = replace(wanted, certify_limit=WORK)
+        run_request = replace(run_request, certify_limit=WORK)
     if "samples" not in typed or "every" not in typed:
         _check_rows(system, request.time, request.every, request.samples, wrong)
     if request.step is not None and request.time is not None and request.step > request.time:
@@ -123,31 +123,31 @@ def settled(asked: Asked, request: Command) -> Settled:
         times = {"step": f"{request.step:g}", "time": f"{request.time:g}"}
         wrong.complain("--step", "bad-number", Message(longer, **times))
     if request.method is not None:
-        _check_method(system, {} if scenario is None else scenario.parameters, wanted, typed, wrong)
+        _check_method(system, {} if scenario is None else scenario.parameters, run_request, typed, wrong)
     if "variables" in typed and request.variables is not None and not system.speeds:
         hint = "coordinates and their velocities are integrated; leave --variables out"
         wrong.complain("--variables", "idle-option", "the description declares no speeds", hint)
-    wanted = replace(wanted, model=_model(request, system, typed, wrong))
+    run_request = replace(run_request, model=_model(request, system, typed, wrong))
     if "fixed" in typed:
-        wanted = _fixed(wanted, request.fixed, system, wrong)
+        run_request = _fixed(run_request, request.fixed, system, wrong)
     if request.path is not None:
-        wanted = _continued(wanted, request.path, system, wrong)
-        wanted = _going_on(wanted, _begun_at(scenario, wanted), typed, wrong)
-    _check_held(wanted, system, bool({"vary", "sensitivity"} & set(typed)), wrong)
+        run_request = _continued(run_request, request.path, system, wrong)
+        run_request = _going_on(run_request, _begun_at(scenario, run_request), typed, wrong)
+    _check_held(run_request, system, bool({"vary", "sensitivity"} & set(typed)), wrong)
     if request.vary or "vary" in typed:
-        _check_varied(request, wanted, scenario, typed, wrong)
+        _check_varied(request, run_request, scenario, typed, wrong)
     if "sensitivity" in typed and scenario is not None:
         _sensitive(request.sensitivity, scenario, wrong)
-    _check_constrained(system, wanted, wrong)
-    _check_states(seen, wanted, request.formats, wrong)
+    _check_constrained(system, run_request, wrong)
+    _check_states(seen, run_request, request.formats, wrong)
     if request.accuracy is None:
-        return Settled(wanted, None, wrong)
+        return Settled(run_request, None, wrong)
     from mbsym.simulation.accurate import read_accuracy, settled_by  # few ask for an accuracy
 
-    pins = settled_by(wanted)
+    pins = settled_by(run_request)
     if "arithmetic" in typed:
-        pins = replace(pins, scalar=wanted.arithmetic)
-    return Settled(wanted, (read_accuracy(seen, request.accuracy), pins), wrong)
+        pins = replace(pins, scalar=run_request.arithmetic)
+    return Settled(run_request, (read_accuracy(seen, request.accuracy), pins), wrong)
 
 
 def _check_names(typed: Mapping[str, Any], wrong: Reasons) -> None:
@@ -528,7 +528,7 @@ class Many:
 Result: TypeAlias = Motion | Planned | Many
 
 
-def derived(asked: Asked, request: Command, watch: Watch) -> Result:
+def derived(context: Asked, request: Command, watch: Watch) -> Result:
     """Raises NotFit for what is seen only when equations are put into code, Breakdown where nothing can be planned."""
     from mbsym.algebra.failures import message_of
     from mbsym.numerics.enclosure.field import NotAnalytic
@@ -536,7 +536,7 @@ def derived(asked: Asked, request: Command, watch: Watch) -> Result:
     from mbsym.numerics.methods.interface import Unusable
 
     try:
-        return _derived(asked, request, watch)
+        return _derived(context, request, watch)
     except simulation.NoEvent as error:
         message = Message("[[name]] has no value: [[why]]", name=quoted(error.text), why=error.reason)
         reasons = [Unfit(f"--{error.option}", "no-value", message)]
@@ -552,20 +552,20 @@ def derived(asked: Asked, request: Command, watch: Watch) -> Result:
     raise NotFit(reasons)
 
 
-def _derived(asked: Asked, request: Command, watch: Watch) -> Result:
+def _derived(context: Asked, request: Command, watch: Watch) -> Result:
     from mbsym.algebra.failures import Failure
 
-    scenario, settling = asked.motion, settled(asked, request)
-    wanted = settling.request
+    scenario, settling = context.motion, settled(context, request)
+    run_request = settling.request
     if settling.goal is not None and request.plan:
         from mbsym.simulation.accurate import plan_for
 
         watch(PLANNING)
-        return Planned(*plan_for(scenario, wanted, *settling.goal))
+        return Planned(*plan_for(scenario, run_request, *settling.goal))
     if request.vary:
-        return _many(asked, request, wanted, watch)
-    at, stage = _watched(wanted.time, watch)
-    stored = replace(wanted, store=asked.store())
+        return _many(context, request, run_request, watch)
+    at, stage = _watched(run_request.time, watch)
+    stored = replace(run_request, store=context.store())
     if settling.goal is not None:
         from mbsym.simulation.accurate import simulate_accurately
 
@@ -579,7 +579,7 @@ def _derived(asked: Asked, request: Command, watch: Watch) -> Result:
         watch("how it answers to changes")
         try:
             values = simulation.read_values(scenario.system, request.values)
-            result = Motion(run, sensitivities(scenario, wanted, request.sensitivity, values))
+            result = Motion(run, sensitivities(scenario, run_request, request.sensitivity, values))
         except (Failure, KeyboardInterrupt) as error:  # what was integrated is written all the same
             result = Motion(run, stopped=error)
     watch("drawing")
@@ -612,23 +612,25 @@ def _watched(time: float, watch: Watch) -> tuple[Callable[[float], None], Stage]
     return lambda t: watch(doing[-1], t, time), stage
 
 
-def _many(asked: Asked, request: Command, run: Run, watch: Watch) -> Many:
+def _many(context: Asked, request: Command, run: Run, watch: Watch) -> Many:
     """Curves of a few members are runs of their own; none where one of these has no scenario."""
     from mbsym.expressions.tree import number
     from mbsym.numerics.scenario import Incomplete, scenario
     from mbsym.simulation.ensembles import Spread, simulate_many
 
-    given, variations = asked.motion, variations_of(request)
+    nominal, variations = context.motion, variations_of(request)
     spread = Spread(run, variations, request.members, request.seed, request.sampling)
-    values = simulation.read_values(given.system, request.values)
-    ensemble = simulate_many(given, spread, values, watch=lambda t: watch("", t, run.time))
+    values = simulation.read_values(nominal.system, request.values)
+    ensemble = simulate_many(nominal, spread, values, watch=lambda t: watch("", t, run.time))
     few: dict[Member, simulation.Simulation] = {}
     drawn = set(request.formats) - {"csv"} and not ensemble.interrupted
     for member in _few(variations) if drawn else ():
         name = ", ".join(f"{name} = {value:.6g}" for name, value in member)
         own = {name: number(Fraction(str(value))) for name, value in member}
         try:
-            begun = scenario(given.system, {**values, **own}, declared=request.variables == simulation.request.DECLARED)
+            begun = scenario(
+                nominal.system, {**values, **own}, declared=request.variables == simulation.request.DECLARED
+            )
         except Incomplete:
             return Many(ensemble)
         few[member] = simulation.simulate(

@@ -41,9 +41,9 @@ def plan(
     from mbsym.simulation.accurate import plan_for, read_accuracy
 
     system = moving_system(source)
-    given = scenario(system, simulation.read_values(system, values or {}), declared=True)
+    motion = scenario(system, simulation.read_values(system, values or {}), declared=True)
     seen = simulation.integrated_system(system)
-    return plan_for(given, simulation.Request(time, samples, every), read_accuracy(seen, accuracy))[0]
+    return plan_for(motion, simulation.Request(time, samples, every), read_accuracy(seen, accuracy))[0]
 
 
 def ensemble(
@@ -83,7 +83,9 @@ def ensemble(
     system = moving_system(source)
     read = simulation.read_values(system, values or {})
     request = simulation.Request(time, samples, every, method, tolerance, step)
-    spread = Spread(request, [variation(name, given) for name, given in vary.items()], members, seed, sampling)
+    spread = Spread(
+        request, [variation(name, distribution) for name, distribution in vary.items()], members, seed, sampling
+    )
     return simulate_many(scenario(system, read, declared=True), spread, read, threads)
 
 

@@ -63,8 +63,8 @@ def test_the_sleigh_has_its_energy_and_nothing_else():
     found = mbsym.loads(SLEIGH).polynomial_integrals
     (energy,) = found.formulas
     assert str(energy) in ("m*u**2 + (m*a**2 + J)*w**2", "m*u**2 + m*a**2*w**2 + J*w**2")
-    assert found.found.complete
-    assert not found.found.new
+    assert found.integrals.complete
+    assert not found.integrals.new
 
 
 def test_suslovs_body_keeps_more_where_its_axis_is_principal():
@@ -90,7 +90,7 @@ dependent: [z]
 def test_an_integral_that_no_symmetry_says_is_found_and_checked():
     found = mbsym.loads(PARTICLE)
     result = found.polynomial_integrals
-    pairs = zip(result.formulas, result.found.generators, strict=True)
+    pairs = zip(result.formulas, result.integrals.generators, strict=True)
     new = [str(formula) for formula, one in pairs if one.is_new]
     assert new == ["m*y_dot**2 + k*y**2"]
     check = found.check("polynomial integrals")
@@ -119,9 +119,9 @@ def test_a_wrong_integral_is_seen():
 
 def test_an_energy_that_is_a_quotient_is_said_to_be_one():
     """x' and y' of the snakeboard are theta' times quotients of cos phi and sin phi; the energy holds their squares."""
-    found = mbsym.load(SHIPPED / "snakeboard.yaml").polynomial_integrals.found
+    found = mbsym.load(SHIPPED / "snakeboard.yaml").polynomial_integrals.integrals
     assert found.rational == ("generalised energy",)
-    assert mbsym.loads(SLEIGH).polynomial_integrals.found.rational == ()
+    assert mbsym.loads(SLEIGH).polynomial_integrals.integrals.rational == ()
 
 
 def test_relations_that_share_their_variables_are_refused_with_the_reason():

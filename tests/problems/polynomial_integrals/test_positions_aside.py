@@ -58,7 +58,7 @@ def test_every_integral_of_a_free_body_is_not_said_of_those_that_hold_its_orient
     Its derivative is  M . gamma' + M' . gamma = M . (gamma x w) + (M x w) . gamma = 0,  so that "every polynomial
     integral of degree up to 4 is a polynomial in" energy and |M|^2 is false of p, q, r, gamma.
     """
-    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
+    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.integrals
     assert [one.weight for one in found.generators] == [2, 2]
     assert found.complete
     said = [Writer().said(one) for one in integrals_words.sentences(found)]
@@ -102,7 +102,7 @@ def test_none_is_denied_without_positions():
     """x'' = -x': of x' alone nothing is kept, but x' + x is."""
     text = PARTICLE.replace("[x, y, 0]", "[x, 0, 0]").replace("[x, y]", "[x]")
     text += "loads:\n  - damper: {coordinate: x, coefficient: 1}\n"
-    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.found
+    found = Analysis(mbsym.loads(text).system, problems=(9,)).polynomial_integrals.integrals
     said = [Writer().said(one) for one in integrals_words.sentences(found)]
     assert said[0] == "There is none up to weighted degree 4 that does not contain x (proved)."
 
@@ -127,7 +127,7 @@ def test_what_integrals_with_orientations_give_is_no_further_one(told):
     """|G|^2 = A^2 p^2 + B^2 q^2 + C^2 r^2 is the sum of the squares of G's components in space, which problem 7 has."""
     loaded = mbsym.loads(FREE_BODY.split("    speeds")[0] + f"    {told}\n")
     assert sum("momentum" in one.name for one in loaded.integrals) == 3
-    found = loaded.polynomial_integrals.found
+    found = loaded.polynomial_integrals.integrals
     assert not found.new
     assert [one.name for one in found.generators if one.independent][-1] == FUNCTION
     assert not beyond(loaded)
@@ -151,6 +151,6 @@ def test_exponentials_and_angles_are_told_apart_as_functions():
     """cosh(x - y) + cos z: energy, x' + y' and z'^2/2 + cos z are independent, though exp(x - y) exp(y - x) = 1."""
     one = "  - {name: NAME, attached to: 0, connection point: [NAME, 0, 0], mass: 1, coordinates: [NAME]}\n"
     text = "mbsym: 1\nname: walls\nbodies:\n" + "".join(one.replace("NAME", x) for x in "xyz")
-    found = mbsym.loads(text + "loads:\n  - potential: cosh(x - y) + cos(z)\n").polynomial_integrals.found
+    found = mbsym.loads(text + "loads:\n  - potential: cosh(x - y) + cos(z)\n").polynomial_integrals.integrals
     assert found.independent == 3
     assert all(one.independent and one.certainty.value == "proved" for one in found.generators)

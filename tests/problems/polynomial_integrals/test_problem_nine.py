@@ -35,15 +35,15 @@ def kovalevskaya():
 
 def test_kovalevskayas_integral_is_the_fourth(kovalevskaya):
     result = kovalevskaya.polynomial_integrals
-    assert [one.weight for one in result.found.generators] == [2, 3, 4, 4]
-    assert [one.is_new for one in result.found.generators] == [False, False, False, True]
-    assert (result.found.independent, result.found.complete) == (4, True)
+    assert [one.weight for one in result.integrals.generators] == [2, 3, 4, 4]
+    assert [one.is_new for one in result.integrals.generators] == [False, False, False, True]
+    assert (result.integrals.independent, result.integrals.complete) == (4, True)
     # Hers: (C (p^2 - q^2) - m g x0 gamma1)^2 + (2 C p q - m g x0 gamma2)^2 is a polynomial in those found.
     there = polynomial.setting(kovalevskaya)
     C, x0, m, g, p, q, g1, g2 = map(there.whole.generator, ("C", "x0", "m", "g", "p", "q", "gamma1", "gamma2"))
     hers = (C * (p**2 - q**2) - m * g * x0 * g1) ** 2 + (2 * C * p * q - m * g * x0 * g2) ** 2
     assert there.whole.derivative(hers) == 0
-    energy, _, _, new = (one.polynomial for one in result.found.generators)
+    energy, _, _, new = (one.polynomial for one in result.integrals.generators)
     assert energy**2 - 4 * hers == new
 
 
@@ -91,7 +91,7 @@ def test_goryachev_and_chaplygins_is_told_with_its_level(tmp_path):
     path = tmp_path / "chaplygin.yaml"
     path.write_text(CHAPLYGIN, encoding="utf-8")
     result = mbsym.load(path).polynomial_integrals
-    assert result.found.new == ()
+    assert result.integrals.new == ()
     assert [(one.level.weight, [w for w, _ in one.integrals]) for one in result.levels] == [(3, [3])]
     words = ["run", path, "-v", "--problems", "9", "--format", "json,latex,wolfram,html", "--language", "es"]
     done = CliRunner().invoke(main, [*map(str, words), "--out", str(tmp_path / "out")])
@@ -110,14 +110,14 @@ def test_systems_in_angles_have_sines_and_cosines_for_variables():
     """The heavy top in Cardan angles: its energy and the momentum of phi, the area integral of degree four."""
     analysis = Analysis(mbsym.load(SYSTEMS / "heavy-top.yaml").system, problems=(9,))
     result = analysis.polynomial_integrals
-    assert result.found.field.variables[3:] == ("sin(alpha)", "cos(alpha)", "sin(beta)", "cos(beta)")
-    assert result.found.new == ()
-    assert result.found.complete
-    assert [one.weight for one in result.found.generators] == [2, 3, 4]
+    assert result.integrals.field.variables[3:] == ("sin(alpha)", "cos(alpha)", "sin(beta)", "cos(beta)")
+    assert result.integrals.new == ()
+    assert result.integrals.complete
+    assert [one.weight for one in result.integrals.generators] == [2, 3, 4]
     assert str(result.formulas[0]) in ("alpha_dot*sin(beta) + phi_dot", "phi_dot + alpha_dot*sin(beta)")
     # A damped pendulum keeps nothing.
     damped = Analysis(mbsym.load(SYSTEMS / "simple-pendulum.yaml").system, problems=(9,)).polynomial_integrals
-    assert (damped.found.generators, damped.found.complete) == ((), True)
+    assert (damped.integrals.generators, damped.integrals.complete) == ((), True)
 
 
 def test_a_wrong_sign_in_angles_is_found():
@@ -145,7 +145,7 @@ def test_goryachev_and_chaplygins_integral_holds_on_the_level_of_the_area_integr
     """D. N. Goryachev (1900): r (p^2 + q^2) - m g x0/C p gamma3 for A = B = 4 C, gamma upwards."""
     found = mbsym.load(SYSTEMS / "goryachev-chaplygin.yaml")
     result = found.polynomial_integrals
-    assert not any(one.is_new for one in result.found.generators)
+    assert not any(one.is_new for one in result.integrals.generators)
     assert [one.level.name for one in result.levels] == ["angular momentum about axis 3"]
     ((integral,),) = result.on_levels
     assert str(integral) == "C*(p**2 + q**2)*r - x0*m*g*p*gamma3"
@@ -248,7 +248,7 @@ loads:
   - {generalized force: {q_1: B*y_dot, y: -B*q_1_dot}}
 """
     analysis = Analysis(mbsym.loads(charge).system, problems=(9,))
-    told = [Writer().said(one) for one in integrals_words.sentences(analysis.polynomial_integrals.found)]
+    told = [Writer().said(one) for one in integrals_words.sentences(analysis.polynomial_integrals.integrals)]
     assert "The equations do not contain q_1, y: integrals that do are not looked for here." in told
     linear = Analysis(mbsym.loads(charge.replace("q_1: B*y_dot", "q_1: -q_1").replace("-B*q_1_dot", "-y")).system)
-    assert not any("do not contain" in x.text for x in integrals_words.sentences(linear.polynomial_integrals.found))
+    assert not any("do not contain" in x.text for x in integrals_words.sentences(linear.polynomial_integrals.integrals))

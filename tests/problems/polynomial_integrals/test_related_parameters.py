@@ -26,8 +26,8 @@ bodies:
 
 def test_a_symmetric_body_by_a_relation_keeps_r():
     plain, related = mbsym.loads(BODY), mbsym.loads(BODY + "relations: {B: A}\n")
-    assert [one.weight for one in plain.polynomial_integrals.found.generators] == [2, 2]
-    weights = [one.weight for one in related.polynomial_integrals.found.generators]
+    assert [one.weight for one in plain.polynomial_integrals.integrals.generators] == [2, 2]
+    weights = [one.weight for one in related.polynomial_integrals.integrals.generators]
     assert weights == [1, 2]
     assert str(related.polynomial_integrals.formulas[0]) == "r"
 
@@ -46,7 +46,7 @@ def test_the_second_route_is_taken_at_states_that_keep_the_relations():
     analysis = Analysis(mbsym.loads(top).system, problems=(9,))
     result = analysis.polynomial_integrals
     assert polynomial.check(analysis).outcome == "exact"
-    (place,) = (k for k, one in enumerate(result.found.generators) if one.is_new)
+    (place,) = (k for k, one in enumerate(result.integrals.generators) if one.is_new)
     ring = result.formulas[place].ring
     wrong = Formula(ring, ring.generator("coordinate", "p"))
     planted = replace(result, formulas=(*result.formulas[:place], wrong, *result.formulas[place + 1 :]))

@@ -57,14 +57,14 @@ SIN, COS, RATE = Fraction(3, 5), Fraction(4, 5), 11
 def at(told, x):
     values = {name: Fraction(number) for name, number in NUMBERS.items()}
     values |= {AMPLITUDE: SIN, "#gamma3": COS, "#r": Fraction(RATE)}
-    tower = told.found.tower
+    tower = told.oscillation.tower
     known = dict.fromkeys(tower.parameters, rationals.ball(Fraction(0)))
     return float(tower.enclosed(x, known | {n: rationals.ball(v) for n, v in values.items()}).real)
 
 
 def waves(told, name, order):
     """{k: (cosine, sine)} and the rate of one order."""
-    (one,) = [x for x in told.found.drifts if x.variable == name]
+    (one,) = [x for x in told.oscillation.drifts if x.variable == name]
     found = {k: tuple(at(told, x) for x in pair) for k, pair in one.waves[order].waves.items()}
     return found, at(told, one.rates[order])
 
@@ -122,10 +122,10 @@ def test_the_angles_follow_the_motion(analysis, solutions):
     system, told = analysis.system, solutions[1]
     given = scenario(system, {})
     numbers = {name: Fraction(value) for name, value in given.parameters.items()}
-    known = symbol_values(given, told, dict(told.found.powers), Fraction(1), {})
+    known = symbol_values(given, told, dict(told.oscillation.powers), Fraction(1), {})
     series = Numeric(told, numbers | known, Fraction(1))
     paths = oscillation_paths(system, told, periods=1.0)
-    for one in told.found.drifts:
+    for one in told.oscillation.drifts:
         motion = paths.angles[one.variable][1]
         total, away = motion[0], []
         for rate, wave in zip(one.rates, one.waves, strict=True):

@@ -48,19 +48,19 @@ def point(tmp_path, loads, names="x", small=EPS, more=""):
 
 
 def corrections(told):
-    return [str(told.formula(x)) for x in told.found.corrections]
+    return [str(told.formula(x)) for x in told.oscillation.corrections]
 
 
 def test_duffing_as_in_the_textbook(tmp_path):
     """omega = w + 3 eps a^2/(8 w) - 21 eps^2 a^4/(256 w^3), a the initial displacement."""
     told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 2)
-    assert str(told.formula(told.found.frequency)) == "w"
+    assert str(told.formula(told.oscillation.frequency)) == "w"
     assert corrections(told) == ["3*amplitude**2/(8*w**2)", "-21*amplitude**4/(256*w**4)"]
-    assert told.found.residuals == (3, 3)
-    first = told.wave(told.found.series[1][1]).polynomial
+    assert told.oscillation.residuals == (3, 3)
+    first = told.wave(told.oscillation.series[1][1]).polynomial
     ring = told.ring
     s, c = (ring.generator(kind, "phase") for kind in ("sine", "cosine"))
-    a = told.formula(told.found.amplitude).polynomial
+    a = told.formula(told.oscillation.amplitude).polynomial
     by_hand = ring.times(ring.multiple_angle(s, c, 3)[1] - c, a**3)  # 32 w^2 x_1 = a^3 (cos 3T - cos T)
     w = ring.generator("parameter", "w")
     assert ring.is_zero(ring.times(first, 32 * w**2) - by_hand)
@@ -74,10 +74,10 @@ def test_a_quadratic_oscillator(tmp_path):
 
 def test_van_der_pol_has_one_amplitude(tmp_path):
     told = oscillating(point(tmp_path, ["potential: x**2/2", "generalized force: {x: eps*(1 - x**2)*x_dot}"]), 4)
-    assert told.found.kind is Amplitude.DETERMINED
-    assert str(told.formula(told.found.amplitude)) == "2"
+    assert told.oscillation.kind is Amplitude.DETERMINED
+    assert str(told.formula(told.oscillation.amplitude)) == "2"
     assert corrections(told) == ["0", "-1/16", "0", "17/3072"]
-    assert str(told.written(told.found.series[told.found.names.index("x")][1])) == "-1/4*sin(3*phase)"
+    assert str(told.written(told.oscillation.series[told.oscillation.names.index("x")][1])) == "-1/4*sin(3*phase)"
 
 
 def test_a_damped_oscillator_has_no_periodic_solution(tmp_path):
@@ -106,9 +106,9 @@ def test_every_amplitude_of_several_cycles_is_told(tmp_path, even, squares):
     By hand a^4 - 6 a^2 + 8 = 0 and a^4 - 8 a^2 + 8 = 0, both with two positive squares and simple roots: two cycles.
     """
     told = oscillating(point(tmp_path, _damped_by(even)), 2)
-    a = told.found.amplitude
+    a = told.oscillation.amplitude
     taken = float(told.formula(a * a).to_sympy())
-    left = told.formula(told.found.other_amplitudes).to_sympy()
+    left = told.formula(told.oscillation.other_amplitudes).to_sympy()
     (symbol,) = left.free_symbols
     other = float(-left.subs(symbol, 0))  # a^2 - other
     assert {round(taken, 9), round(other, 9)} == {round(x, 9) for x in squares}
@@ -120,8 +120,8 @@ def test_every_amplitude_of_several_cycles_is_told(tmp_path, even, squares):
 def test_an_amplitude_that_is_surely_imaginary_is_passed_over(tmp_path):
     """c0 = 8 k, c2 = -8 (k - 4), c4 = -16: -(a^2 + k)(a^2 - 4) by the formula above; with k > 0 one cycle, a = 2."""
     told = oscillating(point(tmp_path, _damped_by("8*w - 8*(w - 4)*x**2 - 16*x**4")), 1)
-    assert str(told.formula(told.found.amplitude)) == "2"
-    assert told.found.other_amplitudes is None
+    assert str(told.formula(told.oscillation.amplitude)) == "2"
+    assert told.oscillation.other_amplitudes is None
     with pytest.raises(NotPeriodic, match="for every real amplitude"):
         oscillating(point(tmp_path, _damped_by("1 + x**2 + x**4")), 1)
 
@@ -132,13 +132,13 @@ def test_a_given_amplitude_is_the_one_that_is_meant(tmp_path):
     Of a^4 - 6 a^2 + 8 = 0 the given 2 is taken; x'' + x + eps x^2 = 0 is a family, the number is put into it.
     """
     system = point(tmp_path, _damped_by("1 - x**2"))
-    assert oscillating(system, 2, {"amplitude": Fraction(2)}).found.kind is Amplitude.DETERMINED
+    assert oscillating(system, 2, {"amplitude": Fraction(2)}).oscillation.kind is Amplitude.DETERMINED
     with pytest.raises(NotPeriodic, match="with this amplitude secular terms remain in the order 1"):
         oscillating(system, 2, {"amplitude": Fraction(1)})
     told = oscillating(point(tmp_path, _damped_by("1 - 3*x**2 + x**4")), 1, {"amplitude": Fraction(2)})
-    assert str(told.formula(told.found.amplitude)) == "2"
+    assert str(told.formula(told.oscillation.amplitude)) == "2"
     family = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2, {"amplitude": Fraction(1)})
-    assert family.found.kind is Amplitude.FREE
+    assert family.oscillation.kind is Amplitude.FREE
     assert corrections(family) == ["0", "-5/12"]
     with pytest.raises(ZeroDivisionError, match="no oscillation"):
         oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2, {"amplitude": Fraction(0)})
@@ -149,7 +149,7 @@ def test_constants_that_were_given_are_named_where_they_leave_nothing(tmp_path):
     loads = ["potential: x**2/2", "generalized force: {x: eps*(1 - z_dot)*x_dot, z: eps*(x**2 - z_dot)}"]
     system = point(tmp_path, loads, "x, z")
     told = oscillating(system, 1, {"z_dot_0": Fraction(1)}, "x")
-    assert str(told.formula(told.found.amplitude)) == "sqrt(2)"
+    assert str(told.formula(told.oscillation.amplitude)) == "sqrt(2)"
     with pytest.raises(NotPeriodic, match="with the constants that were given"):
         oscillating(system, 1, {"z_dot_0": Fraction(2)}, "x")
     with pytest.raises(NoClosedForm, match="unless z_dot_0 - 1 = 0"):
@@ -187,12 +187,12 @@ def test_two_oscillators_at_one_to_two(tmp_path):
         oscillating(point(tmp_path, loads, "x, y"), 2, leading="x")
     loads = ["potential: w**2*x**2/2 + k**2*w**2*y**2/2 + eps*x**2*y"]
     told = oscillating(point(tmp_path, loads, "x, y"), 2, leading="x")
-    two = next(one for one in told.found.divisors if one.harmonic == 2 and "y" in one.variables)
+    two = next(one for one in told.oscillation.divisors if one.harmonic == 2 and "y" in one.variables)
     assert str(told.formula(two.value)) == "w**2*(k - 2)*(k + 2)"
     # by hand: y_1 = -a^2/(2 k^2 w^2) - a^2 cos(2T)/(2 w^2 (k^2 - 4)) and x'' + w^2 x = -2 eps^2 x_0 y_1
-    ring, a = told.ring, told.formula(told.found.amplitude).polynomial
+    ring, a = told.ring, told.formula(told.oscillation.amplitude).polynomial
     k, w = (ring.generator("parameter", name) for name in ("k", "w"))
-    second = told.formula(told.found.corrections[1]).polynomial
+    second = told.formula(told.oscillation.corrections[1]).polynomial
     assert ring.is_zero(ring.times(second, 4 * w**4 * k**2 * (k**2 - 4)) - a**2 * (8 - 3 * k**2))
     with pytest.raises(NoClosedForm, match="several frequencies"):
         oscillating(point(tmp_path, loads, "x, y"), 2)
@@ -208,25 +208,25 @@ def test_the_other_frequency_of_two_coupled_oscillators_is_named(tmp_path):
     divided by w^2 + 2 k - w^2, and 3 by w^2 + 2 k - 9 w^2.  y_1 = x_1 - 2 v_1 holds 3 a^3/(8 k) cos T.
     """
     told = oscillating(point(tmp_path, [COUPLED.format("eps*x**4/4")], "x, y"), 1, leading="x")
-    assert str(told.formula(told.found.frequency)) == "w"
+    assert str(told.formula(told.oscillation.frequency)) == "w"
     shown = {one.harmonic: str(numerator(told, one.value)) for one in told.resonances}
     assert shown == {1: "2*k", 3: "2*(k - 4*w**2)"}
-    x, y = (told.found.series[told.found.names.index(name)][1].wave(1)[0] for name in "xy")
+    x, y = (told.oscillation.series[told.oscillation.names.index(name)][1].wave(1)[0] for name in "xy")
     ring = told.ring
-    a, k = told.formula(told.found.amplitude).polynomial, ring.generator("parameter", "k")
+    a, k = told.formula(told.oscillation.amplitude).polynomial, ring.generator("parameter", "k")
     assert ring.is_zero(ring.times(told.formula(y - x).polynomial, 8 * k) - 3 * a**3)
 
 
 def test_where_nothing_is_divided_no_frequency_is_named(tmp_path):
     """Along u = x = y the force eps (x + y)^3 drives u alone; one oscillator has no other frequency."""
     told = oscillating(point(tmp_path, [COUPLED.format("eps*(x + y)**4/4")], "x, y"), 1, leading="x")
-    assert told.found.divisors == ()
+    assert told.oscillation.divisors == ()
     told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 2)
-    assert told.found.divisors == ()
+    assert told.oscillation.divisors == ()
     # x_0^2 holds the harmonics 0 and 2 only; the squares of frequencies hold a root
     loads = ["potential: w**2*(x**2 + 2*y**2)/2 + k*x*y + eps*x**3"]
     told = oscillating(point(tmp_path, loads, "x, y"), 1, leading="x")
-    assert {one.harmonic for one in told.found.divisors} == {0, 2}
+    assert {one.harmonic for one in told.oscillation.divisors} == {0, 2}
 
 
 def test_a_pendulum_about_its_rest_by_its_amplitude(tmp_path):
@@ -336,10 +336,10 @@ def test_the_gyrostat_to_second_order(fast, moment):
         images |= {ring.index("sine", "phase"): ring.number(SINE), ring.index("cosine", "phase"): ring.number(COSINE)}
         return _number(ring, formula, images)
 
-    assert at(fast.formula(fast.found.corrections[0])) == 0
-    assert at(fast.formula(fast.found.corrections[1])) == known["nu"]
+    assert at(fast.formula(fast.oscillation.corrections[0])) == 0
+    assert at(fast.formula(fast.oscillation.corrections[1])) == known["nu"]
     names = {"p": "p1", "q": "q1", "r": "r1", "gamma1": "g1", "gamma2": "g1p", "gamma3": "g1pp"}
-    for name, series in zip(fast.found.names, fast.found.series, strict=True):
+    for name, series in zip(fast.oscillation.names, fast.oscillation.series, strict=True):
         for n in range(3):
             assert at(fast.wave(series[n])) == value(GYROSTAT[f"order{n}"][names[name]], known), (name, n)
 
@@ -356,7 +356,7 @@ def _number(ring, formula, images):
 
 def test_divisors_of_the_gyrostat(fast):
     """Omega^2 = 0, 1 and 4 (references/gyrostat, the row on singular points)."""
-    assert sorted(one.harmonic for one in fast.found.divisors) == [0, 1, 2]
+    assert sorted(one.harmonic for one in fast.oscillation.divisors) == [0, 1, 2]
 
 
 def test_the_measured_orders_of_the_gyrostat(gyrostat, fast):
@@ -371,7 +371,7 @@ def test_a_planted_error_is_seen_twice(gyrostat, fast):
     """One coefficient of second order of gamma1 a little off: residuals, and measured orders."""
     from dataclasses import replace
 
-    found = fast.found
+    found = fast.oscillation
     place, tower = found.names.index("gamma1"), found.tower
     rows = [list(one) for one in found.series]
     rows[place][2] = rows[place][2].scaled(tower.number(1) + tower.number(1) / tower.number(1000))
@@ -382,7 +382,7 @@ def test_a_planted_error_is_seen_twice(gyrostat, fast):
     graded = graded_rows(tower, fast.field, "eps", small, 3)
     assert min(x for x in oscillation_orders(graded, fast.field.variables, wrong) if x is not None) == 2
     assert min(x for x in oscillation_orders(graded, fast.field.variables, found) if x is not None) == 3
-    assert measured_orders(gyrostat.system, replace(fast, found=wrong)).orders[place] < 2.8
+    assert measured_orders(gyrostat.system, replace(fast, oscillation=wrong)).orders[place] < 2.8
 
 
 def test_the_papers_solution_is_wrong_where_there_is_a_moment(fast):
@@ -392,7 +392,7 @@ def test_the_papers_solution_is_wrong_where_there_is_a_moment(fast):
     a, c, lx, lz = (ring.generator("parameter", name) for name in ("A", "C", "lx", "lz"))
     r, m = (ring.generator("parameter", name) for name in ("r_0", "amplitude"))
     cosine = ring.generator("cosine", "phase")
-    series = dict(zip(fast.found.names, fast.found.series, strict=True))
+    series = dict(zip(fast.oscillation.names, fast.oscillation.series, strict=True))
     p, gamma = fast.wave(series["p"][0]).polynomial, fast.wave(series["gamma3"][1]).polynomial
     assert ring.is_zero(ring.times(p, (c - a) * r + lz) - lx * r)
     assert not ring.is_zero(p)  # (41)
@@ -418,10 +418,12 @@ def test_each_frequency_of_the_double_pendulum_leads(which, square, ratio):
     analysis = mbsym.load(SHIPPED / "double-pendulum.yaml")
     numbers = {name: Fraction(1) for name in ("m1", "m2", "l1", "l2")} | {"g": Fraction(9)}
     found = oscillating(analysis, 2, numbers, "theta1", which)
-    tower = found.found.tower
+    tower = found.oscillation.tower
     values = dict.fromkeys(tower.parameters, 1)
-    assert float(tower.enclosed(found.found.frequency, values).real) ** 2 == pytest.approx(9 * square)
-    waves = {name: one[0].waves[1][0] for name, one in zip(found.found.names, found.found.series, strict=True)}
+    assert float(tower.enclosed(found.oscillation.frequency, values).real) ** 2 == pytest.approx(9 * square)
+    waves = {
+        name: one[0].waves[1][0] for name, one in zip(found.oscillation.names, found.oscillation.series, strict=True)
+    }
     assert float(tower.enclosed(waves["theta2"], values).real) == pytest.approx(ratio - 1)
     assert found.real
     assert found.resonances == ()  # 18 sqrt 2 and the like: numbers that are not zero
@@ -456,7 +458,7 @@ def test_a_single_cycle_attracts_or_repels(tmp_path, even, amplitude, exponent, 
     """
     given = {} if amplitude is None else {"amplitude": Fraction(amplitude)}
     told = oscillating(point(tmp_path, _damped_by(even)), 2, given)
-    power, x = told.found.exponent
+    power, x = told.oscillation.exponent
     assert (power, str(told.formula(x)), told.attracts) == (1, exponent, attracts)
     shown = [Writer().said(said) for said in sentences(told)]
     assert any(("asymptotically orbitally stable." in one) is attracts and "Poincare" in one for one in shown)
@@ -466,7 +468,7 @@ def test_a_single_cycle_attracts_or_repels(tmp_path, even, amplitude, exponent, 
 
 def test_of_families_nothing_is_said(tmp_path):
     told = oscillating(point(tmp_path, ["potential: x**2/2 + eps*x**3/3"]), 2)
-    assert told.found.exponent is None
+    assert told.oscillation.exponent is None
     assert not any("Poincare" in Writer().said(said) for said in sentences(told))
 
 
@@ -490,7 +492,7 @@ def test_duffings_frequency_to_the_sixth_order(tmp_path):
     ]
     told = oscillating(point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4"]), 6)
     for n, by_hand in enumerate(inverted(period)[1:], start=1):
-        at = told.formula(told.found.corrections[n - 1]).subs({"amplitude": 1, "w": 1})
+        at = told.formula(told.oscillation.corrections[n - 1]).subs({"amplitude": 1, "w": 1})
         assert Fraction(str(at)) == by_hand
 
 
@@ -510,4 +512,4 @@ def test_a_pendulums_period_to_the_eighth_order(tmp_path):
     assert period[::2] == [1, Fraction(1, 16), Fraction(11, 3072), Fraction(173, 737280), Fraction(22931, 1321205760)]
     told = oscillating(point(tmp_path, ["potential: -w**2*cos(x)"], small="", more="motion: {x: 0}\n"), 8)
     for n, by_hand in enumerate(inverted(period)[1:], start=1):
-        assert Fraction(str(told.formula(told.found.corrections[n - 1]).subs({"amplitude": 1}))) == by_hand
+        assert Fraction(str(told.formula(told.oscillation.corrections[n - 1]).subs({"amplitude": 1}))) == by_hand

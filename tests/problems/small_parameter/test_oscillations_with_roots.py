@@ -34,11 +34,11 @@ def test_frequencies_about_l4_are_rouths(which, sign):
     """w^4 - w^2 + 27/4 mu (1 - mu) = 0 in units of n; the long-period family stands first.  Measured against runs."""
     analysis = mbsym.load(BODIES)
     found = oscillating(analysis, 1, leading="x", which=which)
-    square = found.formula(found.found.frequency * found.found.frequency)
+    square = found.formula(found.oscillation.frequency * found.oscillation.frequency)
     n, mu = 1.0, 0.01
     routh = (1 + sign * (1 - 27 * mu * (1 - mu)) ** 0.5) / 2
     assert float(square.to_sympy().subs({"n": n, "mu": mu})) == pytest.approx(routh, rel=1e-12)
-    assert found.found.verified
+    assert found.oscillation.verified
     measured = measured_orders(analysis.system, found)
     assert all(order is not None and order > 1.9 for order in measured.orders)
 
@@ -57,8 +57,8 @@ def test_the_conical_pendulum_sways_with_its_known_frequency():
 
     from math import cos, sin
 
-    assert number(found.found.frequency) == pytest.approx(1.5 * (1 + 3 * cos(0.7) ** 2) ** 0.5, rel=1e-12)
-    turning = found.found.series[found.found.names.index("psi_dot")][0].waves
+    assert number(found.oscillation.frequency) == pytest.approx(1.5 * (1 + 3 * cos(0.7) ** 2) ** 0.5, rel=1e-12)
+    turning = found.oscillation.series[found.oscillation.names.index("psi_dot")][0].waves
     assert set(turning) == {1}
     assert number(turning[1][0]) == pytest.approx(-2 * 1.5 * cos(0.7) / sin(0.7) * 0.3, rel=1e-12)
     assert number(turning[1][1]) == 0
@@ -80,7 +80,7 @@ motion: {x: 0}
 """
     analysis = mbsym.loads(text)
     at = oscillating(analysis, 1, {"b": Fraction(4)})
-    assert str(at.formula(at.found.frequency * at.found.frequency)) == "2*k/m"
+    assert str(at.formula(at.oscillation.frequency * at.oscillation.frequency)) == "2*k/m"
     with pytest.raises(NoClosedForm, match="does not oscillate"):
         oscillating(mbsym.loads(text.replace("sqrt(b)", "-sqrt(b)")), 1, {"b": Fraction(4)})
 
@@ -107,7 +107,7 @@ def test_the_root_of_a_square_is_not_negative(longer):
     ring = at.ring
     m, l, a, k, s = (ring.generator("parameter", name) for name in "mlaks")
     size = l - a if longer == "l" else a - l
-    square = at.formula(at.found.frequency * at.found.frequency).polynomial
+    square = at.formula(at.oscillation.frequency * at.oscillation.frequency).polynomial
     assert ring.is_zero(ring.times(square, m * l * size) - a * k * (size - s))
 
 
