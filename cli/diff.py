@@ -17,8 +17,9 @@ import click
 
 from mbsym.expressions.message import Counted, Message, joined, worded
 from mbsym.expressions.parser import ascii_safe
+from mbsym.model.system import LANGUAGES
 from mbsym.report.documents import diff as doc
-from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.language import Language
 from mbsym.studies.study import Exit
 from mbsym_cli.console import complain, console, defect, printable, read_description, reason_of, speaking
 from mbsym_cli.options import Options

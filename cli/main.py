@@ -211,7 +211,8 @@ class LazyGroup(click.Group):
 
 def _said_in(words: Sequence[str]) -> Callable[[str], str]:
     """Says messages in the language that a command line asks for, or in that of the descriptions on it."""
-    from mbsym.report.language import LANGUAGES, Language
+    from mbsym.model.system import LANGUAGES
+    from mbsym.report.language import Language
     from mbsym_cli.console import speaking
 
     named = [other for word, other in pairwise(words) if word == "--language"]

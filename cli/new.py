@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING
 import click
 
 from mbsym.expressions.message import Message
-from mbsym.report.language import LANGUAGES, Language
+from mbsym.model.system import LANGUAGES
+from mbsym.report.language import Language
 from mbsym.studies.study import Exit
 from mbsym_cli.completion import among, examples
 from mbsym_cli.console import complain, printable

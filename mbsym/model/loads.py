@@ -2,7 +2,7 @@
 
 Whoever wants to know something of a load asks it: between which bodies it acts, on which coordinates, whether it has a
 force function, what is left of it where coordinates are held, what its formulas measure.  What it does to a motion
-(wrenches, generalised forces, the value of its force function) is in ``mbsym.mechanics.loads``, one kind a file.
+(wrenches, generalised forces, the value of its force function) is in ``mbsym.mechanics.loads.kinds``.
 """
 
 from __future__ import annotations

@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 
 Tensor = tuple[Vector, Vector, Vector]
 
-#: The languages of reports: English, Russian, Spanish.
-LANGUAGES = ("en", "ru", "es")
+#: The languages of reports, and what they are called.
+LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
 
 
 @dataclass(frozen=True, slots=True)

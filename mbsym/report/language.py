@@ -7,9 +7,6 @@ from enum import StrEnum
 from mbsym.expressions.message import Counted, Message, Said, filled
 from mbsym.report.messages import messages, plurals
 
-#: What may follow ``--language``, and what it is called.
-LANGUAGES = {"en": "English", "ru": "Russian", "es": "Spanish"}
-
 _BABEL = {"en": "", "ru": "russian", "es": "spanish,es-noquoting,es-noshorthands,es-nodecimaldot"}
 
 

@@ -666,7 +666,7 @@ SYSTEM = {
         label="latex symbols",
     ),
     "order": Key("in which order subsystems and their coordinates are told, in problems 5 and 6: [theta, psi]", _NAMES),
-    "language": Key("of the reports: en, ru or es", Word(LANGUAGES)),
+    "language": Key("of the reports: en, ru or es", Word(tuple(LANGUAGES))),
     "units": Key(
         "units of coordinates, parameters, prescribed motions: {x: m, theta: rad}; every formula is then checked",
         Named(_UNIT, "coordinate"),

@@ -15,7 +15,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, get_args, get_type_hints
 
 from mbsym.expressions.message import Message
-from mbsym.report.language import LANGUAGES
+from mbsym.model.system import LANGUAGES
 
 if TYPE_CHECKING:
     from mbsym.expressions.place import Complaints

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 from conftest import SHIPPED
 
-from mbsym.report.language import LANGUAGES
+from mbsym.model.system import LANGUAGES
 from mbsym_cli.console import speaking
 from mbsym_cli.main import main
 

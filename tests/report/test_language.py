@@ -17,9 +17,10 @@ from markupsafe import Markup
 
 import mbsym
 from mbsym.expressions.message import Message, Said
+from mbsym.model.system import LANGUAGES
 from mbsym.problems.stability.words import Word
 from mbsym.report.html.writer import Writer
-from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.language import Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.messages import messages
 from mbsym.report.targets import TARGETS

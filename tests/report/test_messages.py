@@ -27,6 +27,7 @@ from mbsym.maps import branches_curve
 from mbsym.mechanics.programs import ARTICULATED, FACTORISED
 from mbsym.model.claims import CLAIMS, SUMS
 from mbsym.model.constraints import KIND_NAMES
+from mbsym.model.system import LANGUAGES
 from mbsym.numerics.accuracy import Lacking
 from mbsym.numerics.conservation import Doubt, Measure, Standing
 from mbsym.numerics.kernels.interface import EXTENDED
@@ -40,7 +41,7 @@ from mbsym.problems.stability.linear_form import LinearSystem, kind_of
 from mbsym.problems.stability.requirements import BUT_TURNED, BUT_ZERO, Method, Place
 from mbsym.problems.stability.sentences import _SENTENCES as because
 from mbsym.problems.stability.words import Word
-from mbsym.report.language import LANGUAGES, Language
+from mbsym.report.language import Language
 from mbsym.report.latex.writer import escaped
 from mbsym.report.maps.words import _DOUBTS
 from mbsym.report.messages import messages, plurals

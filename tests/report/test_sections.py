@@ -13,7 +13,7 @@ import mbsym
 from mbsym.analysis import PROBLEMS, Problem
 from mbsym.formulas.latex import write_as
 from mbsym.formulas.tree import angles_as
-from mbsym.report.language import LANGUAGES
+from mbsym.model.system import LANGUAGES
 from mbsym.report.latex.report import render
 from mbsym.report.sections import section_of
 from mbsym.report.targets import TARGETS

@@ -8,6 +8,7 @@ from msgspec import UNSET, Meta, UnsetType, field
 
 from mbsym.algebra.failures import Limit, Severity
 from mbsym.expressions.table import CUBIC, ENDS, EXTRAPOLATE, HOLD, LINEAR, OUTSIDE_ZERO
+from mbsym.problems import NUMBERS
 from mbsym.report.documents.base import ASIDE, Format, From, Part, Version, told_apart_by, version, words
 from mbsym.report.documents.parts import Formula
 from mbsym.report.documents.results.canonical import Brackets, Hamilton, Routh
@@ -199,7 +200,7 @@ class Results(Part, frozen=True, kw_only=True):
 
     format: Format = 1
     version: Version = field(default_factory=version)
-    problems: Annotated[list[Annotated[int, Meta(ge=1, le=12)]], "the problems that were asked for"]
+    problems: Annotated[list[Annotated[int, Meta(ge=NUMBERS[0], le=NUMBERS[-1])]], "the problems that were asked for"]
     terms: Annotated[int, "budget of terms of one closed formula", Meta(ge=1)]
     system: Described
     coordinates: Annotated[list[str], "generalised coordinates, in their order"]
