@@ -100,6 +100,10 @@ class Helped(click.Context):
         return told
 
 
+#: Where a context has the words of its command line.
+WORDS = "mbsym.words"
+
+
 class LazyGroup(click.Group):
     """A group whose commands are imported on demand."""
 
@@ -166,13 +170,18 @@ class LazyGroup(click.Group):
             code = 128 + signals[0]
         sys.exit(code)
 
+    def parse_args(self, context: click.Context, args: list[str]) -> list[str]:
+        """The words are kept: they tell in which language to complain about them."""
+        context.meta[WORDS] = list(args)
+        return super().parse_args(context, args)
+
     def invoke(self, context: click.Context) -> Any:
         """Ctrl-C, wherever it comes, ends with the code that shells count the signal as; a mistake of ours with 1."""
         from mbsym.studies.study import Exit
         from mbsym_cli.console import Debugging, Force, defect, listening, reason_of, trace
 
         Debugging.wanted = Force.wanted = False
-        words = [*context._protected_args, *context.args]
+        words = context.meta[WORDS]
         try:
             with listening() as defects:
                 try:

@@ -19,7 +19,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from functools import partial
+from functools import cached_property, partial
 from itertools import combinations, pairwise
 from typing import Any
 
@@ -68,6 +68,11 @@ class Atom:
 
     polynomial: Polynomial
     relation: str
+
+    @cached_property
+    def key(self) -> tuple[str, str]:
+        """The same for equal conditions.  A polynomial may have a million terms: it is written once."""
+        return str(self.polynomial), self.relation
 
     def negated(self) -> Atom:
         relation, factor = _NEGATED[self.relation]
@@ -151,7 +156,7 @@ def _of(pieces: Iterable[Piece]) -> ParameterSet:
         plain: dict[tuple[str, str], Atom] = {}
         for condition in piece:
             if not condition.polynomial.is_constant():
-                plain[str(condition.polynomial), condition.relation] = condition
+                plain[condition.key] = condition
             elif not _holds(_number(condition.polynomial), condition.relation):
                 break
         else:
@@ -187,7 +192,7 @@ def _holds(value: Any, relation: str) -> bool:
 
 def _decided(piece: Piece, signs: Signs) -> tuple[Emptiness, Mapping[int, Any] | None]:
     """Each piece is decided once for the same knowledge, whatever the order of its conditions."""
-    named = {(str(condition.polynomial), condition.relation): condition for condition in piece}
+    named = {condition.key: condition for condition in piece}
     key = tuple(sorted(named))
     known = signs.emptiness
     if key not in known:
@@ -303,7 +308,7 @@ class _Search:
                 if not _holds(_number(condition.polynomial), condition.relation):
                     return None
             else:
-                kept_atoms[str(condition.polynomial), condition.relation] = condition
+                kept_atoms[condition.key] = condition
         point: dict[int, Any] = {}
         open_ones = False
         for part in sorted(_components(list(kept_atoms.values())), key=lambda part: len(_variables(part))):

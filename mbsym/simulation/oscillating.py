@@ -41,7 +41,7 @@ TOLERANCE = 1e-13
 class MeasuredOrders:
     """``errors[v][k]``: the largest |x_v - X_v| over one period at eps times ``parts[k]``, in scaled variables.
 
-    ``relative[k]``: the largest of them as parts of max |X_v|, of the variables that the series does not set to zero;
+    ``relative[k]``: the largest of them as parts of max |X_v|, but for the ``unmoved``, which the series sets to zero;
     infinite where no motion was found.  ``orders``: log2 of the ratio of the last two errors of each variable that
     rounding leaves, at ``parts[k]`` and ``parts[k + 1]`` with k from ``halved``; None where there are none.  The
     expansion to order n is right where they are about n + 1, or more.
@@ -53,6 +53,7 @@ class MeasuredOrders:
     names: tuple[str, ...]
     errors: tuple[tuple[float, ...], ...]
     relative: tuple[float, ...]
+    unmoved: tuple[str, ...]
     orders: tuple[float | None, ...]
     halved: tuple[int, ...]
     simulated: bool
@@ -95,7 +96,7 @@ def measured_orders(
                 start = [series.at(0.0, name) * series.eps ** powers.get(name, 0) for name in oscillation.names]
                 rows = _integrated(solution.field, oscillation.names, numbers, start, times)
         except (Failure, ArithmeticError, ValueError):
-            if part != 1:
+            if part in PARTS[-2:]:  # those that orders are told by
                 raise
             rows = []  # eps as it is given may be far too large for the series
         for place, name in enumerate(oscillation.names):
@@ -106,14 +107,17 @@ def measured_orders(
                 sizes[place].append(max(abs(float(x.mid())) for x in waves))
             errors[place].append(max((_number(x) for x in away), default=inf))
     noise = NOISE_OF_A_RUN if simulated else NOISE_OF_BALLS
-    orders, halved = zip(*(_order(x, noise) for x in errors), strict=True)
-    relative = tuple(
-        max((of[k] / size[k] for of, size in zip(errors, sizes, strict=True) if size[k] > noise), default=inf)
-        for k in range(len(PARTS))
-    )
+    extents = [max(size) for size in sizes]
+    moved = [k for k, extent in enumerate(extents) if extent > NOISE_OF_BALLS * max(extents)]
+    least = min(extents[k] for k in moved)
+    levels = [noise * max(extent, least) for extent in extents]
+    orders, halved = zip(*map(_order, errors, levels), strict=True)
+    relative = tuple(max(errors[v][k] / sizes[v][k] for v in moved) for k in range(len(PARTS)))
+    unmoved = tuple(name for k, name in enumerate(oscillation.names) if k not in moved)
     return MeasuredOrders(
-        float(whole), time, PARTS, oscillation.names, tuple(map(tuple, errors)), relative, orders, halved, simulated
-    )
+        float(whole), time, PARTS, oscillation.names, tuple(map(tuple, errors)), relative,
+        unmoved, orders, halved, simulated,
+    )  # fmt: skip
 
 
 def _number(x: Any) -> float:
@@ -126,7 +130,7 @@ def _order(errors: Sequence[float], noise: float) -> tuple[float | None, int]:
 
     It is the last halving before which and after which there is more than rounding; None where there is none.
     """
-    places = [k for k in range(len(errors) - 1) if min(errors[k : k + 2]) > noise]
+    places = [k for k in range(len(errors) - 1) if inf > max(errors[k : k + 2]) and min(errors[k : k + 2]) > noise]
     if places:
         return log(errors[places[-1]] / errors[places[-1] + 1], 2), places[-1]
     last = len(errors) - 2
@@ -248,6 +252,8 @@ def _simulated(
     fixed = solution.oscillation.names if system.constraints else ()
     request = Request(time=times[-1], samples=len(times) + 1, estimate=False, tolerance=TOLERANCE, fixed=tuple(fixed))
     run = simulate(scenario(system, chosen), request)
+    if not run.whole:
+        raise NoClosedForm("the motion ends early")
     columns = {
         name: np.asarray(run.coordinates)[k] - float(shift.get(name, 0)) for k, name in enumerate(system.coordinates)
     }

@@ -119,7 +119,7 @@ def answer(context: Asked, request: Request, derived: Found) -> Answer:
     stopped = trade.interrupted
     if not trade.rows:
         return Answer(complaints=(say(Message("interrupted")),), code=Exit.INTERRUPTED) if stopped else Answer()
-    lines, files = _lines(request, derived, say), _files(context, request, derived.measured, say)
+    lines, files = _lines(request, derived, say), _files(context, request, derived.measured)
     after = f", t = 0 .. {request.time:g}"
     if stopped:
         complaints = (*derived.notes, say(Message("interrupted; what was measured is kept")))
@@ -127,9 +127,7 @@ def answer(context: Asked, request: Request, derived: Found) -> Answer:
     return Answer(lines, files, derived.notes, after=after)
 
 
-def _files(
-    context: Asked, request: Request, study: trade_study.Study, say: Callable[[str], str]
-) -> dict[str, str | bytes]:
+def _files(context: Asked, request: Request, study: trade_study.Study) -> dict[str, str | bytes]:
     from mbsym.model.quantities import time_unit
     from mbsym.report.figures.tradeoff_figure import work_precision
     from mbsym.report.runs.tradeoff_table import fidelity_csv, tradeoff_csv, tradeoff_json
@@ -139,8 +137,9 @@ def _files(
     files: dict[str, str | bytes] = {f"tradeoff{mark}.csv": tradeoff_csv(trade, unit)}
     if models:
         files["fidelity.csv"] = fidelity_csv(models)
+    sentence = str(_advised(request, study))  # programs read English
     files[f"tradeoff{mark}.json"] = tradeoff_json(
-        context.system, study, say(_advised(request, study)), request.time, request.target, request.budget
+        context.system, study, sentence, request.time, request.target, request.budget
     )
     pictures = work_precision(context.system, request.time, trade, request.target, models, ("svg", "png"))
     return files | {name.replace(".", f"{mark}."): content for name, content in pictures.items()}

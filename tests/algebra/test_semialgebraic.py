@@ -9,7 +9,7 @@ from itertools import product
 import pytest
 from flint import fmpq, fmpq_mpoly_ctx
 
-from mbsym.algebra.semialgebraic import EVERYTHING, NOTHING, Emptiness, ParameterSet, atom, where
+from mbsym.algebra.semialgebraic import EVERYTHING, NOTHING, Atom, Emptiness, ParameterSet, atom, where
 from mbsym.algebra.signs import Signs
 
 CONTEXT = fmpq_mpoly_ctx.get(["a", "b", "c"])
@@ -81,3 +81,22 @@ def test_an_empty_set_holds_at_no_point_of_a_grid() -> None:
             assert there.holds([point.get(k, fmpq(1)) for k in range(3)]), pieces
     assert known[Emptiness.EMPTY] > 15
     assert known[Emptiness.INHABITED] > 60
+
+
+def test_a_long_polynomial_is_written_once_however_often_sets_are_joined() -> None:
+    """Of a million terms, which took the conditions of a bicycle minutes."""
+
+    class Long:
+        written = 0
+
+        def __str__(self) -> str:
+            self.written += 1
+            return "x"
+
+        def is_constant(self) -> bool:
+            return False
+
+    polynomial = Long()
+    there = ParameterSet(((Atom(polynomial, ">"),),))  # type: ignore[arg-type]
+    assert ((there & there) | (there & there & there)) == there
+    assert polynomial.written == 1

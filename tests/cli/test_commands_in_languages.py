@@ -94,10 +94,13 @@ def test_a_robot_without_joints_is_told_what_helps(folder: Path) -> None:
         (("lyapunov", "in/good.yaml", "--time", "20"), "lyapunov.json"),
         (("regressor", "in/good.yaml"), "regressor.json"),
         (("map", "in/good.yaml", "--x", "b=0:1", "--format", "json"), "map.json"),
+        (("tradeoff", "in/good.yaml", "--time", "1", "--budget", "0.1"), "tradeoff.json"),
     ],
 )
 def test_json_prints_what_the_file_says(words: tuple[str, ...], file: str, folder: Path) -> None:
+    """In English, though the description is in Russian."""
     done = CliRunner().invoke(main, [*words, "--json", "--out", "out"])
     assert done.exit_code == 0, done.output
     assert done.stdout == (folder / "out" / file).read_text(encoding="utf-8")
     assert json.loads(done.stdout)
+    assert not re.search("[а-яё]", done.stdout)

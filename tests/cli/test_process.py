@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+import mbsym_cli
 
 SCRIPT = """
 import atexit, sys, threading, time
@@ -95,3 +99,12 @@ def test_the_code_of_an_interruption_is_that_of_the_command() -> None:
     from mbsym_cli import process
 
     assert process.INTERRUPTED == Exit.INTERRUPTED
+
+
+def test_nothing_is_asked_that_click_keeps_to_itself() -> None:
+    """Private names change from version to version: with click 8.1, which was allowed, no command ran."""
+    (folder,) = mbsym_cli.__path__
+    trees = (ast.walk(ast.parse(path.read_text(encoding="utf-8"))) for path in Path(folder).rglob("*.py"))
+    asked = [x for tree in trees for x in tree if isinstance(x, ast.Attribute) and isinstance(x.value, ast.Name)]
+    assert [x for x in asked if x.attr == "meta" and x.value.id == "context"], "contexts are found by their name"
+    assert not [x.attr for x in asked if x.value.id in ("context", "ctx", "click") and x.attr.startswith("_")]

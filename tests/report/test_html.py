@@ -373,3 +373,27 @@ def test_no_piece_of_an_equation_is_wider_than_the_column_beside_the_picture() -
     latex = TARGETS["latex"].render(derived(SHIPPED / "rolling-disc.yaml"), (3,))
     assert r"r\, \dot{\mathit{spin}}" in latex
     assert not re.search(r"[a-z] \\d+ot\{\\mathit", latex)
+
+
+CARTS = """mbsym: 1
+name: Two carts
+parameters: {m1: positive, m2: positive, k1: real, k2: real, c: positive, p: real}
+bodies:
+  - {name: a, attached to: 0, connection point: [x, 0, 0], coordinates: [x], mass: m1}
+  - {name: b, attached to: 0, connection point: [y, 0, 0], coordinates: [y], mass: m2}
+loads:
+  - generalized force: {x: -k1*x - c*x_dot + p*y_dot + p*y, y: -k2*y - 2*c*y_dot - p*x}
+motion: {x: 0, y: 0}
+"""
+
+
+def test_lines_end_within_a_long_condition_and_between_many_coordinates() -> None:
+    """What has to stay in front of a link is one piece: a condition of Hurwitz was cut off at the edge of the paper."""
+    page = page_of(mbsym.loads(CARTS), (6,))
+    held = re.findall(r'<span class="together">(.*?)</span>', page)
+    assert len(held) > 2
+    assert {piece.count("<math>") for piece in held} == {1}
+    coordinates = (
+        page_of(derived(SHIPPED / "rolling-disc.yaml"), (1, 2, 3)).partition("Coordinates")[2].partition("</dd>")[0]
+    )
+    assert coordinates.count("<math>") == 5

@@ -81,7 +81,8 @@ class Measured(Part, frozen=True):
     time: Annotated[float | UnsetType, "the period at the last part"] = UNSET
     parts: Annotated[list[str] | UnsetType, "parts of it at which errors were measured"] = UNSET
     relative: Annotated[
-        list[float | None] | UnsetType, "at each part, the largest error as a part of the largest value of its variable"
+        list[float | None] | UnsetType,
+        "at each part, the largest error as a part of the largest value of its variable, of those that are not zero",
     ] = UNSET
     errors: Annotated[list[Error] | UnsetType, "by variable, in scaled variables", told_apart_by("variable")] = UNSET
 

@@ -46,11 +46,14 @@ from mbsym.report.words.passages import Passage
 
 #: A formula in the text of no more letters and numbers stands in one line.
 UNBROKEN = 10
+#: So many values side by side stand in one line.
+SIDE_BY_SIDE = 4
 _DOTS = ("", "\u02d9", "\u00a8")
 _PLAIN = PlainWriter()
 _DIALECT = Dialect()
 _SCRIPT = {"A": "\U0001d49c", "B": "\u212c", "C": "\U0001d49e", "D": "\U0001d49f"}
-_COMMA = '<mo separator="true">,</mo><mspace width="0.3em"/>'
+_SEPARATOR = '<mo separator="true">,</mo>'
+_COMMA = f'{_SEPARATOR}<mspace width="0.3em"/>'
 
 
 def _with_comma(written: Markup) -> Markup:
@@ -140,10 +143,12 @@ class Writer:
 
     @inline.register
     def _(self, value: content.Phrase) -> Markup:
-        joined = self._joined(value.parts)
-        if isinstance(value.parts[-1] if value.parts else "", content.Numbered):
-            return Markup('<span class="together">{}</span>').format(joined)  # no line ends in front of the link
-        return joined
+        *parts, last = value.parts or ("",)
+        if not isinstance(last, content.Numbered):
+            return self._joined(value.parts)
+        before, tag, piece = self._joined(parts).rpartition("<math>")  # no line ends in front of the link
+        together = Markup('<span class="together">{}{}</span>').format(Markup(tag + piece), self.inline(last))
+        return Markup(before) + together
 
     @inline.register
     def _(self, value: content.Relation) -> Markup:
@@ -151,6 +156,14 @@ class Writer:
         if sum(formulas.extent(x) for x in value.parts if isinstance(x, Formula)) <= UNBROKEN:
             return formulas.math(self.math(value))
         return Markup(" ").join(map(formulas.math, self._relation_pieces(value.parts)))
+
+    @inline.register
+    def _(self, value: content.Listed) -> Markup:
+        """In one piece where it is short, or in brackets; a line ends behind the commas of a long one."""
+        if value.braces or value.brackets or len(value.items) <= SIDE_BY_SIDE:
+            return formulas.math(self.math(value))
+        *before, last = map(self.math, value.items)
+        return Markup(" ").join(map(formulas.math, (*(item + _SEPARATOR for item in before), last)))
 
     @inline.register
     def _(self, value: content.Elsewhere) -> Markup:

@@ -107,16 +107,18 @@ _ROUNDING = (
     "[[to]] the errors of [[names]] are no more than rounding."
 )
 _VALID = (
-    "Over one period it stays within [[error]] of each variable's largest value with [[small]] = [[given]], as given."
+    "Over one period it stays within [[error]] of each variable's largest value with [[small]] = [[given]], as given "
+    "(measured)."
 )
 _VALID_UP_TO = (
     "Over one period it stays within 1 % of each variable's largest value up to [[small]] = [[bound]], of the values "
-    "that were tried, not with [[given]], as given."
+    "that were tried, not with [[given]], as given (measured)."
 )
 _NOWHERE_VALID = (
     "Over one period it is not within 1 % of each variable's largest value with any [[small]] that was tried, from "
-    "[[given]], as given, down to [[bound]]."
+    "[[given]], as given, down to [[bound]] (measured)."
 )
+_UNMOVED = "Not counted in this are variables that it sets to zero to this order: [[names]]."
 _EXPECTED = "[[expected]] or more is expected of a right solution to this order, where [[small]] is small enough."
 _TOO_SLOW = (
     "The errors of [[names]] fall more slowly than expected: [[small]] is too large there, or something is wrong."
@@ -283,12 +285,15 @@ def measured_sentences(solution: Oscillating, measured: MeasuredOrders | str) ->
     values: Gaps = {"small": Name(solution.oscillation.small), "expected": str(expected)}
     rows = tuple(zip(measured.names, measured.orders, measured.halved, strict=True))
     at = [f"{measured.small * float(part):.3g}" for part in measured.parts]
-    within = next((k for k, error in enumerate(measured.relative) if error <= VALID), None)
-    if within == 0:
+    beyond = [k for k, error in enumerate(measured.relative) if error > VALID]
+    within = beyond[-1] + 1 if beyond else 0
+    if measured.relative[0] <= VALID:
         yield say(_VALID, **values, given=at[0], error=_percent(measured.relative[0]))
     else:
-        sentence, bound = (_NOWHERE_VALID, at[-1]) if within is None else (_VALID_UP_TO, at[within])
+        sentence, bound = (_NOWHERE_VALID, at[-1]) if within == len(at) else (_VALID_UP_TO, at[within])
         yield say(sentence, **values, given=at[0], bound=bound)
+    if measured.unmoved:
+        yield say(_UNMOVED, names=named(measured.unmoved))
     if rounding := tuple(name for name, order, _ in rows if order is None):
         yield say(_ROUNDING, **values, to=at[-1], names=named(rounding))
     for place in sorted({k for _, order, k in rows if order is not None}):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import operator
 from fractions import Fraction
-from math import comb
+from math import comb, inf
 
 import numpy as np
 import pytest
@@ -270,6 +270,45 @@ def test_how_far_duffings_series_is_from_the_motion_with_eps_as_it_is_given(tmp_
     first = Writer().said(next(iter(measured_sentences(told, measured))))
     assert ("with eps = 1, as given" in first) is within
     assert ("up to eps = " in first) is not within
+
+
+def said_of(told, measured):
+    return " ".join(map(Writer().said, measured_sentences(told, measured)))
+
+
+def test_how_far_a_series_holds_is_the_same_in_other_units_of_length(tmp_path):
+    """In metres and in nanometres; with an amplitude of 1e-9 all errors were "no more than rounding"."""
+
+    def in_units(metre):
+        more = f"values: {{w: 1, k: {metre**2}, eps: 1/2}}\ninitial: {{x: {{position: 1/{metre}, velocity: 0}}}}\n"
+        analysis = point(tmp_path, ["potential: w**2*x**2/2 + eps*k*x**4/4"], more=more)
+        return measured_orders(analysis.system, oscillating(analysis, 1))
+
+    one, other = in_units(1), in_units(10**9)
+    assert all(1.9 < order < 2.1 for order in other.orders)
+    assert other.orders == pytest.approx(one.orders, abs=0.01)
+    assert other.relative == pytest.approx(one.relative, rel=1e-3)
+
+
+def test_what_a_series_sets_to_zero_is_told_apart(tmp_path):
+    """y'' + 7 y = -eps^2 x^2 moves y at the order 2; to the order 1 nothing is within 0.2 % of its largest value."""
+    more = "values: {w: 1, k: 1, eps: 1/5}\ninitial: {x: {position: 1, velocity: 0}, y: {position: 0, velocity: 0}}\n"
+    analysis = point(tmp_path, ["potential: w**2*x**2/2 + 7*y**2/2 + eps**2*x**2*y"], "x, y", more=more)
+    told = oscillating(analysis, 1, leading="x")
+    measured = measured_orders(analysis.system, told)
+    assert set(measured.unmoved) == {"y", "y_dot"}
+    assert "sets to zero to this order: y" in said_of(told, measured)
+
+
+def test_where_the_motion_runs_away_the_series_does_not_hold(tmp_path):
+    """With eps = 2 the force is eps^2 x^5 of the wrong sign: the run ended early, and its rows were missed."""
+    more = "values: {w: 1, k: 1, eps: 2}\ninitial: {x: {position: 1, velocity: 0}}\n"
+    analysis = point(tmp_path, ["potential: w**2*x**2/2 + eps*x**4/4 - eps**2*x**6/4"], more=more)
+    told = oscillating(analysis, 2)
+    measured = measured_orders(analysis.system, told)
+    assert measured.relative[0] == inf > measured.relative[1]
+    assert all(2.6 < order < 3.2 for order in measured.orders)
+    assert "not with 2, as given" in said_of(told, measured)
 
 
 GYROSTAT = reference("gyrostat-oscillation")
