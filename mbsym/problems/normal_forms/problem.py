@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, partial
 from math import factorial, prod
@@ -127,28 +127,27 @@ def by_energy(
         return by_potential(size, derivative, field, conserved, only=True, gyroscopic=gyroscopic)
 
 
-def first_term(
+def first_terms(
     scene: Scene,
     whole: Any,
     equilibrium: Equilibrium | None,
     manifold: Callable[[int], OnManifold] | None,
     sign: Callable[[Polynomial], str],
-) -> tuple[int, Polynomial] | None:
-    """The order and the coefficient of the first term of V(x) of the one coordinate that ``sign`` does not call zero.
+) -> Iterator[tuple[int, Polynomial]]:
+    """Orders and coefficients of the terms of V(x) of the one coordinate that ``sign`` does not call zero, in order.
 
-    None of several coordinates, or where all terms are zero.
+    None of several coordinates.
     """
     made = _Expanded(scene, whole, equilibrium, False, (), manifold)
-    for most in (4, MOST_ORDER):
+    for least, most in ((2, 4), (5, MOST_ORDER)):
         expanded = made.plain(most)
         parts = potential(expanded)
         if parts is None or len(expanded.coordinates) != 1:
-            return None
-        for order in range(2, most + 1):
+            return
+        for order in range(least, most + 1):
             value = parts.get((0,) * order)
             if value is not None and scene.ring.is_zero(value) is not True and sign(value) != "zero":
-                return order, value
-    return None
+                yield order, value
 
 
 def normal_forms(
