@@ -209,8 +209,8 @@ class Judge:
         """A verdict of problem 11 as one of problem 6; None where it leaves the motion open, too.
 
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
-        momenta, too, if its conditions are inequalities (Arnold and Moser's without resonance) or H has a strict minimum:
-        at neighbouring momenta H is greater on a sphere about the motion than near it, still.
+        momenta, too, if its conditions are inequalities (Arnold and Moser's without resonance) or H has a strict
+        minimum: at neighbouring momenta H is greater on a sphere about the motion than near it, still.
         So it is with the relations that integrable velocity constraints keep; what is asymptotically stable at some
         values of them is stable (it is so under constant perturbations, Malkin), and does not come back from others.
         """
