@@ -224,16 +224,16 @@ def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], res
 
 
 def _two_eigenvectors(expanded: Expansion, values: Mapping[str, Any]) -> bool:
-    tower = Tower()
-    matrix = matrix_of(over_tower(expanded, tower, exact_values(expanded, tower, values) or {}).hamiltonian())
+    tower, exact = exact_values(expanded, values) or (Tower(), {})
+    matrix = matrix_of(over_tower(expanded, tower, exact).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
     return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
 def _with_zero_root(expanded: Expansion, values: Mapping[str, Any]) -> Judged:
     """A root is zero exactly, at exact values."""
-    tower = Tower()
-    numbers = over_tower(expanded, tower, exact_values(expanded, tower, values) or {})
+    tower, exact = exact_values(expanded, values) or (Tower(), {})
+    numbers = over_tower(expanded, tower, exact)
     balls = enclosed(expanded, values).hamiltonian()
 
     def ball_of(x: Element) -> arb:
@@ -274,10 +274,10 @@ def ball(value: Any) -> arb:
 
 def _exactly(expanded: Expansion, values: Mapping[str, Any]) -> Resonant:
     """Exact resonances, where values and coefficients hold nothing but square roots."""
-    tower = Tower()
-    exact = exact_values(expanded, tower, values)
-    if exact is None:
+    numbers = exact_values(expanded, values)
+    if numbers is None:
         return Resonant(None, None)
+    tower, exact = numbers
 
     def coefficients() -> list[Element]:
         quadratic = over_tower(expanded, tower, exact).hamiltonian()
