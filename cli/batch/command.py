@@ -129,7 +129,7 @@ def command(
     request = Request(
         folders=folders,
         out=out,
-        asked=BatchOptions(kinds, numbers, bound, form, detail_word),
+        options=BatchOptions(kinds, numbers, bound, form, detail_word),
         budget=Budget(seconds, limit),
         jobs=width,
         patterns=patterns,

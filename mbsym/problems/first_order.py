@@ -230,7 +230,7 @@ def _positions(
     def reached(start: set[str]) -> set[str]:
         found, pending = set(start), list(start)
         while pending:
-            new = needs[pending.pop()] - reachable
+            new = needs[pending.pop()] - found
             found |= new
             pending += new
         return found

@@ -104,8 +104,12 @@ def test_no_gap_is_suspected_where_the_energy_alone_is_definite():
 
 
 def test_what_has_no_real_points_is_no_set():
-    """grad of (y' x - x' y) + lambda (x' y' + k x y) vanishes off the rest where 1 + k lambda^2 = 0: nowhere."""
-    found = _sets(PLANE.format(rest="parameters: {k: positive}\nloads:\n  - potential: k*(x**2 + y**2)/2"))
+    """grad of (y' x - x' y) + lambda (x' y' + k x y) vanishes off the rest where 1 + k lambda^2 = 0: nowhere.
+
+    In skew coordinates, so that the second integral is none of the energies of x and of y.
+    """
+    loads = "parameters: {k: positive}\nloads:\n  - potential: k*((x + y)**2 + y**2)/2"
+    found = _sets(PLANE.replace("[x, y, 0]", "[x + y, y, 0]").format(rest=loads))
     (family,) = [one for one in found.families if len(one.integrals) == 2]
     (rest,) = family.sets
     assert rest.kind is Kind.STEADY
@@ -114,7 +118,7 @@ def test_what_has_no_real_points_is_no_set():
 def test_rates_that_say_nothing_are_not_told():
     """On x = x' = 0 of V = (x^2 + 4 y^2)/2 the motion is y'' = -4 y, and not  y' = y'  besides."""
     found = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2"))
-    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    known = SimpleNamespace(by_problem={10: found}, missing=lambda number: ())
     text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
     assert "On it: y'' = -4 y." in text
     assert "y' = y'" not in text
@@ -146,7 +150,7 @@ def test_a_rest_is_not_left_out_of_what_suffices():
 def test_a_family_without_stationary_points_is_told():
     """x' of a falling point is kept, and its gradient is nowhere zero."""
     found = _sets(PLANE.format(rest="loads:\n  - potential: 3*y"))
-    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    known = SimpleNamespace(by_problem={10: found}, missing=lambda number: ())
     text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
     assert "K = V0: It has no stationary points for almost all parameters (proved)." in text
 
