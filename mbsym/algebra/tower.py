@@ -27,6 +27,8 @@ from mbsym.expressions.angles import LinearForm
 
 #: As many roots can be adjoined, and so many terms may an element have.
 MOST_ROOTS, MOST_TERMS = 8, 4_000
+#: The parameter that is this number: algebraic numbers and it are in no relation.
+PI = "pi"
 #: So many products of terms may be formed in all: some seconds.
 MOST_WORK = 40_000_000
 
@@ -266,6 +268,8 @@ def angle_in(name: str) -> tuple[str, str, int] | None:
 
 
 def _value(name: str, values: Mapping[str, Any]) -> acb:
+    if name == PI:
+        return acb.pi()
     inside = angle_in(name)
     if name in values or inside is None:
         return acb(values[name])

@@ -158,7 +158,7 @@ def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
 
 @dataclass(frozen=True)
 class FirstTerm:
-    """The first term of V(x) of a system of one coordinate, ``coefficient`` x^``order``, on a border.
+    """A term of V(x) of a system of one coordinate, ``coefficient`` x^``order``, on a border: those before vanish.
 
     ``damped`` by a term of first order, x' = -V'(x)/d on the centre manifold, else the energy decides; ``conserved``:
     it does not fall; ``leaf``: velocity constraints keep relations, and what decays there is stable.
@@ -183,31 +183,34 @@ class FirstTerm:
         return Verdict(word, (HigherOrder.REDUCTION.value,), (Reason(Because.TERMS_OF_HIGHER_ORDER),))
 
 
-def first_term(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial], str]) -> FirstTerm | None:
-    """The first term that ``sign`` does not call zero; None of several coordinates, or where the energy may grow.
+def first_terms(analysis: Analysis, balance: Balance, sign: Callable[[Polynomial], str]) -> Iterator[FirstTerm]:
+    """The terms that ``sign`` does not call zero, in order, to the first that cannot vanish.
 
-    ``balance`` is that at the values ``sign`` is about.
+    None of several coordinates, where K does not vanish, or where the energy may grow.  ``balance`` is that at the
+    values ``sign`` is about.
     """
     if not installed("mbsym.problems.normal_forms"):
-        return None
+        return
     from mbsym.problems.normal_forms import problem
 
     scene = analysis.parameters_scene
     try:
         damping = analysis.linearisation.D.polynomials
         if len(damping) != 1 or not balance.law.bounded:
-            return None
+            return
         manifold = on_manifold(analysis) if analysis.system.constraints else None
-        term = problem.first_term(scene, analysis.system, analysis.equilibrium, manifold, sign)
-        if term is None or term[0] == 2:
-            return None
-        above, below = scene.ring.fraction(term[1])
-        for factor, exponent in below:
-            above = scene.ring.times(above, scene.ring.power(factor, exponent))
-        damped = sign(damping[0][0]) == "positive"
-        return FirstTerm(term[0], scene.ring.reduce(above), damped, balance.conserves, on_a_leaf(analysis))
+        damped, leaf = sign(damping[0][0]) == "positive", on_a_leaf(analysis)
+        for order, coefficient in problem.first_terms(scene, analysis.system, analysis.equilibrium, manifold, sign):
+            if order == 2:
+                return
+            above, below = scene.ring.fraction(coefficient)
+            for factor, exponent in below:
+                above = scene.ring.times(above, scene.ring.power(factor, exponent))
+            yield FirstTerm(order, scene.ring.reduce(above), damped, balance.conserves, leaf)
+            if sign(coefficient) in ("positive", "negative", "nonzero"):
+                return
     except (Failure, *NOT_THERE):
-        return None
+        return
 
 
 def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str, Any] | None = None) -> Verdict:
@@ -221,7 +224,7 @@ def of_one_coordinate(analysis: Analysis, verdict: Verdict, values: Mapping[str,
         return knowledge.signs(scene).sign(x)  # told anew: expansions bring numbers with them, as exp(1)
 
     sign = for_all if values is None else _sign_at(scene.ring, values)
-    term = first_term(analysis, balance if values is None else balance.at(values), sign)
+    term = next(first_terms(analysis, balance if values is None else balance.at(values), sign), None)
     if term is None:
         return verdict
     known = sign(term.coefficient)

@@ -209,14 +209,15 @@ class Judge:
         """A verdict of problem 11 as one of problem 6; None where it leaves the motion open, too.
 
         Problem 11 keeps the momenta of cyclic coordinates.  Instability then is one; stability is one of neighbouring
-        momenta, too, if its conditions are inequalities (Dirichlet's theorem, Arnold and Moser's without resonance).
+        momenta, too, if its conditions are inequalities (Arnold and Moser's without resonance) or H has a strict
+        minimum: at neighbouring momenta H is greater on a sphere about the motion than near it, still.
         So it is with the relations that integrable velocity constraints keep; what is asymptotically stable at some
         values of them is stable (it is so under constant perturbations, Malkin), and does not come back from others.
         """
         word = _WORDS.get(judged.outcome.value)
         if word is None:
             return None
-        lasting = judged.theorem in (HigherOrder.DEFINITE, HigherOrder.ARNOLD_MOSER)
+        lasting = judged.theorem in (HigherOrder.DEFINITE, HigherOrder.DEFINITE_HIGHER, HigherOrder.ARNOLD_MOSER)
         if word is not Word.UNSTABLE and higher.ignorable(self.analysis)[1]:
             if not lasting:
                 return None

@@ -42,6 +42,7 @@ from mbsym.expressions.tree import (
     multiply,
     sign_by_structure,
     text,
+    without_jump,
 )
 
 #: An expression has at most so many characters, tree nodes, levels of the tree, and nested parentheses.
@@ -395,7 +396,8 @@ class _Parser:
             right = self.sum(own)
             if operator.text == "/" and _is_zero(right):
                 self.complain("division-by-zero", "division by zero", operator.start, self.last_end)
-            left = self.grown(Operation(operator.text, left, right, self.span_of(start, self.last_end)), left, right)
+            whole = Operation(operator.text, left, right, self.span_of(start, self.last_end))
+            left = self.grown(without_jump(whole) if operator.text == "*" else whole, left, right)
         return left
 
     @property

@@ -8,7 +8,7 @@ how to differentiate itself; it knows no mechanics and no polynomials.  ``mbsym.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -262,6 +262,63 @@ def multiply(left: Expression, right: Expression) -> Expression:
     return Operation("*", left, right)
 
 
+def without_jump(product: Expression) -> Expression:
+    """sign(u) u**n = |u| u**(n - 1) and sign(u) |u|**n = u |u|**(n - 1) put in: what vanishes with u does not jump.
+
+    So |u|**3 has two derivatives for whoever expands about u = 0.  A product of other factors is given back as it is.
+    """
+    for u, rest in _signs(product, set()):
+        joined = _times_sign(rest, u, set())
+        if joined is not None:
+            return without_jump(replace(joined, span=product.span))
+    return product
+
+
+def _signs(product: Expression, seen: set[int]) -> Iterator[tuple[Expression, Expression]]:
+    """(u, the other factors) for each factor sign(u); what many parents share is ``seen`` once."""
+    if id(product) in seen:
+        return
+    seen.add(id(product))
+    match product:
+        case Call("sign", u):
+            yield u, ONE
+        case Negative(operand):
+            yield from ((u, negative(rest)) for u, rest in _signs(operand, seen))
+        case Operation("*", left, right):
+            yield from ((u, multiply(rest, right)) for u, rest in _signs(left, seen))
+            yield from ((u, multiply(left, rest)) for u, rest in _signs(right, seen))
+        case Operation("/", left, right):
+            yield from ((u, divide(rest, right)) for u, rest in _signs(left, seen))
+
+
+def _times_sign(product: Expression, u: Expression, seen: set[int]) -> Expression | None:
+    """sign(u) times a product, continuous; None where no factor is a power of u or |u|."""
+    if id(product) in seen:
+        return None
+    seen.add(id(product))
+    if product == u:
+        return Call("abs", u, product.span)
+    if product == Call("abs", u):
+        return u
+    match product:
+        case Operation("**", base, Number(n)) if n > 1:
+            joined = _times_sign(base, u, seen) if base in (u, Call("abs", u)) else None
+            return None if joined is None else multiply(joined, power(base, Number(n - 1)))
+        case Negative(operand):
+            joined = _times_sign(operand, u, seen)
+            return None if joined is None else negative(joined)
+        case Operation("*", left, right):
+            joined = _times_sign(left, u, seen)
+            if joined is not None:
+                return multiply(joined, right)
+            joined = _times_sign(right, u, seen)
+            return None if joined is None else multiply(left, joined)
+        case Operation("/", left, right):
+            joined = _times_sign(left, u, seen)
+            return None if joined is None else divide(joined, right)
+    return None
+
+
 def divide(left: Expression, right: Expression) -> Expression:
     if is_number(left, 0):
         return ZERO
@@ -296,12 +353,17 @@ class Derivation:
     def __init__(self, rates: Mapping[str, Expression]) -> None:
         self.rates = rates
         self._known: dict[int, Expression] = {}
+        self._signs_arise = False
 
     def __call__(self, expression: Expression) -> Expression:
         derivative = self._known.get(id(expression))
         if derivative is None:
             derivative = self._known[id(expression)] = self._derivative(expression)
         return derivative
+
+    def _joined(self, left: Expression, right: Expression) -> Expression:
+        product = multiply(left, right)
+        return without_jump(product) if self._signs_arise else product
 
     def _derivative(self, expression: Expression) -> Expression:
         match expression:
@@ -316,7 +378,7 @@ class Derivation:
             case Operation("-", left, right):
                 return subtract(self(left), self(right))
             case Operation("*", left, right):
-                return add(multiply(self(left), right), multiply(left, self(right)))
+                return add(self._joined(self(left), right), self._joined(left, self(right)))
             case Operation("/", left, right):
                 second = divide(multiply(left, self(right)), power(right, number(2)))
                 return subtract(divide(self(left), right), second)
@@ -327,7 +389,7 @@ class Derivation:
                 lowered: Expression = subtract(exponent, ONE)
                 if isinstance(exponent, Number):
                     lowered = Number(exponent.value - 1)
-                return multiply(multiply(exponent, power(base, lowered)), inner)
+                return self._joined(multiply(exponent, power(base, lowered)), inner)
             case Call(function, argument, table=Table() as table, order=order):
                 inner = self(argument)
                 if is_number(inner, 0):
@@ -341,6 +403,7 @@ class Derivation:
                 raise ValueError(f"{function} has a jump, and no derivative")
             case Call(function, argument):
                 inner = self(argument)
+                self._signs_arise |= function == "abs" and not is_number(inner, 0)
                 return ZERO if is_number(inner, 0) else multiply(_derivative_of_function(function, argument), inner)
         raise TypeError(f"not an expression: {expression!r}")
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from typing import Any, TypeVar
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
@@ -23,7 +24,7 @@ from mbsym.algebra.ring import Polynomial
 from mbsym.algebra.signs import SIGN_WORDS
 from mbsym.algebra.terms import univariate
 from mbsym.analysis import Analysis
-from mbsym.analysis.higher import FirstTerm, first_term
+from mbsym.analysis.higher import FirstTerm, first_terms
 from mbsym.analysis.judge import Judge as OneJudge
 from mbsym.maps.admissible import Admissibility, admissibility
 from mbsym.maps.boundaries import Boundaries, Condition, Origin, boundaries
@@ -79,7 +80,7 @@ def bounded(analysis: Analysis, there: Section, kept: Admissibility) -> Boundari
     conditions = [Condition(Origin.ENERGY, x, about=str(x)) for x in there.asked]
     degenerate = first_term_in(analysis, there)
     if degenerate is not None:
-        conditions.append(Condition(Origin.HIGHER_ORDER, degenerate.coefficient))
+        conditions += [Condition(Origin.HIGHER_ORDER, x) for x in degenerate.coefficients]
     return boundaries(there, [*(demand.condition for demand in kept.demands), *conditions], kept.known)
 
 
@@ -87,24 +88,29 @@ def bounded(analysis: Analysis, there: Section, kept: Admissibility) -> Boundari
 class ByFirstTerm:
     """Decides cells of a section in which K of the one coordinate vanishes, by the first term of V that does not.
 
-    ``coefficient`` and ``damping``: what has their signs, polynomials in the axes.
+    ``coefficients`` of ``terms``, and ``damping``: what has their signs, polynomials in the axes.
     """
 
-    term: FirstTerm
-    coefficient: Any
+    terms: tuple[FirstTerm, ...]
+    coefficients: tuple[Any, ...]
     damping: Any
 
     def __call__(self, cell: Cell) -> Cell:
-        """The cell, decided if its verdict is open and the sign of the coefficient at its sample decides."""
+        """The cell, decided if its verdict is open and a coefficient does not vanish at its sample."""
         if cell.judged is None or not cell.judged.verdict.word.open:
             return cell
-        word = SIGN_WORDS[frozenset({_sign(cell.sample, self.coefficient)})]
-        verdict = replace(self.term, damped=_sign(cell.sample, self.damping) > 0).verdict(word)
+        signs = [_sign(cell.sample, x) for x in self.coefficients]
+        first = next((k for k, x in enumerate(signs) if x), -1)
+        term = replace(self.terms[first], damped=_sign(cell.sample, self.damping) > 0)
+        verdict = term.verdict(SIGN_WORDS[frozenset({signs[first]})])
         return cell if verdict is None else replace(cell, said=replace(cell.judged, verdict=verdict))
 
 
-def first_term_in(analysis: Analysis, there: Section) -> ByFirstTerm | None:
-    """What decides cells of a section in which K of the one coordinate vanishes; None of others."""
+def first_term_in(analysis: Analysis, there: Section, most: int | None = 1) -> ByFirstTerm | None:
+    """What decides cells of a section in which K of the one coordinate vanishes; None of others.
+
+    By ``most`` terms of V; the signs of all their coefficients have to be told apart by cells.
+    """
     if there.constant is not None or len(there.parts) != 1 or any(x != 0 for row in there.parts[0].K for x in row):
         return None
 
@@ -120,8 +126,9 @@ def first_term_in(analysis: Analysis, there: Section) -> ByFirstTerm | None:
 
     numbers = {name: x for name, x in there.numbers.items() if name in analysis.system.parameter_names}
     try:
-        term = first_term(analysis, analysis.balance.at(numbers), sign_of)
-        return None if term is None else ByFirstTerm(term, carried(term.coefficient), there.parts[0].D[0][0])
+        terms = tuple(islice(first_terms(analysis, analysis.balance.at(numbers), sign_of), most))
+        coefficients = tuple(carried(term.coefficient) for term in terms)
+        return ByFirstTerm(terms, coefficients, there.parts[0].D[0][0]) if terms else None
     except Failure:
         return None
 

@@ -531,8 +531,13 @@ class Balance:
         return total
 
     def _degrees(self, base: Expression) -> set[int]:
-        """The degrees in the velocities of the parts of a formula; two of them where it is no polynomial in them."""
+        """The degrees in the velocities of the parts of a formula; two of them where it is no polynomial in them.
+
+        |u| is homogeneous as u is (for positive factors, which is all that Euler's theorem asks for).
+        """
         ring = self.scene.ring
+        if isinstance(base, Call) and base.function == "abs":
+            return self._degrees(base.argument)
         parts = _by_velocities(ring, self.scene.lower(base), self.scene.system.coordinates)
         return {0, 1} if parts is None else {sum(exponents) for exponents in parts} or {0}
 

@@ -73,9 +73,9 @@ class StabilityMeasure:
         self.section = section
         #: What parameters have to keep; ``left_out`` of it could not be expressed in the axes.
         self.admissibility = kept_in(analysis, section)
-        self._by_first_term = first_term_in(analysis, section)
+        self._by_first_term = first_term_in(analysis, section, most=None)
         further = [
-            *([] if self._by_first_term is None else [self._by_first_term.coefficient]),
+            *([] if self._by_first_term is None else self._by_first_term.coefficients),
             *section.undefined,
             *section.asked,
             *(demand.condition.polynomial for demand in self.admissibility.demands),

@@ -415,3 +415,61 @@ values: {{m: 1, k: 1, l: 1}}
     across = text.replace("k*(x**2 + y**2 + u**2 + v**2)", "k*(x**2 + 2*y**2 + u**2 + 2*v**2)")
     assert word(across) is Word.STABLE
     assert word(across.replace("+ 2*", "+ ").replace("k*(x**2", "k*(2*x**2").replace("u**2", "2*u**2")) is Word.UNSTABLE
+
+
+RELATIVE = """
+mbsym: 1
+name: two on a line
+parameters: {m: positive, u: real}
+bodies:
+  - {name: p, attached to: 0, mass: m, connection point: [x, 0, 0], coordinates: [x]}
+  - {name: q, attached to: 0, mass: m, connection point: [y, 0, 0], coordinates: [y]}
+loads:
+  - potential: POTENTIAL
+motion: {x: {rate: 2*u}, y: {rate: u}}
+values: {m: 1, u: 1}
+"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "wanted"),
+    [
+        ("(x - 2*y)**4", Word.STABLE_BUT_CYCLIC),
+        ("(x - 2*y)**6", Word.STABLE_BUT_CYCLIC),
+        ("-(x - 2*y)**4", Word.UNSTABLE),
+        ("(x - 2*y)**3", Word.UNSTABLE),
+    ],
+)
+def test_uniform_motion_is_judged_as_rest(potential: str, wanted: Word) -> None:
+    """s = x - 2 y: s'' = -5 V'(s)/m at every value of the momentum 2 x' + y'."""
+    text = RELATIVE.replace("POTENTIAL", potential)
+    assert word(text) is wanted
+    assert (
+        word(text.replace("{rate: 2*u}", "0").replace("{rate: u}", "0").replace(", u: real", "").replace(", u: 1", ""))
+        is wanted
+    )
+
+
+FREE_HOOP = """
+mbsym: 1
+name: bead on a hoop that turns freely
+parameters: {m: positive, R: positive, g: positive, J: positive, w: positive, k: real}
+bodies:
+  - {name: hoop, attached to: 0, mass: 1, inertia: [J, J, J], inertia about: joint,
+     rotation: {axes: [3], angles: [psi]}, coordinates: [psi]}
+  - {name: bead, attached to: hoop, mass: m, coordinates: [theta], connection point: [R*sin(theta), 0, -R*cos(theta)]}
+loads:
+  - uniform gravity: {acceleration: g, direction: [0, 0, -1]}
+  - potential: k*theta**4
+motion: {psi: {rate: w}, theta: 0}
+values: {m: 1, R: 1, g: 4, J: 2, w: 2, k: 0}
+"""
+
+
+@pytest.mark.parametrize(("k", "wanted"), [("0", Word.STABLE_BUT_CYCLIC), ("-2", Word.UNSTABLE)])
+def test_a_minimum_of_the_amended_potential_is_one_of_neighbouring_momenta_too(k: str, wanted: Word) -> None:
+    """p^2/(2 (J + m R^2 sin^2 x)) - m g R cos x + k x^4 at p = J w, w^2 = g/R: the coefficient of x^4 is
+
+    m g R (1/8 + m R^2/(2 J)) + k = 3/2 + k.
+    """
+    assert word(FREE_HOOP.replace("k: 0}", f"k: {k}}}")) is wanted

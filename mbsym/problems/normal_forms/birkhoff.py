@@ -172,10 +172,10 @@ def is_zero_exactly(
     expansion: Expansion, values: Mapping[str, Any], vector: Sequence[int], omega: Sequence[arb]
 ) -> bool:
     """``vector`` of the absolute frequencies |Omega_k|, ``omega`` with the signs of their energies."""
-    tower = Tower()
-    exact = exact_values(expansion, tower, values)
-    if exact is None:
+    numbers = exact_values(expansion, values)
+    if numbers is None:
         return False
+    tower, exact = numbers
     try:
         return of_hamiltonian(tower, over_tower(expansion, tower, exact).hamiltonian(), vector, omega)
     except (Failure, ZeroDivisionError):

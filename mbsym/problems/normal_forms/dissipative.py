@@ -50,10 +50,10 @@ def state_field(numbers: Numbers, order: int = 3) -> tuple[list[Truncated], tupl
 
 def judged_field(to: Callable[[int], Expansion], values: Mapping[str, Any]) -> Judged:
     """What is decided at exact values; the Lagrangian is expanded ``to`` a higher order only where that decides."""
-    tower = Tower()
-    exact = exact_values(to(2), tower, values)
-    if exact is None:
+    numbers = exact_values(to(2), values)
+    if numbers is None:
         return Judged(Outcome.UNDECIDED, Theorem.NONE, Why.IRRATIONAL)
+    tower, exact = numbers
 
     def field(order: int) -> tuple[list[Truncated], tuple[str, ...]]:
         return state_field(over_tower(to(order + 1), tower, exact), order)

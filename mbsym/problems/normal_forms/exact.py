@@ -19,30 +19,36 @@ from mbsym.algebra.failures import Failure, NoClosedForm, NoValue, SingularPoint
 from mbsym.algebra.matrices import adjugate_at, adjugate_slope_at, determinant_by_traces, dot, faddeev, inverted
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.terms import evaluated
-from mbsym.algebra.tower import Element, Tower, angle_in
+from mbsym.algebra.tower import PI, Element, Tower, angle_in
 from mbsym.algebra.truncated import Coefficients, Space, Truncated
+from mbsym.expressions.tree import Expression, divide, number
+from mbsym.mechanics.kinematics import Scene
 from mbsym.problems.normal_forms.expansion import Expansion, Numbers
 
 
-def exact_values(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) -> dict[str, Element] | None:
-    """Values in the tower: rational ones, and those that the description writes with square roots of numbers.
+def exact_values(expansion: Expansion, values: Mapping[str, Any]) -> tuple[Tower, dict[str, Element]] | None:
+    """Values in a tower: rational ones, and those that the description writes with pi and square roots of numbers.
+
+    Sines and cosines of them, under such names as ``cos(a/2)``, where these are roots of numbers.  pi is a parameter of
+    the tower: as it is transcendental (Lindemann), a formula in it and in algebraic numbers is zero as a formula only.
 
     None where there are others, or roots that are not independent (sqrt(2) beside sqrt(8)): what is zero would not be
     told then.
     """
-    written = {parameter.name: parameter.value for parameter in expansion.scene.system.parameters}
+    scene, tower = expansion.scene, Tower((PI,))
+    written = {parameter.name: parameter.value for parameter in scene.system.parameters}
     exact: dict[str, Element] = {}
     for name, value in values.items():
-        if isinstance(value, Fraction):
-            exact[name] = tower.number(value)
-            continue
-        expression = written.get(name)
+        expression = number(value) if isinstance(value, Fraction) else written.get(name)
         if expression is None:
             return None
         try:
-            exact[name] = Lowering(tower, {})(expression)
+            exact[name] = Lowering(tower, {PI: tower.parameter(PI)})(expression)
+            exact |= _angle(scene, tower, name, expression)
         except (Failure, ZeroDivisionError):
             return None
+        if isinstance(value, Fraction):
+            continue
         if not tower.enclosed(exact[name], {}).real.overlaps(value):
             return None  # it is another number than that of the description
     squares = [tower.rational(tower.made(x, tower.one.bottom)) for x in tower.squares]
@@ -52,7 +58,21 @@ def exact_values(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) 
             whole = fmpq(0) if x is None else whole * x
         if whole <= 0 or rational_root(whole) is not None:
             return None
-    return exact
+    return tower, exact
+
+
+def _angle(scene: Scene, tower: Tower, name: str, expression: Expression) -> dict[str, Element]:
+    """The sine and the cosine that formulas have of a parameter, where they are roots of numbers at this value."""
+    ring = scene.ring
+    share = ring.angles.get(name)
+    if share is None:
+        return {}
+    letters = (f"{of}({name if share == 1 else f'{name}/{share}'})" for of in ("sin", "cos"))
+    try:
+        numbers = scene.lower.angle(divide(expression, number(share)))
+        return {letter: Carrier(ring, tower, {})(x) for letter, x in zip(letters, numbers, strict=True)}
+    except (Failure, NoValue):  # as of 1
+        return {}
 
 
 def over_tower(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) -> Numbers:
@@ -61,7 +81,9 @@ def over_tower(expansion: Expansion, tower: Tower, values: Mapping[str, Any]) ->
     environment |= {name: tower.parameter(name) for name in tower.parameters}
     ring = expansion.scene.ring
     tower.is_positive = lambda x: ring.is_positive(in_ring(tower, ring, x))
-    carry = Carrier(ring, tower, environment)
+    angles = {key: angle for key in environment if (angle := angle_in(key)) is not None and key not in tower.parameters}
+    indices = {key: ring.index({"cos": "cosine", "sin": "sine"}[of], name) for key, (of, name, _) in angles.items()}
+    carry = Carrier(ring, tower, environment, {index: environment[key] for key, index in indices.items()})
     return Numbers(expansion, carry, tower.reciprocal, tower.zero, tower.one)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, partial
 from math import factorial, prod
@@ -127,28 +127,27 @@ def by_energy(
         return by_potential(size, derivative, field, conserved, only=True, gyroscopic=gyroscopic)
 
 
-def first_term(
+def first_terms(
     scene: Scene,
     whole: Any,
     equilibrium: Equilibrium | None,
     manifold: Callable[[int], OnManifold] | None,
     sign: Callable[[Polynomial], str],
-) -> tuple[int, Polynomial] | None:
-    """The order and the coefficient of the first term of V(x) of the one coordinate that ``sign`` does not call zero.
+) -> Iterator[tuple[int, Polynomial]]:
+    """Orders and coefficients of the terms of V(x) of the one coordinate that ``sign`` does not call zero, in order.
 
-    None of several coordinates, or where all terms are zero.
+    None of several coordinates.
     """
     made = _Expanded(scene, whole, equilibrium, False, (), manifold)
-    for most in (4, MOST_ORDER):
+    for least, most in ((2, 4), (5, MOST_ORDER)):
         expanded = made.plain(most)
         parts = potential(expanded)
         if parts is None or len(expanded.coordinates) != 1:
-            return None
-        for order in range(2, most + 1):
+            return
+        for order in range(least, most + 1):
             value = parts.get((0,) * order)
             if value is not None and scene.ring.is_zero(value) is not True and sign(value) != "zero":
-                return order, value
-    return None
+                yield order, value
 
 
 def normal_forms(
@@ -225,16 +224,16 @@ def _conservative(to: Callable[[int], Expansion], values: Mapping[str, Any], res
 
 
 def _two_eigenvectors(expanded: Expansion, values: Mapping[str, Any]) -> bool:
-    tower = Tower()
-    matrix = matrix_of(over_tower(expanded, tower, exact_values(expanded, tower, values) or {}).hamiltonian())
+    tower, exact = exact_values(expanded, values) or (Tower(), {})
+    matrix = matrix_of(over_tower(expanded, tower, exact).hamiltonian())
     trace = even_part(matrix, tower.zero, tower.one)[1]
     return all(x.is_zero() for x in two_eigenvectors(matrix, trace))
 
 
 def _with_zero_root(expanded: Expansion, values: Mapping[str, Any]) -> Judged:
     """A root is zero exactly, at exact values."""
-    tower = Tower()
-    numbers = over_tower(expanded, tower, exact_values(expanded, tower, values) or {})
+    tower, exact = exact_values(expanded, values) or (Tower(), {})
+    numbers = over_tower(expanded, tower, exact)
     balls = enclosed(expanded, values).hamiltonian()
 
     def ball_of(x: Element) -> arb:
@@ -275,10 +274,10 @@ def ball(value: Any) -> arb:
 
 def _exactly(expanded: Expansion, values: Mapping[str, Any]) -> Resonant:
     """Exact resonances, where values and coefficients hold nothing but square roots."""
-    tower = Tower()
-    exact = exact_values(expanded, tower, values)
-    if exact is None:
+    numbers = exact_values(expanded, values)
+    if numbers is None:
         return Resonant(None, None)
+    tower, exact = numbers
 
     def coefficients() -> list[Element]:
         quadratic = over_tower(expanded, tower, exact).hamiltonian()

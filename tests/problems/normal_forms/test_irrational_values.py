@@ -6,6 +6,7 @@ import pytest
 
 import mbsym
 from mbsym.problems.normal_forms import Outcome, Theorem, Why
+from mbsym.problems.stability.words import Word
 
 #: A charge on the top of a hill in a magnetic field: w = n +- sqrt(n^2 - k), of which w_1 w_2 = k, w_1 + w_2 = 2 n.
 HILL = """
@@ -66,3 +67,42 @@ def test_the_frequencies_of_a_penning_trap_add_up():
     body = "  - {name: c, attached to: b, connection point: [0, 0, z], coordinates: [z], mass: 1}\nloads:"
     found = mbsym.loads(text.replace("loads:", body)).normal_forms.at_values
     assert [one.vector for one in found.resonances] == [(1, -2, 1)]
+
+
+PLANE = """
+mbsym: 1
+name: a valley
+parameters: {m: positive, a: real}
+bodies:
+  - {name: p, attached to: 0, mass: m, connection point: [x, y, 0], coordinates: [x, y]}
+loads:
+  - potential: (BORDER)*x**2 + FURTHER + y**2
+  - rayleigh: c*(x_dot**2 + y_dot**2)
+motion: {x: 0, y: 0}
+values: {m: 1, a: VALUE}
+"""
+
+
+@pytest.mark.parametrize("damping", [0, 1])
+@pytest.mark.parametrize(("further", "stays"), [("x**4 + x*y**2", True), ("x**2*y + x**4/5", False), ("a*x**3", False)])
+@pytest.mark.parametrize(
+    ("border", "value", "rises"),
+    [
+        ("cos(a) - 1/2", "pi/3", False),
+        ("cos(a/2) - sqrt(3)/2", "pi/3", False),
+        ("cos(2*a) + 1/2", "pi/3", False),
+        ("tan(a) - 1", "pi/4", True),
+        ("sin(a) - cos(a)", "-3*pi/4", False),
+        ("a**2 - pi**2/9", "pi/3", True),
+        ("a*cos(a) - pi/6", "pi/3", False),
+        ("a*cos(a) - sqrt(2)*pi/8", "pi/4", True),
+    ],
+)
+def test_terms_of_higher_order_where_a_sine_makes_the_border(border, value, rises, further, stays, damping):
+    """x^2 y + x^4/5 + y^2 is -x^4/20 along y = -x^2/2; beside the border the first approximation decides."""
+    text = PLANE.replace("BORDER", border).replace("FURTHER", further).replace("VALUE", value)
+    text = text.replace("c*(", "(") if damping else text.replace("  - rayleigh: c*(x_dot**2 + y_dot**2)\n", "")
+    staying = Outcome.ASYMPTOTIC if damping else Outcome.STABLE
+    assert mbsym.loads(text).normal_forms.at_values.outcome is (staying if stays else Outcome.UNSTABLE)
+    beside = mbsym.loads(text.replace(f"a: {value}", f"a: {value} + 1/10**40"), (4, 5, 6)).stability.numerical
+    assert beside.word is ((Word.ASYMPTOTIC if damping else Word.STABLE) if rises else Word.UNSTABLE)
