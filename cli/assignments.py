@@ -139,10 +139,8 @@ def with_settings(file: Path, system: System, settings: Sequence[str], options: 
         values[name] = value
         for _ in system.parameters:  # those in terms of others, which may be in terms of others
             values[name] = substitute(values[name], {k: v for k, v in known.items() if k != name})
-        if lacking := sorted(names(values[name])):
-            assigned.complain(
-                name, "missing-value", Message("no value for [[names]]", names=", ".join(lacking)), options
-            )
+        if unset := sorted(names(values[name])):
+            assigned.complain(name, "missing-value", Message("no value for [[names]]", names=", ".join(unset)), options)
     if not options.complaints:
         contradictions(file, Lack((), contradictions_of(system, values)), assigned, options)
     return with_values(system, values)
@@ -168,17 +166,12 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
 def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options) -> None:
     """Values that contradict a sign or a relation, or are none: said of ``--set`` where they come from there."""
-    for contradiction in lack.contradictions:
-        if contradiction.name in assigned.texts:
-            assigned.complain(contradiction.name, contradiction.code, contradiction.text, options, contradiction.hint)
+    for clash in lack.contradictions:
+        if clash.name in assigned.texts:
+            assigned.complain(clash.name, clash.code, clash.text, options, clash.hint)
         else:
             options.complaints.append(
-                render_option(
-                    Complaint(contradiction.code, contradiction.text, None, contradiction.hint),
-                    "",
-                    str(file),
-                    options.say,
-                )
+                render_option(Complaint(clash.code, clash.text, None, clash.hint), "", str(file), options.say)
             )
 
 

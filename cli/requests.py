@@ -125,12 +125,7 @@ def _motion(
 
 
 def _read(
-    field: Field,
-    typed: Any,
-    system: System | None,
-    texts: Mapping[str, Any],
-    options: Options,
-    motion: Scenario | None,
+    field: Field, typed: Any, system: System | None, texts: Mapping[str, Any], options: Options, motion: Scenario | None
 ) -> Any:
     match field.kind:
         case Number() as kind:

@@ -79,10 +79,8 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
     """The cases of one description.  ``strict``: a claim that is not proved to hold has failed."""
     yield _reading(row)
     if row.outcome in _ENDED:
-        message = row.message or "; ".join(row.notes)
-        yield Case(
-            "derivation", "error", f"{row.outcome}: {message}" if message else str(row.outcome), "\n".join(row.notes)
-        )
+        text = row.message or "; ".join(row.notes)
+        yield Case("derivation", "error", f"{row.outcome}: {text}" if text else str(row.outcome), "\n".join(row.notes))
     elif row.outcome in _UNTRIED:
         yield Case("derivation", "skipped", str(row.outcome))
     for problem in row.problems:
@@ -94,8 +92,8 @@ def cases(row: Row, strict: bool = False) -> Iterator[Case]:
         yield _claim(number, claim, strict)
     for check in row.checks:
         kind = "failure" if check.failed else "skipped" if check.outcome == "undecided" else ""
-        message = f"{check.first} against {check.second}: {check.outcome}"
-        yield Case(f"self-check: {check.name}", kind, message, f"{message}\n{check.detail}")
+        text = f"{check.first} against {check.second}: {check.outcome}"
+        yield Case(f"self-check: {check.name}", kind, text, f"{text}\n{check.detail}")
 
 
 def _reading(row: Row) -> Case:

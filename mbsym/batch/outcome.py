@@ -82,8 +82,7 @@ class ProblemRow(Part, frozen=True):
     title: Annotated[str, "what it is about"]
     status: Annotated[str, words("derived", "none"), "whether there is a result"]
     code: Annotated[
-        str | None,
-        "kind of the reason why there is no result: no-closed-form, internal-error, withdrawn, ...",
+        str | None, "kind of the reason why there is no result: no-closed-form, internal-error, withdrawn, ..."
     ] = None
     reason: Annotated[str | None, "the same in a sentence"] = None
     hint: Annotated[str | None, "what to try next, in a sentence"] = None

@@ -54,11 +54,7 @@ def suggestions(text: str, line: int, column: int, system: System | None = None)
     if place.is_value:
         return list(_values(place, text, system))
     known = keys_in(place.path)
-    keys = [
-        Suggestion(key, "key", definition.meaning, f"{key}: ")
-        for key, definition in known.items()
-        if key not in place.beside
-    ]
+    keys = [Suggestion(key, "key", rule.meaning, f"{key}: ") for key, rule in known.items() if key not in place.beside]
     if keys or not any(isinstance(value_type, Named) and value_type.of for value_type in types_at(place.path)):
         return keys
     return [Suggestion(name, "name", "a coordinate", f"{name}: ") for name in _coordinates(system)]
@@ -106,8 +102,7 @@ def _names(text: str, system: System | None, velocities: bool) -> Iterator[Sugge
             for prescribed in system.prescribed
         )
         yield from (
-            Suggestion(system_input.name, "name", system_input.meaning or "an input", system_input.name)
-            for system_input in system.inputs
+            Suggestion(signal.name, "name", signal.meaning or "an input", signal.name) for signal in system.inputs
         )
         yield from (Suggestion(notation.name, "name", "a notation", notation.name) for notation in system.notation)
         yield from (Suggestion(table.name, "function", "a table", f"{table.name}(") for table in system.tables)

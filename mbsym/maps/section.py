@@ -352,11 +352,7 @@ class Unfit(Failure):
     code = "section"
 
     def __init__(self, complaints: Sequence[Complaint]) -> None:
-        super().__init__(
-            "; ".join(
-                f"{complaint.name}: {complaint.fault.value} {complaint.about}".rstrip() for complaint in complaints
-            )
-        )
+        super().__init__("; ".join(f"{x.name}: {x.fault.value} {x.about}".rstrip() for x in complaints))
         self.complaints = tuple(complaints)
 
     @property

@@ -116,9 +116,7 @@ def measured_data(measured: MeasuredOrders | str) -> doc.Measured:
         relative=[_two_digits(x) for x in measured.relative],
         errors=[
             doc.Error(
-                variable=name,
-                errors=[_two_digits(x) for x in errors],
-                order=None if order is None else round(order, 2),
+                variable=name, errors=[_two_digits(x) for x in errors], order=None if order is None else round(order, 2)
             )
             for name, errors, order in zip(measured.names, measured.errors, measured.orders, strict=True)
         ],

@@ -193,11 +193,7 @@ def _without(occurrences: Occurrences, event: int) -> Occurrences:
         which=occurrences.which[rest],
         turns=occurrences.turns[rest],
         states=occurrences.states[:, rest],
-        undecided=tuple(
-            undecided_event
-            for undecided_event in occurrences.undecided
-            if undecided_event is not occurrences.events[event]
-        ),
+        undecided=tuple(item for item in occurrences.undecided if item is not occurrences.events[event]),
     )
 
 

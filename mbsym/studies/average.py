@@ -8,18 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from mbsym.expressions.message import Message
 from mbsym.studies.request import Named, Names, Number
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Document,
-    Refusal,
-    Single,
-    Study,
-    Unfit,
-    Watch,
-    failed,
-    refused,
-)
+from mbsym.studies.study import Answer, Asked, Document, Refusal, Single, Study, Unfit, Watch, failed, refused
 
 if TYPE_CHECKING:
     from mbsym.model.system import System

@@ -213,7 +213,7 @@ def _extremes(system: System, values: Mapping[str, Fraction | float | str], budg
     from mbsym.simulation import read_values
 
     read: dict[str, Expression] = read_values(system, values)
-    extreme_cases = measured(scenario(system, read), ring_of(system), read, budget)
+    result = measured(scenario(system, read), ring_of(system), read, budget)
     digits = Table.of(
         ("kind", "subject", "size", "quantity", "digits_float64", "digits_float32", "condition", "loses"),
         (
@@ -227,17 +227,17 @@ def _extremes(system: System, values: Mapping[str, Fraction | float | str], budg
                 row.digits.condition,
                 row.digits.verdict,
             )
-            for row in extreme_cases.rows
+            for row in result.rows
         ),
     )
     verdicts = Table.of(
         ("kind", "subject", "size", "verdict", "theorem", "float64_wrong"),
         (
             (x.kind, x.subject, x.size, x.judged.exact.word.value, x.judged.exact.theorem, x.judged.wrong(FLOAT64))
-            for x in extreme_cases.verdicts
+            for x in result.verdicts
         ),
     )
-    where = extreme_cases.singularities
+    where = result.singularities
     singular = Table.of(
         ("where", "fails", "joint", "proved"),
         (
@@ -252,16 +252,12 @@ def _extremes(system: System, values: Mapping[str, Fraction | float | str], budg
         ),
     )
     complete = where is not None and where.complete
-    return ExtremesStudy(
-        digits, verdicts, singular, complete, tuple(sentences(extreme_cases)), extreme_cases.left_out, extreme_cases
-    )
+    return ExtremesStudy(digits, verdicts, singular, complete, tuple(sentences(result)), result.left_out, result)
 
 
-def _label(singular_set: SingularSet, number: int, name: str) -> str:
+def _label(locus: SingularSet, number: int, name: str) -> str:
     """A value of a set's coordinate, exact where it is known."""
-    return (
-        singular_set.values[number].label if singular_set.values else f"{float(singular_set.places[number][name]):.12g}"
-    )
+    return locus.values[number].label if locus.values else f"{float(locus.places[number][name]):.12g}"
 
 
 def _equilibria(system: System, values: Mapping[str, Fraction | int | str], within: float) -> EquilibriaStudy:
@@ -326,10 +322,7 @@ def tradeoff(
 
 
 def extremes(
-    source: str | Path | Analysis,
-    *,
-    values: Mapping[str, Fraction | float | str] | None = None,
-    budget: float = 60.0,
+    source: str | Path | Analysis, *, values: Mapping[str, Fraction | float | str] | None = None, budget: float = 60.0
 ) -> ExtremesStudy:
     """How many digits each quantity keeps at the extremes, as far as ``budget`` goes: ``mbsym extremes``.
 

@@ -11,18 +11,7 @@ from mbsym.report.language import Language
 from mbsym.studies.closing import closed_motion, not_closed
 from mbsym.studies.request import Flag, Number, Settings, Value, Words
 from mbsym.studies.request import duration as length
-from mbsym.studies.study import (
-    Answer,
-    Asked,
-    Exit,
-    Folder,
-    Line,
-    Refusal,
-    Study,
-    Watch,
-    failed,
-    line,
-)
+from mbsym.studies.study import Answer, Asked, Exit, Folder, Line, Refusal, Study, Watch, failed, line
 
 if TYPE_CHECKING:
     from mbsym.numerics.methods.interface import Breakdown

@@ -259,13 +259,8 @@ def complaint_view(document: Written, complaint: Complaint) -> Json:
     )
 
 
-def _told(complaint: Complaint, start: int, end: int, line: int, column: int) -> Json:
-    fields = {
-        "severity": complaint.severity,
-        "code": complaint.code,
-        "message": complaint.message,
-        "hint": complaint.hint,
-    }
+def _told(fault: Complaint, start: int, end: int, line: int, column: int) -> Json:
+    fields = {"severity": fault.severity, "code": fault.code, "message": fault.message, "hint": fault.hint}
     return fields | {"from": start, "to": end, "line": line, "column": column}
 
 
@@ -308,11 +303,7 @@ def mathml_of(node: Node) -> str | None:
         return None
     if all(isinstance(item, Sequence) for item in node.items):
         rows = [_cells(item) for item in node.items]
-        return (
-            None
-            if any(row_cells is None for row_cells in rows)
-            else math(table([row_cells for row_cells in rows if row_cells is not None]))
-        )
+        return None if any(row is None for row in rows) else math(table([row for row in rows if row is not None]))
     cells = _cells(node)
     return None if cells is None else math(row(cells))
 

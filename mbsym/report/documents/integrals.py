@@ -174,9 +174,7 @@ class DarbouxAlong(Part, frozen=True):
     ]
     cofactors_left: Annotated[int, "so many K were not looked at within the budget", From("left")]
     all_followed: Annotated[
-        bool,
-        "whether all K that become rational at single values were followed, but for those left",
-        From("followed"),
+        bool, "whether all K that become rational at single values were followed, but for those left", From("followed")
     ]
     no_other_rational: Annotated[
         bool,

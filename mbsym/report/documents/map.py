@@ -22,10 +22,7 @@ from mbsym.report.documents.parts import Axis, Number, Verdict
 #: Which condition a curve comes from.
 ORIGINS = tuple(x.value for x in Origin if x not in OF_EQUILIBRIA)
 #: Whether there is a verdict at a place, and if not, why.
-STANDINGS = (
-    "judged",
-    *(Lack.OUTSIDE, Lack.MASSLESS, Lack.UNDEFINED, Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED),
-)
+STANDINGS = ("judged", *(Lack.OUTSIDE, Lack.MASSLESS, Lack.UNDEFINED, Lack.TOO_LARGE, Lack.WITHDRAWN, Lack.NOT_REACHED))
 
 
 def demanded(demands: Sequence[Demanded]) -> list[str]:
@@ -106,9 +103,7 @@ class Place(Part, frozen=True, kw_only=True):
 
     number: Annotated[int, "its place in this list"]
     point: Annotated[
-        list[Number],
-        "the exact point at which it was judged, a coordinate for each axis",
-        From("sample", _coordinates),
+        list[Number], "the exact point at which it was judged, a coordinate for each axis", From("sample", _coordinates)
     ]
     standing: StandingThere
     broken: Broken
@@ -223,9 +218,7 @@ class Picture(Part, frozen=True):
     slices: Annotated[list[int], "by their numbers", From("layers")]
     shown: Annotated[int, "the slice that stands for them"]
     not_looked_at: Annotated[
-        list[int],
-        "slices among them that were not looked at: nothing is said of these single values",
-        From("unseen"),
+        list[int], "slices among them that were not looked at: nothing is said of these single values", From("unseen")
     ]
     low: Annotated[Number, "from this value of the third axis"]
     low_belongs: Annotated[bool, "whether that value belongs to it"]

@@ -100,14 +100,12 @@ def ensemble_json(
     return document(content)
 
 
-def _variation(variation: Variation) -> doc.Varied:
-    if isinstance(variation, Grid):
-        return doc.Varied(
-            name=variation.name, kind="grid", from_=variation.low, to=variation.high, count=variation.count
-        )
-    if variation.kind == "normal":
-        return doc.Varied(name=variation.name, kind="normal", mean=variation.first, deviation=variation.second)
-    return doc.Varied(name=variation.name, kind="uniform", from_=variation.first, to=variation.second)
+def _variation(varied: Variation) -> doc.Varied:
+    if isinstance(varied, Grid):
+        return doc.Varied(name=varied.name, kind="grid", from_=varied.low, to=varied.high, count=varied.count)
+    if varied.kind == "normal":
+        return doc.Varied(name=varied.name, kind="normal", mean=varied.first, deviation=varied.second)
+    return doc.Varied(name=varied.name, kind="uniform", from_=varied.first, to=varied.second)
 
 
 def sentences(ensemble: Ensemble) -> Iterator[tuple[str, str]]:

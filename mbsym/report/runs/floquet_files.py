@@ -47,12 +47,10 @@ def sentences(floquet: Judged) -> Iterator[tuple[str, str]]:
     period = floquet.period.str(15, radius=False)
     text = "[[period]] is a period of the coefficients (2 pi over [[frequency]])"
     yield Message("period"), Message(text, period=period, frequency=floquet.frequency)
-    for multiplier in floquet.multipliers:
-        where = Message(
-            "size between [[least]] and [[most]]", least=f"{multiplier.least:.12g}", most=f"{multiplier.greatest:.12g}"
-        )
-        text = Message("on the unit circle") if multiplier.on_circle else where
-        yield Message("multiplier"), joined((_shown(multiplier), text), "; ")
+    for mu in floquet.multipliers:
+        where = Message("size between [[least]] and [[most]]", least=f"{mu.least:.12g}", most=f"{mu.greatest:.12g}")
+        text = Message("on the unit circle") if mu.on_circle else where
+        yield Message("multiplier"), joined((_shown(mu), text), "; ")
     text = "enclosed in balls with proved remainders, [[steps]]"
     yield Message("how"), Message(text, steps=Counted(floquet.steps, "step"))
 

@@ -109,12 +109,9 @@ def sweep_json(
         singly=totals.singly if judged else None,
         ranges=[
             doc.Range.from_result(
-                column_range,
-                least=finite(column_range.least),
-                mean=finite(column_range.mean),
-                greatest=finite(column_range.greatest),
+                extent, least=finite(extent.least), mean=finite(extent.mean), greatest=finite(extent.greatest)
             )
-            for column_range in totals.ranges()
+            for extent in totals.ranges()
         ],
         dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
         left_out=list(left_out),
@@ -122,12 +119,10 @@ def sweep_json(
     return written(content)
 
 
-def _variation(variation: Variation) -> doc.Swept:
-    if isinstance(variation, Grid):
-        return doc.Swept(
-            name=variation.name, kind="grid", low=variation.low, high=variation.high, count=variation.count
-        )
-    return doc.Swept.from_result(variation, first=variation.first, second=variation.second)
+def _variation(varied: Variation) -> doc.Swept:
+    if isinstance(varied, Grid):
+        return doc.Swept(name=varied.name, kind="grid", low=varied.low, high=varied.high, count=varied.count)
+    return doc.Swept.from_result(varied, first=varied.first, second=varied.second)
 
 
 def _share(share: Share) -> doc.Share:
@@ -158,16 +153,12 @@ def sentences(
         if totals.singly:
             text = "[[points]] decided one by one, exactly"
             yield Message("near borders"), Message(text, points=Counted(totals.singly, "point"))
-    for column_range in totals.ranges():
-        gaps = {
-            "least": f"{column_range.least:.6g}",
-            "most": f"{column_range.greatest:.6g}",
-            "mean": f"{column_range.mean:.6g}",
-        }
+    for extent in totals.ranges():
+        gaps = {"least": f"{extent.least:.6g}", "most": f"{extent.greatest:.6g}", "mean": f"{extent.mean:.6g}"}
         text = Message("[[least]] to [[most]], mean [[mean]]", **gaps)
-        if column_range.missing:
-            text = Message("[[range]]; none at [[points]]", range=text, points=Counted(column_range.missing, "point"))
-        yield column_range.column, text
+        if extent.missing:
+            text = Message("[[range]]; none at [[points]]", range=text, points=Counted(extent.missing, "point"))
+        yield extent.column, text
     yield Message("points"), Message("[[count]] [[how]]", count=f"{totals.points:,}", how=_how(points))
     pairs = [(name, value) for name, value in totals.dependence() if abs(value) >= _WORTH_TELLING]
     if pairs and len(points.names) > 1:

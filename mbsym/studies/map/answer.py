@@ -76,18 +76,16 @@ def _doubts(chart: Map) -> Iterator[str]:
 
 
 def _findings(chart: Map, at: str) -> Iterator[str]:
-    for finding in chart.check.findings if chart.check is not None else ():
+    for flaw in chart.check.findings if chart.check is not None else ():
         what = Message("the whole")
-        if finding.region is not None:
-            what = Message(
-                "box [[number]]" if isinstance(chart, BoxMap) else "region [[number]]", number=finding.region
-            )
-        elif finding.arc is not None:
-            what = Message("arc [[number]]", number=finding.arc)
-        elif finding.corner is not None:
-            what = Message("corner [[number]]", number=finding.corner)
+        if flaw.region is not None:
+            what = Message("box [[number]]" if isinstance(chart, BoxMap) else "region [[number]]", number=flaw.region)
+        elif flaw.arc is not None:
+            what = Message("arc [[number]]", number=flaw.arc)
+        elif flaw.corner is not None:
+            what = Message("corner [[number]]", number=flaw.corner)
         text = "withdrawn, as the map's own check fails in [[what]]: [[mistake]]"
-        message = Message(text, what=what, mistake=finding.mistake)
+        message = Message(text, what=what, mistake=flaw.mistake)
         yield joined((f"{at}:", message)) if at else message
 
 
@@ -152,9 +150,7 @@ def _table(chart: Map) -> Table:
 
 def _pictures(stack: Stack) -> Table:
     heads = (stack.axis.name, Message("shown at"), Message("what is seen, by area"))
-    return aligned(
-        (column(name, fold=True) for name in heads), [_picture(stack, picture) for picture in stack.pictures]
-    )
+    return aligned((column(name, fold=True) for name in heads), [_picture(stack, page) for page in stack.pictures])
 
 
 def _picture(stack: Stack, picture: Picture) -> tuple[str, str, str]:

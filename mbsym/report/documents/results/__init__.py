@@ -125,8 +125,7 @@ class SelfCheck(Part, frozen=True):
     first: Annotated[str, "the first route"]
     second: Annotated[str, "the second route"]
     outcome: Annotated[
-        Literal["exact", "verified numerically", "undecided", "singular", "FAILED"],
-        "how certain it is that they agree",
+        Literal["exact", "verified numerically", "undecided", "singular", "FAILED"], "how certain it is that they agree"
     ]
     detail: Annotated[str, "how they were compared, or what differs, in words", ASIDE]
     states: Annotated[int | None, "at how many states they agree, where they are compared at states"]
