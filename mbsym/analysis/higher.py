@@ -21,6 +21,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import names
 from mbsym.formulas.formula import Formula
 from mbsym.mechanics.loads.kinds import generalized_forces
+from mbsym.mechanics.symmetry import constantly_curved
 from mbsym.mechanics.variables import expressions
 from mbsym.problems import knowledge, stability
 from mbsym.problems.checks import FAILED, NUMERICAL, Check
@@ -101,12 +102,58 @@ def by_energy(analysis: Analysis, values: Mapping[str, Fraction]) -> Verdict | N
         if not balance.law.bounded:
             return None
         scene, manifold = analysis.parameters_scene, on_manifold(analysis)
-        forces = (analysis.energy.force_function.polynomial, *generalized_forces(analysis.held_scene).values())
-        if balance.conserves and all(map(analysis.ring.vanishes, forces)):
-            return coasting(Because.ALIKE) if len(analysis.linearisation.M.polynomials) == 1 else by_geodesics()
+        if balance.conserves and all(map(analysis.ring.vanishes, _acting(analysis))):
+            return coasting(Because.ALIKE) if _alike(analysis, values) else by_geodesics()
         return problem.by_energy(scene, analysis.system, analysis.equilibrium, manifold, balance.conserves, values)
     except (Failure, *NOT_THERE):
         return None
+
+
+def _acting(analysis: Analysis) -> Iterator[Polynomial]:
+    """dU/dq, other forces, and the momenta dT/dq' at q' = 0, whose changes are gyroscopic forces."""
+    ring, names, energy = analysis.ring, analysis.system.coordinates, analysis.energy
+    still = {ring.index("velocity", name): ring.zero for name in names}
+    yield from generalized_forces(analysis.held_scene).values()
+    for name in names:
+        yield ring.derivative(energy.force_function.polynomial, name)
+        yield ring.substitute(ring.velocity_derivative(energy.kinetic_energy.polynomial, name), still)
+
+
+def _alike(analysis: Analysis, values: Mapping[str, Fraction]) -> bool:
+    """Whether all positions that the constraints leave are alike for the kinetic energy; False where it is not known.
+
+    Of T = v.(Y^T M Y) v/2 in independent velocities, with d/dy_k = Y_k . d/dq along the manifold; what vanishes there
+    has the constraints f(q) as factors of its numerator.
+    """
+    if len(analysis.linearisation.M.polynomials) == 1:
+        return True
+    ring, tied, embedded = analysis.ring, analysis.constraints, analysis.equations.embedded
+    if tied.solved is None or tied.in_speeds or embedded is None:
+        return False
+    numbers = {
+        ring.index("parameter", name): ring.number(x) for name, x in values.items() if ring.has("parameter", name)
+    }
+
+    def at(x: Polynomial) -> Polynomial:
+        return ring.reduce(ring.substitute(x, numbers))
+
+    directions = [list(map(at, column)) for column in zip(*tied.solved.transformation.polynomials, strict=True)]
+    rows = [ring.fraction(at(x.polynomial))[0] for x in tied.position if x is not None]
+
+    def derivative(x: Polynomial, k: int) -> Polynomial:
+        return ring.reduce(ring.dot(directions[k], [ring.derivative(x, name) for name in analysis.system.coordinates]))
+
+    def vanishes(x: Polynomial) -> bool:
+        top, _ = ring.fraction(x)
+        for row in rows:
+            top = ring.reduce(divmod(top, row)[1])
+        return ring.vanishes(top)
+
+    metric = [list(map(at, row)) for row in embedded.mass_matrix.polynomials]
+    try:
+        return constantly_curved(ring, metric, derivative, vanishes)
+    except Failure:
+        return False
 
 
 @dataclass(frozen=True)

@@ -125,7 +125,7 @@ class Judge:
             return verdict
         higher_order = self._of_higher_order(values)
         further = None if higher_order is None else self._in_words(higher_order)
-        if further is None and verdict.word.open:
+        if further is None and (verdict.word.open or verdict.because(Because.HIGHER_MINIMUM)):
             return higher.of_one_coordinate(self.analysis, verdict, values)
         if further is None or (verdict.stable and not further.word.asymptotic):
             return verdict

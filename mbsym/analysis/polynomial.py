@@ -326,7 +326,7 @@ def check(analysis: Analysis) -> Check | None:
             formula,
             Certainty.PROVED,
         )
-        for generator, formula in zip(polynomials.found.generators, polynomials.formulas, strict=True)
+        for generator, formula in zip(polynomials.integrals.generators, polynomials.formulas, strict=True)
         if generator.is_new
     ]
     if polynomials.symmetries is not None:

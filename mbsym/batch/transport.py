@@ -24,7 +24,7 @@ def task_text(task: Task) -> str:
 
 def read_task(text: str) -> Task:
     document = json.loads(text)
-    options = document["asked"]
+    options = document["options"]
     problems = None if options["problems"] is None else tuple(options["problems"])
     return Task(
         document["file"],

@@ -8,7 +8,7 @@ the frequency omega, so that lambda^2 + omega^2 divides the characteristic deter
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
@@ -179,21 +179,27 @@ def _same_forces(rest: Rest, length: str, angle: str) -> bool:
 MOST_CURVED = 3
 
 
-def constantly_curved(ring: Ring, metric: Sequence[Sequence[Polynomial]], coordinates: Sequence[str]) -> bool:
+def constantly_curved(
+    ring: Ring,
+    metric: Sequence[Sequence[Polynomial]],
+    derivative: Callable[[Polynomial, int], Polynomial],
+    vanishes: Callable[[Polynomial], bool] | None = None,
+) -> bool:
     """Whether T = g_ij q'_i q'_j/2 is the same at every position and in every direction, as of a plane or a sphere:
 
         R_ijkl = c (g_ik g_jl - g_il g_jk),    c constant,
 
     R_ijkl of the derivatives of g and of the Christoffel symbols [ij, k].  Then displacements that change no equation
     lead to every position near by.  One coordinate is always such (it is a function of the length of its path).
+    ``derivative(x, i)``: by coordinate i, whatever the formulas hold; ``vanishes``: on the positions that are possible.
     """
-    size = range(len(coordinates))
+    vanishes, size = vanishes or ring.vanishes, range(len(metric))
     if len(size) == 1:
         return True
     if len(size) > MOST_CURVED:
         return False
-    slopes = [[[ring.derivative(x, name) for x in row] for row in metric] for name in coordinates]
-    bends = [[[[ring.derivative(x, name) for x in row] for row in slope] for slope in slopes] for name in coordinates]
+    slopes = [[[derivative(x, i) for x in row] for row in metric] for i in size]
+    bends = [[[[derivative(x, i) for x in row] for row in slope] for slope in slopes] for i in size]
     symbols = [[[(slopes[i][j][k] + slopes[j][i][k] - slopes[k][i][j]) / 2 for k in size] for j in size] for i in size]
     whole = determinant(ring, metric)
     inverse = adjugate(metric, partial(determinant, ring))  # times det g
@@ -213,11 +219,11 @@ def constantly_curved(ring: Ring, metric: Sequence[Sequence[Polynomial]], coordi
 
     def same(a: Polynomial, b: Polynomial, c: Polynomial, d: Polynomial) -> bool:
         """Whether a/b = c/d."""
-        return ring.vanishes(ring.reduce(ring.times(a, d) - ring.times(c, b)))
+        return vanishes(ring.reduce(ring.times(a, d) - ring.times(c, b)))
 
     top, bottom = curvature(0, 1, 0, 1), area(0, 1, 0, 1)
     pairs = list(combinations(size, 2))
     if not all(same(curvature(*one, *other), area(*one, *other), top, bottom) for one in pairs for other in pairs):
         return False
     scale = ring.times(whole, bottom)  # c = top/scale
-    return all(same(ring.derivative(top, name), ring.derivative(scale, name), top, scale) for name in coordinates)
+    return all(same(derivative(top, i), derivative(scale, i), top, scale) for i in size)

@@ -228,12 +228,12 @@ def _positions(
     needs = {name: set(ring.dependencies(rates[name], names)) for name in names}
 
     def reached(start: set[str]) -> set[str]:
-        closure, pending = set(start), list(start)
+        found, pending = set(start), list(start)
         while pending:
-            new = needs[pending.pop()] - closure
-            closure |= new
+            new = needs[pending.pop()] - found
+            found |= new
             pending += new
-        return closure
+        return found
 
     start = {name for x in formulas for name in ring.dependencies(x, names)}
     by_themselves = {name for name in form.coordinates if name in needs and name in reached(needs[name])}

@@ -12,7 +12,7 @@ Found are
 * components of the linear and angular momentum in inertial axes that are conserved but are no combination of the
   above: candidates are tried at exact rational states, and proved through multipliers, dI/dt = sum mu_i E_i with
   mu = M^-1 dI/dq', where these are linear in q and q' (found by fitting) or M is small enough to be inverted;
-* of systems that consist of parts which do not know each other, the energy of each;
+* of systems that consist of parts which do not know each other, the energy of each that is no square of momenta;
 * such a momentum less W(q), if the forces that change it are dW/dt: m x' - q B y of a magnetic field, m x' + c x of a
   damper.
 
@@ -46,6 +46,7 @@ from mbsym.algebra.antiderivative import potential
 from mbsym.algebra.certainty import Certainty
 from mbsym.algebra.evaluate import Carrier
 from mbsym.algebra.failures import NOT_THERE, Failure, NotRational
+from mbsym.algebra.kernel import kernel
 from mbsym.algebra.matrices import adjugate, determinant
 from mbsym.algebra.ring import Polynomial, Ring
 from mbsym.algebra.vectors import axis_vector
@@ -117,11 +118,14 @@ def integrals(scene: Scene, energy: Energy, equations: Equations, programs: Prog
     """All first integrals of the kinds above (scene over the ring); ``programs`` is used to rule candidates out."""
     energies = [*_generalised_energy(scene, energy, equations)]
     idle = any(item.name == ENERGY for item in energies)
+    momenta = [*_cyclic_momenta(scene, energy, equations, idle)]
+    constant = {item.of for item in momenta if item.kind == "cyclic momentum"}
+    known = [item.formula.polynomial for item in energies]
     for item in _energies_of_parts(scene, energy, equations):
-        if _is_new(scene.ring, item.formula.polynomial, [x.formula.polynomial for x in energies]):
-            energies.append(item)
-    first_integrals = [*energies, *_cyclic_momenta(scene, energy, equations, idle)]
-    first_integrals = [item for item in first_integrals if varies(scene, item.formula.polynomial)]
+        if _is_new(scene.ring, item.formula.polynomial, known):
+            known.append(item.formula.polynomial)
+            energies += [] if {*item.of.split()} <= constant else [item]  # else a square of momenta
+    first_integrals = [item for item in (*energies, *momenta) if varies(scene, item.formula.polynomial)]
     conserved = _constant_momenta(scene.system, scene.ring, programs)
     first_integrals += _momenta(
         scene, equations, conserved, [item.formula.polynomial for item in first_integrals if item not in energies]
@@ -406,26 +410,12 @@ def _is_new(ring: Ring, formula: Polynomial, others: Sequence[Polynomial]) -> bo
     return is_independent(ring, formula, others)
 
 
-#: Numbers in place of parameters: a combination there, twice, is one with coefficients that depend on parameters.
-_NUMBERS = (101, 10007)
-
-
 def is_independent(ring: Ring, x: Polynomial, others: Sequence[Polynomial]) -> bool:
-    """Whether x is no combination of the others with coefficients in the field of parameters."""
-    if not others:
+    """Whether x is no combination of the others with constant coefficients (a, cos(a), pi), or none that is found."""
+    try:
+        return not others or not any(len(others) in c for c in kernel(ring, [*others, x]))
+    except Failure:
         return True
-    parameters = [k for k, g in enumerate(ring.generators) if g.kind == "parameter" and g.name != "pi"]
-    for first in _NUMBERS:
-        at = {k: ring.number(first + 6 * i) for i, k in enumerate(parameters)}
-        columns = [ring.reduce(ring.substitute(one, at)).to_dict() for one in (*others, x)]
-        monomials = sorted({monomial for column in columns for monomial in column})
-        if not monomials:
-            continue
-        table = fmpq_mat(len(monomials), len(columns), [column.get(m, 0) for m in monomials for column in columns])
-        before = fmpq_mat(len(monomials), len(others), [c.get(m, 0) for m in monomials for c in columns[:-1]])
-        if table.rank() > before.rank():
-            return True
-    return False
 
 
 def is_conserved(scene: Scene, equations: Equations, formula: Polynomial) -> bool | None:

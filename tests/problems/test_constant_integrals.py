@@ -82,3 +82,28 @@ def test_momenta_do_not_carry_the_norm_of_a_quaternion() -> None:
     assert formulas["linear momentum along axis 1"] == "m*x_dot"
     assert formulas["linear momentum along axis 2"] == "m*y_dot"
     assert "norm of e" in formulas
+
+
+FREE = """
+mbsym: 1
+name: free
+parameters: {{m: positive, a: positive, b: positive, c: positive}}
+bodies:
+  - {{name: frame, attached to: 0, mass: 0, rotation: {{axes: [3], angles: ["{angle}"]}}}}
+  - {{name: one, attached to: frame, connection point: ["{x}", y, 0], mass: m, coordinates: [x, y]}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("angle", "x"),
+    [("0", "(a - 2*b + c)*x"), ("a", "x"), ("pi/3", "x"), ("1", "x"), ("0", "pi*x"), ("0", "sqrt(a)*x"), ("0", "x")],
+)
+def test_integrals_of_a_free_particle_are_told_once(angle: str, x: str) -> None:
+    """m x' cos(a) - m y' sin(a) along an inertial axis follows from m x' and m y', as do energies of x and of y."""
+    found = mbsym.loads(FREE.format(angle=angle, x=x), (7,)).integrals
+    assert [(one.kind, one.of) for one in found] == [
+        ("generalised energy", "time"),
+        ("cyclic momentum", "x"),
+        ("cyclic momentum", "y"),
+        ("angular momentum", "3"),
+    ]

@@ -170,3 +170,18 @@ def test_what_vanishes_at_the_values_only_is_no_first_term(b: str, word: Word) -
     found = Analysis(mbsym.loads(text).system, (6,)).stability
     assert found.numerical is not None
     assert found.numerical.word is word
+
+
+@pytest.mark.parametrize("order", [4, 6, 10])
+def test_friction_in_a_flat_well_is_one_word_for_all_values_and_at_those_given(order: int) -> None:
+    """x'' + d x' + k x^(order - 1) = 0: x' = -k x^(order - 1)/d + ... on the centre manifold."""
+    found = mbsym.loads(f"""mbsym: 1
+name: a flat well
+parameters: {{d: positive, k: positive}}
+bodies: [{{name: p, connection point: [x, 0, 0], mass: 1, coordinates: [x]}}]
+loads: [{{potential: k*x**{order}}}, {{rayleigh: d*x_dot**2/2}}]
+motion: {{x: 0}}
+values: {{d: 1, k: 2}}
+""").stability
+    assert found.verdict.word is Word.ASYMPTOTIC
+    assert found.numerical is None or found.numerical.word is Word.ASYMPTOTIC

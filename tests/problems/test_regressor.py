@@ -279,7 +279,7 @@ def test_the_command_writes_what_its_schema_says(tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = CliRunner().invoke(main, ["regressor", str(SHIPPED / "double-pendulum.yaml"), "--out", str(out)])
     assert done.exit_code == 0, done.output
-    assert "6 parameters of 20" in done.stdout
+    assert "6 of 20 parameters" in done.stdout
     data = json.loads((out / "regressor.json").read_text(encoding="utf-8"))
     jsonschema.validate(data, schema("regressor"))
     assert data["base"][0] == {

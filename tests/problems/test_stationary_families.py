@@ -114,7 +114,7 @@ def test_what_has_no_real_points_is_no_set():
 def test_rates_that_say_nothing_are_not_told():
     """On x = x' = 0 of V = (x^2 + 4 y^2)/2 the motion is y'' = -4 y, and not  y' = y'  besides."""
     found = _sets(PLANE.format(rest="loads:\n  - potential: (x**2 + 4*y**2)/2"))
-    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    known = SimpleNamespace(by_problem={10: found}, missing=lambda number: ())
     text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
     assert "On it: y'' = -4 y." in text
     assert "y' = y'" not in text
@@ -146,7 +146,7 @@ def test_a_rest_is_not_left_out_of_what_suffices():
 def test_a_family_without_stationary_points_is_told():
     """x' of a falling point is kept, and its gradient is nowhere zero."""
     found = _sets(PLANE.format(rest="loads:\n  - potential: 3*y"))
-    known = SimpleNamespace(found={10: found}, missing=lambda number: ())
+    known = SimpleNamespace(by_problem={10: found}, missing=lambda number: ())
     text = " ".join(line.text for line in Writer(readable=True).document(section.content(known)))
     assert "K = V0: It has no stationary points for almost all parameters (proved)." in text
 

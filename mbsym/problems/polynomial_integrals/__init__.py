@@ -37,7 +37,7 @@ weights; the integrals themselves are those of Euler, Lagrange, Kovalevskaya and
 Example:
 
     >>> import mbsym
-    >>> found = mbsym.load("systems/clebsch-poisson.yaml").polynomial_integrals.found
+    >>> found = mbsym.load("systems/clebsch-poisson.yaml").polynomial_integrals.integrals
     >>> [(one.weight, one.name) for one in found.generators if one.is_new], found.complete
     ([(2, '')], True)
 """

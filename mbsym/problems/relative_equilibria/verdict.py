@@ -113,8 +113,9 @@ class LinearAtRest:
     @property
     def _alike(self) -> bool:
         """Whether all positions are alike for the kinetic energy."""
+        ring, names = self.rest.ring, self.rest.system.coordinates
         try:
-            return constantly_curved(self.rest.ring, self.matrices[0], self.rest.system.coordinates)
+            return constantly_curved(ring, self.matrices[0], lambda x, i: ring.derivative(x, names[i]))
         except Failure:
             return False
 

@@ -11,7 +11,7 @@ import mbsym
 from mbsym.mechanics.rest import given_values
 from mbsym.problems.relative_equilibria.equilibria import equilibria
 from mbsym.problems.stability.verdict import Verdict
-from mbsym.problems.stability.words import Word
+from mbsym.problems.stability.words import Because, Word
 
 BLOCK = """
 mbsym: 1
@@ -159,15 +159,23 @@ bodies:
         ("x**2 + 2*y**2 = 1", "x: 1, y: 0", Word.STABLE_BUT_CYCLIC),
         ("x**2 + y**2 + z**2 = 1", "x: 0, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
         ("x**2 + 2*y**2 + 3*z**2 = 3", "x: 0, y: 0, z: 1", Word.UNSTABLE),
+        ("x**2 + 4*y**2 = 4", "x: 2, y: 0, z: 0", Word.STABLE_BUT_CYCLIC),
+        ("z + z**3 = x**2", "x: 0, y: 0, z: 0", Word.STABLE_BUT_CYCLIC),
+        ("z + z**3 = x**2 + y**2", "x: 0, y: 0, z: 0", Word.UNSTABLE),
+        ("z**2 = x**2 + 2*y**2", "x: 1, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
+        ("z**2 + 1 = x**2 + y**2", "x: 1, y: 0, z: 0", Word.UNSTABLE),
+        ("(x**2 + y**2 + z**2 + 3)**2 = 16*(x**2 + y**2)", "x: 3, y: 0, z: 0", Word.UNSTABLE),
+        ("b*x**2 + b*y**2 + 2*z**2 = 2", "x: 0, y: 0, z: 1", Word.STABLE_BUT_CYCLIC),
     ],
 )
 def test_no_forces_at_all_but_constraints(relation: str, coordinates: str, word: Word) -> None:
-    """On a curve and on a sphere all places are alike, on an ellipsoid they are not."""
+    """On curves, spheres, cylinders and cones all places are alike, on ellipsoids, hyperboloids, tori they are not."""
     names = [one.partition(":")[0].strip() for one in coordinates.split(",")]
     position = ", ".join([*names, "0"][:3])
     text = f"""
 mbsym: 1
 name: Free
+parameters: {{b: 2}}
 bodies:
   - {{name: one, attached to: 0, connection point: [{position}], mass: 1, coordinates: [{", ".join(names)}]}}
 constraints: [{{relation: {relation}}}]
@@ -176,3 +184,32 @@ motion: {{{coordinates}}}
     found = mbsym.loads(text).stability.numerical
     assert found is not None
     assert found.word is word
+
+
+ROTOR = """
+mbsym: 1
+name: Rotor
+bodies:
+  - {name: rotor, attached to: 0, mass: 1, rotation: {axes: [1, 2], angles: [a, b]}, inertia about: joint,
+     inertia: [1, 1, 1], gyrostatic moment: [0, 0, 5]}
+  - {name: bead, attached to: 0, connection point: [x, y, 0], mass: 1, coordinates: [x, y]}
+constraints: [{relation: x**2 + 4*y**2 = 4}]
+motion: {a: 0, b: 0, x: 2, y: 0}
+"""
+
+
+def test_a_rotor_has_gyroscopic_forces_under_constraints_too() -> None:
+    """They are linear in velocities: at rest nothing is felt of them, and yet no motion is along a geodesic."""
+    found = mbsym.loads(ROTOR).stability.numerical
+    assert found is not None
+    assert "motion along geodesics" not in found.theorems
+    assert not found.because(Because.ALIKE)
+
+
+def test_a_weight_that_does_not_change_its_height_feels_none() -> None:
+    text = ROTOR.replace(", gyrostatic moment: [0, 0, 5]", "").replace(
+        "motion:", "loads: [{uniform gravity: {acceleration: 9, direction: [0, 0, -1]}}]\nmotion:"
+    )
+    found = mbsym.loads(text.replace("[x, y, 0]", "[x, y, 3]")).stability.numerical
+    assert found is not None
+    assert found.because(Because.ALIKE)
