@@ -157,12 +157,11 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, derived: Found) -> str:
-    from mbsym.report.documents.base import written
+    from mbsym.report.documents.base import file_of
     from mbsym.report.documents.expansion import Average
     from mbsym.report.expansion_json import measured_data
 
-    measurement = measured_data(derived.measured)
-    return written(Average.from_result(derived.averaged, system=context.system.name, measured=measurement))
+    return file_of(Average, context.system, derived.averaged, measured=measured_data(derived.measured))
 
 
 STUDY = Study(

@@ -132,10 +132,10 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 
 def as_json(context: Asked, request: Request, trimmed: Trim) -> str:
-    from mbsym.report.documents.base import written
+    from mbsym.report.documents.base import file_of
     from mbsym.report.documents.trim import Trim as Document
 
-    return written(Document.from_result(trimmed, system=context.system.name))
+    return file_of(Document, context.system, trimmed)
 
 
 STUDY = Study("trim", Request, trim.derive, answer, refusal, unfit, as_json, constraints=True, held=False, out=None)

@@ -15,9 +15,8 @@ from mbsym.expressions.message import Counted, Message
 from mbsym.model.system import System
 from mbsym.numerics.ensembles.variation import Grid, Variation
 from mbsym.report.documents import ensemble as doc
-from mbsym.report.documents.base import finite, written
+from mbsym.report.documents.base import file_of, finite
 from mbsym.report.runs.trajectory_csv import header, rows
-from mbsym.source.yaml_writer import meaning
 from mbsym.sweeps.judged import VERDICT
 from mbsym.sweeps.points import Column, Points
 from mbsym.sweeps.statistics import LEVEL, Share, Totals
@@ -93,16 +92,17 @@ def sweep_json(
     """
     random = not points.grids and points.sampling == "random"
     judged = any(column.name == VERDICT.name for column in columns)
-    content = doc.Sweep(
-        system=system.name,
-        description_sha256=meaning(system),
+    return file_of(
+        doc.Sweep,
+        system,
+        totals,
         measure=measure,
         points=points.count,
         table=table,
         varied=[_variation(variation) for variation in points.variations],
         sampling=None if points.grids else points.sampling,
         seed=None if points.grids else points.seed,
-        settings=dict(settings),
+        settings=settings,
         columns=[doc.Column.from_result(column) for column in columns],
         shares=[_share(share) for share in totals.shares(random)] if judged else [],
         stable=_share(totals.stable(random)) if judged else None,
@@ -114,9 +114,8 @@ def sweep_json(
             for extent in totals.ranges()
         ],
         dependence=[doc.Dependence(name=name, value=value) for name, value in totals.dependence()],
-        left_out=list(left_out),
+        left_out=left_out,
     )
-    return written(content)
 
 
 def _variation(varied: Variation) -> doc.Swept:
