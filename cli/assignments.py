@@ -46,9 +46,7 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
         text = " ".join(text.splitlines())
         complaints = Complaints()
         _read(text, system, complaints, expressions, texts_by_name)
-        options.complaints += [
-            render_option(complaint, text, "--set", options.say) for complaint in complaints.sorted()
-        ]
+        options.add("--set", text, *complaints.sorted())
     return Assigned(expressions, texts_by_name)
 
 
@@ -154,7 +152,7 @@ def in_scale(system: System, text: str, options: Options) -> System | None:
 
     text, complaints = " ".join(text.splitlines()), Complaints()
     scaling = read_scaling(text, system, complaints)
-    options.complaints += [render_option(complaint, text, "--scale", options.say) for complaint in complaints.sorted()]
+    options.add("--scale", text, *complaints.sorted())
     try:
         return None if scaling is None else described(system, scaling)
     except Failure as error:
@@ -170,9 +168,7 @@ def contradictions(file: Path, lack: Lack, assigned: Assigned, options: Options)
         if clash.name in assigned.texts:
             assigned.complain(clash.name, clash.code, clash.text, options, clash.hint)
         else:
-            options.complaints.append(
-                render_option(Complaint(clash.code, clash.text, None, clash.hint), "", str(file), options.say)
-            )
+            options.complain(str(file), clash.code, clash.text, clash.hint)
 
 
 def _unread(system: System, assigned: Assigned) -> set[str]:

@@ -11,8 +11,7 @@ import click
 
 from mbsym.problems import NUMBERS, ranges
 from mbsym.studies.study import Exit
-from mbsym_cli.completion import among
-from mbsym_cli.console import asked_width, wrapped
+from mbsym_cli.console import among, asked_width, wrapped
 
 TOPICS = {
     "description": "the keys of a description",

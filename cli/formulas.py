@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe, parse_expression
 from mbsym.expressions.place import Complaints, Span
-from mbsym.source import render_option
 from mbsym.studies.request import Formula, Quantity
 from mbsym_cli.options import MAX_LENGTH, Options
 
@@ -39,9 +38,7 @@ def read_formula(text: str, system: System, what: Kind, formulas: dict[str, Expr
     """Puts a sound formula into ``formulas``; whatever is wrong with it joins the complaints of ``asked``."""
     text, complaints = " ".join(text.splitlines()), Complaints()
     _read(text, system, what, complaints, formulas)
-    options.complaints += [
-        render_option(complaint, text, what.option, options.say) for complaint in complaints.sorted()
-    ]
+    options.add(what.option, text, *complaints.sorted())
 
 
 def _read(text: str, system: System, what: Kind, complaints: Complaints, formulas: dict[str, Expression]) -> None:
@@ -99,5 +96,5 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
     if value is not None and (why := out_of_range(value)):
         span = Span(1, 1, max(1, len(formula)))
         complaints.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
-    options.complaints += [render_option(complaint, formula, option, options.say) for complaint in complaints.sorted()]
+    options.add(option, formula, *complaints.sorted())
     return Quantity(text, None if complaints.errors else value)

@@ -48,17 +48,16 @@ class Options:
         self.complaints: list[str] = []
         self.say: Callable[[str], str] = str  # the language of the description, once it is read
 
-    def add(self, option: str, complaint: Complaint, text: str = "") -> None:
-        """A complaint about an option, with the place in its ``text`` where it has one."""
-        self.complaints.append(render_option(complaint, text, option, self.say))
+    def add(self, option: str, text: str, *complaints: Complaint) -> None:
+        """Complaints about an option, with the place in its ``text`` where they have one."""
+        self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints]
 
     def complain(self, option: str, code: str, message: str, hint: str | None = None) -> None:
-        self.add(option, Complaint(code, message, None, hint))
+        self.add(option, "", Complaint(code, message, None, hint))
 
     def complain_whole(self, option: str, text: str, code: str, message: str, hint: str | None = None) -> None:
         """Of a text as a whole, which is shown."""
-        span = Span(1, 1, max(1, len(text)))
-        self.complaints.append(render_option(Complaint(code, message, span, hint), text, option, self.say))
+        self.add(option, text, Complaint(code, message, Span(1, 1, max(1, len(text))), hint))
 
     def sort(self, options: Sequence[str]) -> None:
         """Complaints in the order of these options, what is not about one of them behind."""
@@ -187,7 +186,7 @@ class Options:
                     complaints.error(
                         "bad-number", within or Message("it is at least [[least]]", least=f"{least:g}"), whole
                     )
-        self.complaints += [render_option(complaint, text, option, self.say) for complaint in complaints.sorted()]
+        self.add(option, text, *complaints.sorted())
         return None if complaints.errors else evaluated
 
     def whole(self, option: str, text: str | None, least: int, most: int, why: str = "") -> int | None:

@@ -204,8 +204,7 @@ def _names(option: str, kind: Names, typed: Any, system: System | None, options:
 def _parsed(option: str, kind: Parsed, text: str, system: System, options: Options) -> Any:
     text, complaints = " ".join(text.splitlines()), Complaints()
     value = kind.read(text, system, complaints)
-    for complaint in complaints.sorted():
-        options.add(option, complaint, text)
+    options.add(option, text, *complaints.sorted())
     return value
 
 

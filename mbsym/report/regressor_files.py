@@ -12,7 +12,7 @@ from mbsym.expressions.message import Message
 from mbsym.expressions.tree import decimal_text
 from mbsym.mechanics.regressor import KINDS, Standard
 from mbsym.mechanics.variables import program_environment
-from mbsym.report.documents import regressor as doc
+from mbsym.report.documents import parameters as doc
 from mbsym.report.documents.base import file_of
 
 if TYPE_CHECKING:

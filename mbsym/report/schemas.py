@@ -57,9 +57,13 @@ _MODULES = {
     "average": "expansion",
     "equilibria_map": "branches",
     "floquet": "orbit",
-    "inverse": "trim",
+    "groups": "parameters",
+    "inverse": "parameters",
     "lyapunov": "orbit",
+    "regressor": "parameters",
     "sweep": "ensemble",
+    "symmetries": "integrals",
+    "trim": "parameters",
 }
 
 _SIMPLE: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean", NoneType: "null"}

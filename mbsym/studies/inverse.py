@@ -85,7 +85,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 def as_json(context: Asked, request: Request, dynamics: InverseDynamics) -> str:
     from mbsym.report.documents.base import file_of
-    from mbsym.report.documents.trim import Inverse
+    from mbsym.report.documents.parameters import Inverse
 
     inputs = zip(dynamics.names, dynamics.inputs, strict=True)
     return file_of(Inverse, context.system, dynamics, inputs=inputs)

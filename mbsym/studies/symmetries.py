@@ -52,7 +52,7 @@ def answer(context: Asked, request: Request, symmetries: Symmetries) -> Answer:
 
 
 def as_json(context: Asked, request: Request, symmetries: Symmetries) -> str:
-    from mbsym.report.documents import symmetries as doc
+    from mbsym.report.documents import integrals as doc
     from mbsym.report.documents.base import file_of
 
     return file_of(doc.Symmetries, context.system, symmetries, values=request.values)

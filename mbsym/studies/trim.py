@@ -133,7 +133,7 @@ def refusal(error: Exception, context: Asked, request: Request) -> Refusal | Non
 
 def as_json(context: Asked, request: Request, trimmed: Trim) -> str:
     from mbsym.report.documents.base import file_of
-    from mbsym.report.documents.trim import Trim as Document
+    from mbsym.report.documents.parameters import Trim as Document
 
     return file_of(Document, context.system, trimmed)
 

@@ -10,8 +10,8 @@ from mbsym.algebra.certainty import Certainty
 from mbsym.expressions.message import Message, joined, worded
 from mbsym.numerics.ledger.entry import NEEDED, NOT_NEEDED, OPEN, SECONDS, Ledger, Measure, Saving
 from mbsym.report.content import Block, Fact, Facts, Graded, Phrase, Subheading, paragraph
+from mbsym.report.documents import results as doc
 from mbsym.report.documents.base import plain
-from mbsym.report.documents.results import ledger as doc
 from mbsym.report.runs.trajectory_csv import text_table
 
 COLUMNS = ("kind", "what", "why", "how", "quantity", "unit", "without", "with", "saved", "at_least", "standing")
