@@ -67,12 +67,8 @@ def _suite(suites: Element, row: Row, summary: Summary) -> dict[str, int]:
             inner = SubElement(element, case.kind, {"message": safe(case.message)})
             if case.kind != "skipped":
                 inner.set("type", "mbsym")
-                inner.text = _lines(case.text or case.message)
+                inner.text = "\n".join(map(safe, (case.text or case.message).split("\n")))
     return numbers
-
-
-def _lines(text: str) -> str:
-    return "\n".join(safe(line) for line in text.split("\n"))
 
 
 def cases(row: Row, strict: bool = False) -> Iterator[Case]:

@@ -154,10 +154,6 @@ def source_of(document: Written, node: Node) -> str:
         return spelled
 
 
-def _items(node: Node) -> tuple[Node, ...]:
-    return node.items if isinstance(node, Sequence) else ()
-
-
 # --- loads, constraints -----------------------------------------------------------------------------------------------
 
 
@@ -176,7 +172,7 @@ def ties(document: Written, tree: Mapping, section: str, owners: dict[str, str] 
     """Loads or constraints: their kinds and the bodies that they name; what acts on a coordinate acts on the body that
     introduces it (``owners``)."""
     nodes = child(tree, section)
-    for index, node in enumerate(_items(nodes) if nodes is not None else ()):
+    for index, node in enumerate(nodes.items if isinstance(nodes, Sequence) else ()):
         start, end = document.extent(node)
         entry = node.entries[0] if isinstance(node, Mapping) and node.entries else None
         kind = "" if entry is None else ALIASES.get(entry.key.text, entry.key.text)

@@ -288,9 +288,5 @@ def block(data: Data, indent: int) -> str:
     """A mapping with an entry a line, from the second line on indented; anything else in one line."""
     if not isinstance(data, dict) or not data:
         return flow(data)
-    lines = [f"{key(name)}: {_inner(value)}" for name, value in data.items()]
+    lines = [f"{key(k)}: {scalar(x, flow=False) if isinstance(x, str) else flow(x)}" for k, x in data.items()]
     return ("\n" + " " * indent).join(lines)
-
-
-def _inner(data: Data) -> str:
-    return scalar(data, flow=False) if isinstance(data, str) else flow(data)

@@ -241,9 +241,5 @@ def _values(system: System) -> Iterator[Block]:
 def accepted_inertias(system: System) -> dict[str, str]:
     """For each body whose inertia is accepted, the inequality that it breaks, as far as the given numbers tell."""
     values = known_values(system)
-    accepted = [body for body in system.bodies if _is_accepted(body)]
+    accepted = [body for body in system.bodies if body.inertia is not None and body.inertia.accepted]
     return {body.name: body_violation(body, values) or "" for body in accepted}
-
-
-def _is_accepted(body: Body) -> bool:
-    return body.inertia is not None and body.inertia.accepted
