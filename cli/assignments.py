@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message
 from mbsym.expressions.parser import ascii_safe, names_apart, parse_expression
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints, Span, in_line
 from mbsym.expressions.tree import CONSTANTS, Expression, Name, names, substitute, walk
 from mbsym.model.system import velocity_name
 from mbsym.source import render_option
@@ -65,7 +66,7 @@ def _read(
     if name in texts_by_name:
         complaints.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
     texts_by_name[name] = text
-    place = _Places(len(left) + 1)
+    place = partial(in_line, offset=len(left) + 1)
     value = parse_expression(right, complaints, place)
     parts = walk(value) if value is not None else names_apart(right, place, complaints.items)
     for node in parts:
@@ -177,16 +178,6 @@ def _unread(system: System, assigned: Assigned) -> set[str]:
     for _ in system.relations:
         unread |= {relation.name for relation in system.relations if names(relation.value) & unread}
     return unread
-
-
-class _Places:
-    """Offsets in the right side to places in the assignment."""
-
-    def __init__(self, offset: int) -> None:
-        self.offset = offset
-
-    def __call__(self, start: int, end: int) -> Span:
-        return Span(1, self.offset + start + 1, max(1, end - start))
 
 
 def _settable(system: System) -> list[str]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING
 
 from mbsym.expressions.message import Message, worded
 from mbsym.expressions.parser import ascii_safe, parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints, Span, in_line
 from mbsym.studies.request import Formula, Quantity
 from mbsym_cli.options import MAX_LENGTH, Options
 
@@ -62,12 +63,8 @@ def _read(text: str, system: System, what: Kind, complaints: Complaints, formula
         complaints.error("unknown-name", Message(words, kind=worded(what.kind), name=ascii_safe(name)), span, near)
     elif name in formulas:
         complaints.error("repeated-name", Message("[[name]] is given twice", name=f"'{name}'"), span)
-    offset, allowed = len(left) + 1, LAW if what is LAWS else MOTION
-
-    def place(start: int, end: int) -> Span:
-        return Span(1, offset + start + 1, max(1, end - start))
-
-    law = read_law(right, system, complaints, place, allowed)
+    place = partial(in_line, offset=len(left) + 1)
+    law = read_law(right, system, complaints, place, LAW if what is LAWS else MOTION)
     if law is not None and not complaints.errors:
         formulas[name] = law
 
@@ -86,7 +83,7 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
     if not formula or len(formula) > MAX_LENGTH:
         options.complain(option, "bad-formula", Message("nothing is said after [[option]]", option=option), anything)
         return Quantity(text)
-    value = parse_expression(formula, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    value = parse_expression(formula, complaints)
     for node in walk(value) if value is not None and system is not None else ():
         if isinstance(node, Name) and node.name not in {*known, *CONSTANTS} and node.span is not None:
             hint = did_you_mean(node.name, [*known, *kind.words]) or anything

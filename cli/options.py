@@ -159,7 +159,7 @@ class Options:
         if len(text) > MAX_LENGTH:
             complaints.error("bad-number", "this number is too long")
         else:
-            value = parse_expression(text, complaints, place_in, named=False)
+            value = parse_expression(text, complaints, named=False)
         if value is not None:
             for node in walk(value):
                 if isinstance(node, Name) and node.name not in CONSTANTS and node.span is not None:
@@ -268,7 +268,3 @@ def identity_of(path: Path) -> str:
         return os.path.realpath(path)
     except (OSError, ValueError):  # the current folder is gone; a name with a NUL
         return str(path)
-
-
-def place_in(start: int, end: int) -> Span:
-    return Span(1, start + 1, max(1, end - start))

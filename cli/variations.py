@@ -106,7 +106,7 @@ def _number(text: str, option: str, motion: Scenario | None, options: Options) -
     from mbsym.numerics.scenario import exact
 
     complaints, whole = Complaints(), Span(1, 1, max(1, len(text)))
-    value = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    value = parse_expression(text, complaints)
     known = dict(motion.parameters) if motion is not None else {}
     evaluated = None
     if value is not None and not complaints.errors:
@@ -208,7 +208,7 @@ def read_rational(text: str, option: str, options: Options) -> Fraction | None:
     if len(text) > MAX_LENGTH:
         complaints.error("bad-number", "this number is too long")
     else:
-        parsed = parse_expression(text, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+        parsed = parse_expression(text, complaints)
         if parsed is not None and not complaints.errors:
             value = rational(parsed)
             if value is None:

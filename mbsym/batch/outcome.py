@@ -234,17 +234,8 @@ def findings(summary: Summary) -> tuple[Finding, ...]:
 
 
 def _of(row: Row) -> Iterator[Finding]:
-    for complaint in row.complaints:
-        yield Finding(
-            row.file,
-            complaint.code,
-            complaint.message,
-            complaint.severity,
-            complaint.line,
-            complaint.column,
-            complaint.length or 1,
-            complaint.hint,
-        )
+    for x in row.complaints:
+        yield Finding(row.file, x.code, x.message, x.severity, x.line, x.column, x.length or 1, x.hint)
     for check in row.checks:
         if check.failed:
             yield Finding(row.file, "self-check-failed", f"self-check failed: {check.name}: {check.detail}")

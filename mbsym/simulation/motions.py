@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaints, Span
+from mbsym.expressions.place import Complaints
 from mbsym.expressions.tree import Expression, names
 from mbsym.model.system import System
 from mbsym.numerics.dynamics import Dynamics
@@ -108,7 +108,7 @@ def gradient_of(
 ) -> Gradient:
     """See ``mbsym.numerics.orbits.variational``; raises ValueError for what cannot be read or differentiated by."""
     complaints = Complaints()
-    tree = parse_expression(functional, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    tree = parse_expression(functional, complaints)
     known = {*system.coordinates, *system.velocities, *system.parameter_names, "pi"}
     wrong = [item.message for item in complaints.items]
     wrong += [f"unknown name {name}" for name in sorted((names(tree) if tree is not None else set()) - known)]

@@ -21,7 +21,7 @@ from mbsym.editing.document.written import (
 )
 from mbsym.expressions.angles import angle_name
 from mbsym.expressions.parser import parse_expression
-from mbsym.expressions.place import Complaint, Complaints, Span
+from mbsym.expressions.place import Complaint, Complaints
 from mbsym.expressions.rates import velocity_name
 from mbsym.expressions.tree import ONE, Derivation, Expression, Name, names, text
 from mbsym.formulas.mathml import MathNames, row, table
@@ -65,7 +65,7 @@ def look(text: str, name: str) -> Json:
 def formula(source: str) -> Json:
     """A formula as it is typed: ``{"mathml": ...}``, or ``{"complaint": ...}`` with offsets in ``source``."""
     complaints = Complaints()
-    tree = parse_expression(source, complaints, lambda start, end: Span(1, start + 1, max(1, end - start)))
+    tree = parse_expression(source, complaints)
     if tree is not None and not complaints.errors:
         return {"mathml": math(content(tree))}
     complaint = next(iter(complaints.errors), Complaint("syntax", "this is no formula"))

@@ -182,14 +182,17 @@ class SoftOrHard(Part, frozen=True):
     ]
 
 
+SoftOrHardThere = Annotated[
+    SoftOrHard | UnsetType | None,
+    "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
+    "elsewhere, or where that was not asked",
+]
+
+
 class Arc(Place, frozen=True, kw_only=True):
     """an arc"""
 
-    soft_or_hard: Annotated[
-        SoftOrHard | UnsetType | None,
-        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
-        "elsewhere, or where that was not asked",
-    ] = UNSET
+    soft_or_hard: SoftOrHardThere = UNSET
     curves: Annotated[list[int], "the curves that it is part of"]
     regions: Annotated[
         list[int | None],
@@ -202,11 +205,7 @@ class Arc(Place, frozen=True, kw_only=True):
 class Corner(Place, frozen=True, kw_only=True):
     """a corner"""
 
-    soft_or_hard: Annotated[
-        SoftOrHard | UnsetType | None,
-        "where a pair of roots is imaginary and none to the right: what terms of third order decide; nothing "
-        "elsewhere, or where that was not asked",
-    ] = UNSET
+    soft_or_hard: SoftOrHardThere = UNSET
     curves: Annotated[list[int], "the curves through it"]
     arcs: Annotated[list[int], "the arcs that meet there"]
     kind: Annotated[str, words("crossing", "singular", "isolated", "edge", "zero"), "what it is"]
