@@ -18,23 +18,12 @@ from mbsym.maps.slices import Stack
 from mbsym.model.system import System
 from mbsym.report.language import Language
 from mbsym.report.latex.labels import prefix_of
+from mbsym.report.latex.writer import spelled
 from mbsym.report.maps.figure import lettered, mark_name, marks, page_names, panels
 from mbsym.report.maps.words import INTERRUPTED, border_words, critical_words, percent, rational_text, stem
 
 #: Longer polynomials are told by their degrees and number of terms.
 MOST_TERMS = 14
-
-_ESCAPED = {
-    "_": r"\_",
-    "#": r"\#",
-    "%": r"\%",
-    "&": r"\&",
-    "$": r"\$",
-    "{": r"\{",
-    "}": r"\}",
-    "\\": r"\textbackslash{}",
-}
-_ESCAPED |= {"<": r"\textless{}", ">": r"\textgreater{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}"}
 
 _HEADS = {
     Of.STABILITY: "Stability of",
@@ -179,4 +168,4 @@ def equation(p: Any, names: LatexNames, language: Language, file: str) -> str:
 
 def escaped(plain: str) -> str:
     """As LaTeX."""
-    return "".join(_ESCAPED.get(c, c) for c in plain)
+    return "".join(map(spelled, plain))

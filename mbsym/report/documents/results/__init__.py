@@ -183,7 +183,7 @@ class Measure(Part, frozen=True):
     quantity: Annotated[str, "what is measured"]
     unit: Annotated[str, "its unit"]
     without: Annotated[float, "without the saving"]
-    with_: Annotated[float, "with it"]
+    with_: Annotated[float, "with it", From("taken")]
     at_least: Annotated[bool, "whether the number without is a lower bound"]
 
 
@@ -208,7 +208,7 @@ class Ledger(Part, frozen=True):
     """what was left out of the model and what that saved (mbsym run --ledger)"""
 
     savings: Annotated[list[Saving], "savings"]
-    not_measured: Annotated[list[str], "what was not measured, in words"]
+    not_measured: Annotated[list[str], "what was not measured, in words", From("unmeasured")]
 
 
 class SelfCheck(Part, frozen=True):
