@@ -23,13 +23,38 @@ TOPICS = {
 }
 
 
+#: What conditions of problem 6 are called, beside the letters of coefficients, a0, a1, ... or v0, v2, ...
+CONDITIONS = {
+    "discriminant": (
+        "of the characteristic polynomial in x = lambda^2, v_2n^(2n-2) prod (x_i - x_j)^2 over its roots: zero where "
+        "two frequencies are equal. All x are real, negative and simple, which gives n frequencies, where it, the "
+        "subdiscriminants and all coefficients are positive"
+    ),
+    "subdiscriminant": (
+        "the number k is v_2n^(2k-2) times the sum of prod (x_i - x_j)^2 over all choices of k roots x = lambda^2 of "
+        "the characteristic polynomial; all roots are real and simple where all of them and the discriminant are "
+        "positive"
+    ),
+    "Hurwitz minor": (
+        "the leading minor of order k of the matrix of Hurwitz of the characteristic polynomial a_n lambda^n + ... + "
+        "a0. All real parts are negative where every coefficient and every second minor are positive (Lienard and "
+        "Chipart)"
+    ),
+    "minor": (
+        "the number k of a matrix is the determinant of its first k rows and columns; a symmetric matrix is positive "
+        "definite where all of them are positive (Sylvester)"
+    ),
+}
+
+
 @click.command("explain")
 @click.argument("topic", nargs=-1, shell_complete=among(lambda: [*map(str, NUMBERS), *TOPICS]))
 def command(topic: tuple[str, ...]) -> None:
     """Print what problem TOPIC (a number) does and the formula it uses; without TOPIC, the list of problems and topics.
 
     The topics description, loads, constraints, expressions, abbreviations and claims tell what may stand in a
-    description.  TOPIC may also be a command, a verdict, a theorem, a key or kind of a description.
+    description.  TOPIC may also be a command, a verdict, a theorem, a condition, a key or kind of a
+    description.
 
     \b
     Examples:
@@ -54,7 +79,9 @@ def command(topic: tuple[str, ...]) -> None:
         near = _near(word)
         known = f"did you mean {' or '.join(near)}?" if near else f"problems are numbered {ranges()}"
         known += "" if near else f"; topics are {', '.join(TOPICS)}"
-        message = f"nothing is called {word}: no problem, topic, command, verdict, theorem, key or kind; {known}"
+        message = (
+            f"nothing is called {word}: no problem, topic, command, verdict, theorem, condition, key or kind; {known}"
+        )
         click.echo(message, err=True)
         sys.exit(Exit.BAD_INPUT)
 
@@ -68,7 +95,7 @@ def explanations(word: str) -> list[str]:
         return [_topic(word)]
     if word.isdigit() and int(word) in PROBLEMS:
         return [PROBLEMS[int(word)].explanation]
-    return [*_command(word), *_verdict(word), *_theorem(word), *meanings(word)]
+    return [*_command(word), *_verdict(word), *_theorem(word), *_condition(word), *meanings(word)]
 
 
 def _as_known(word: str) -> str:
@@ -89,7 +116,7 @@ def known_words() -> list[str]:
     from mbsym_cli.main import COMMANDS
 
     theorems = [*(theorem.name for theorem in THEOREMS), *(order.value for order in HigherOrder if order)]
-    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(word.value for word in Word), *theorems, *words()]))
+    return list(dict.fromkeys([*TOPICS, *COMMANDS, *(word.value for word in Word), *theorems, *CONDITIONS, *words()]))
 
 
 def _command(word: str) -> Iterator[str]:
@@ -157,6 +184,12 @@ def _theorem(word: str) -> Iterator[str]:
             yield f"{theorem.name}, problem 6: {gives}, where{needs}"
     if any(order and order.value.casefold() == word.casefold() for order in HigherOrder):
         yield "A theorem of problem 11: mbsym explain 11"
+
+
+def _condition(word: str) -> Iterator[str]:
+    """What a condition of problem 6 is called after."""
+    if word in CONDITIONS:
+        yield f"A condition of problem 6: {CONDITIONS[word]}."
 
 
 def _narrowed(text: str) -> str:

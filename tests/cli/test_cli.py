@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from mbsym import loads
+from mbsym import load, loads
 from mbsym.analysis import PROBLEMS, Analysis, Derived
 from mbsym.expressions.tree import FUNCTIONS
 from mbsym.model.claims import CLAIMS
@@ -294,6 +294,15 @@ def test_explain_knows_every_command_verdict_theorem_and_key() -> None:
     assert mbsym("explain", "STABLE").stdout == mbsym("explain", "stable").stdout != ""
     assert mbsym("explain", "problem", "6").stdout == mbsym("explain", "6").stdout != ""
     assert "did you mean Arnold-Moser" in mbsym("explain", "moser").stderr
+
+
+@pytest.mark.parametrize("name", ["satellite", "ziegler-damped", "bead-on-hoop", "ziegler"])
+def test_explain_knows_what_conditions_are_called(name: str) -> None:
+    """Letters of coefficients and of quantities apart, which are told beside the conditions."""
+    parts = load(SYSTEMS / f"{name}.yaml").stability.subsystems
+    labels = [str(requirement.label) for part in parts for requirement in part.theory.requirements]
+    called = {re.sub(r" (of|[0-9]+).*", "", label) for label in labels}
+    assert {word for word in called if not re.fullmatch(r"[a-z][0-9]*", word)} <= set(known_words())
 
 
 @pytest.mark.parametrize("topic", TOPICS)

@@ -87,7 +87,7 @@ def test_a_pendulum_in_two_coordinates_oscillates_as_one() -> None:
     """x = l sin(theta): the rate is w (1 - theta_max^2/16), theta_max = A/l but for higher orders."""
     system = mbsym.loads(PENDULUM, (3,)).system
     wave = oscillating(Analysis(system), 2)
-    assert str(wave.formula(wave.found.corrections[1])) == "-amplitude**2/(16*l**2)"
+    assert str(wave.formula(wave.oscillation.corrections[1])) == "-amplitude**2/(16*l**2)"
     orders = measured_orders(system, wave).orders
     assert min(x for x in orders if x is not None) > 2.9  # of eps^3, against runs that the constraint keeps
 
@@ -101,8 +101,8 @@ def test_oscillations_of_rolling_wheels_are_those_without_them() -> None:
         "loads: [potential: k*x**2/2 + b*x**4/4]\nconstraints: [relation: x + r*phi = 0]\nmotion: {x: 0, phi: 0}\n"
     )
     wave = oscillating(mbsym.loads(text, (3,)).in_free_coordinates, 2)
-    assert str(wave.formula(wave.found.frequency)) == "sqrt(6*m*k)/(3*m)"
-    assert str(wave.formula(wave.found.corrections[1])) == "3*b*amplitude**2/(8*k)"
+    assert str(wave.formula(wave.oscillation.frequency)) == "sqrt(6*m*k)/(3*m)"
+    assert str(wave.formula(wave.oscillation.corrections[1])) == "3*b*amplitude**2/(8*k)"
 
 
 #: A rod on a pivot that is shaken along the vertical, with a gear of moment J that turns r times as much.
@@ -125,7 +125,7 @@ motion: {theta: 0, psi: 0}
 def test_what_is_shaken_carries_its_gears() -> None:
     """V = (m l h nu sin(theta))^2/(4 (m l^2 + J r^2)), but for a constant."""
     analysis = mbsym.loads(SHAKEN, (12,))
-    found = analysis.small_parameters.averaged[0].found
+    found = analysis.small_parameters.averaged[0].averaged
     assert found is not None
     assert str(found.vibrational) == "-m**2*l**2*h**2*nu**2*cos(theta)**2/(4*(m*l**2 + r**2*J))"
     with pytest.raises(Failure):  # the averages of the open tree would be others

@@ -104,8 +104,12 @@ def test_no_gap_is_suspected_where_the_energy_alone_is_definite():
 
 
 def test_what_has_no_real_points_is_no_set():
-    """grad of (y' x - x' y) + lambda (x' y' + k x y) vanishes off the rest where 1 + k lambda^2 = 0: nowhere."""
-    found = _sets(PLANE.format(rest="parameters: {k: positive}\nloads:\n  - potential: k*(x**2 + y**2)/2"))
+    """grad of (y' x - x' y) + lambda (x' y' + k x y) vanishes off the rest where 1 + k lambda^2 = 0: nowhere.
+
+    In skew coordinates, so that the second integral is none of the energies of x and of y.
+    """
+    loads = "parameters: {k: positive}\nloads:\n  - potential: k*((x + y)**2 + y**2)/2"
+    found = _sets(PLANE.replace("[x, y, 0]", "[x + y, y, 0]").format(rest=loads))
     (family,) = [one for one in found.families if len(one.integrals) == 2]
     (rest,) = family.sets
     assert rest.kind is Kind.STEADY
