@@ -52,7 +52,7 @@ def assignments(texts: Sequence[str], system: System, options: Options) -> Assig
 
 
 def _read(
-    text: str, system: System, complaints: Complaints, expressions: dict[str, Expression], texts_by_name: dict[str, str]
+    text: str, system: System, wrong: Complaints, expressions: dict[str, Expression], texts_by_name: dict[str, str]
 ) -> None:
     left, equals, right = text.partition("=")
     name, blanks = left.strip(), len(left) - len(left.lstrip())
@@ -60,22 +60,20 @@ def _read(
     if not equals or not name or len(text) > MAX_LENGTH:
         shown = Message("[[text]] gives no value", text=ascii_safe(text))
         reason = shown if len(text) <= MAX_LENGTH else "this assignment is too long"
-        complaints.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
+        wrong.error("bad-assignment", reason, None, "write name=value, for example l=3/2")
         return
-    known = _check_target(name, span, system, complaints)
+    known = _check_target(name, span, system, wrong)
     if name in texts_by_name:
-        complaints.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
+        wrong.error("repeated-name", Message("[[name]] is set twice", name=f"'{name}'"), span)
     texts_by_name[name] = text
     place = partial(in_line, offset=len(left) + 1)
-    value = parse_expression(right, complaints, place)
-    parts = walk(value) if value is not None else names_apart(right, place, complaints.items)
+    value = parse_expression(right, wrong, place)
+    parts = walk(value) if value is not None else names_apart(right, place, wrong.items)
     for node in parts:
         if isinstance(node, Name) and node.name not in (*system.parameter_names, *CONSTANTS) and node.span is not None:
             hint = did_you_mean(node.name, system.parameter_names) or "a value is made of numbers, pi and parameters"
-            complaints.error(
-                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
-            )
-    if known and value is not None and not complaints.errors:
+            wrong.error("unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint)
+    if known and value is not None and not wrong.errors:
         expressions[name] = value
 
 
@@ -184,7 +182,7 @@ def _settable(system: System) -> list[str]:
     return [*system.parameter_names, *system.coordinates, *system.velocities, *system.variables]
 
 
-def _check_target(name: str, span: Span, system: System, complaints: Complaints) -> bool:
+def _check_target(name: str, span: Span, system: System, wrong: Complaints) -> bool:
     if name in _settable(system):
         return True
     for item in system.prescribed:
@@ -192,7 +190,7 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
             from mbsym.expressions.tree import text
 
             rate = Message("its rate is [[rate]]: set what that is made of", rate=text(item.rate))
-            complaints.error(
+            wrong.error(
                 "misplaced-name",
                 Message("'[[name]]' is a prescribed motion and has no value to set", name=name),
                 span,
@@ -200,20 +198,18 @@ def _check_target(name: str, span: Span, system: System, complaints: Complaints)
             )
             return False
     if name in (item.name for item in system.notation):
-        complaints.error(
+        wrong.error(
             "misplaced-name", Message("'[[name]]' is notation: it follows from the parameters", name=name), span
         )
         return False
     if name in system.input_names:
         message = Message("'mbsym simulate --input [[name]]=...' says what it is along a motion", name=name)
-        complaints.error(
+        wrong.error(
             "misplaced-name", Message("'[[name]]' is an input and has no value to set", name=name), span, message
         )
         return False
     hint = did_you_mean(name, _settable(system)) or listed("these have values", _settable(system))
-    complaints.error(
-        "unknown-name", Message("there is nothing called [[name]] to set", name=ascii_safe(name)), span, hint
-    )
+    wrong.error("unknown-name", Message("there is nothing called [[name]] to set", name=ascii_safe(name)), span, hint)
     return False
 
 

@@ -78,20 +78,18 @@ def read_quantity(option: str, text: str, kind: Formula, system: System | None, 
     if text in kind.words:
         return Quantity(text)
     known = () if system is None else kind.names(system, text)
-    formula, complaints = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
+    formula, wrong = " ".join(text.removeprefix(kind.prefix).split()), Complaints()
     anything = Message("[[words]], or a formula", words=", ".join(kind.words))
     if not formula or len(formula) > MAX_LENGTH:
         options.complain(option, "bad-formula", Message("nothing is said after [[option]]", option=option), anything)
         return Quantity(text)
-    value = parse_expression(formula, complaints)
+    value = parse_expression(formula, wrong)
     for node in walk(value) if value is not None and system is not None else ():
         if isinstance(node, Name) and node.name not in {*known, *CONSTANTS} and node.span is not None:
             hint = did_you_mean(node.name, [*known, *kind.words]) or anything
-            complaints.error(
-                "unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint
-            )
+            wrong.error("unknown-name", Message("unknown name [[name]]", name=ascii_safe(node.name)), node.span, hint)
     if value is not None and (why := out_of_range(value)):
         span = Span(1, 1, max(1, len(formula)))
-        complaints.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
-    options.add(option, formula, *complaints.sorted())
-    return Quantity(text, None if complaints.errors else value)
+        wrong.error("no-number", Message("nothing can be computed with this number: [[why]]", why=why), span)
+    options.add(option, formula, *wrong.sorted())
+    return Quantity(text, None if wrong.errors else value)

@@ -749,9 +749,7 @@ class _Paper:
         name, value = guide.coordinate, self.state[guide.coordinate]
         middle_of = combined([1 / (len(curve) - 1)] * (len(curve) - 1), curve[:-1])
         radii = [dist(x, middle_of) for x in curve]
-        angle = any(
-            coordinate.name == name and coordinate.kind is Measure.ANGLE for coordinate in self.picture.coordinates
-        )
+        angle = any(x.name == name and x.kind is Measure.ANGLE for x in self.picture.coordinates)
         if not angle or max(radii) - min(radii) > 1e-6 * max(radii) or abs(value) < 0.05 or abs(value) > 2 * pi:
             return
         body = self.bodies[guide.body]

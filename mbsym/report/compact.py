@@ -124,10 +124,8 @@ def _formulas(result: Any) -> list[Formula] | None:
     """The formulas of a result as a report prints them; None where it has none."""
     match result:
         case Kinematics():
-            vectors = (
-                v for x in result.bodies for v in (x.angular_velocity, x.velocity_origin, x.velocity_mass_centre)
-            )
-            return [x for v in vectors for x in v]
+            vectors = ((x.angular_velocity, x.velocity_origin, x.velocity_mass_centre) for x in result.bodies)
+            return [entry for body in vectors for vector in body for entry in vector]
         case Energy():
             return [*result.A1, result.A0, result.force_function]
         case Equations():

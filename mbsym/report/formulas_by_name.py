@@ -174,12 +174,10 @@ def _moving(ring: Ring, rate: str) -> Formula:
 
 
 def _motion(analysis: Analysis) -> Iterator[Line]:
-    equilibrium = analysis.equilibrium
-    if equilibrium.satisfied:
+    rest = analysis.equilibrium
+    if rest.satisfied:
         yield Line("", Message("the unperturbed motion satisfies the equations of motion identically"))
-    yield from (
-        Line("", x, "!=" if equilibrium.impossible else "=") for x in equilibrium.impossible or equilibrium.conditions
-    )
+    yield from (Line("", x, "!=" if rest.impossible else "=") for x in rest.impossible or rest.conditions)
 
 
 def _matrix(name: str) -> Callable[[Analysis], Iterator[Line]]:

@@ -66,10 +66,8 @@ def _branches(system: System, branches: Branches, language: Language) -> str:
         stable = f"{language.say('of them stable')} {counted.stable}"
         stable += f", {language.say('undecided')} {counted.undecided}" if counted.undecided else ""
         numbers.append(rf"\item ${low} < {name} < {high}$: {counted.count}, {stable}{doubt}")
-    described = [
-        (cell, words) for cell in branches.criticals if (words := language.say(critical_words(branches, cell)))
-    ]
-    critical = [rf"\item ${name} = {number_tex(cell.sample)}$: {escaped(words)}" for cell, words in described]
+    items = [(cell, words) for cell in branches.criticals if (words := language.say(critical_words(branches, cell)))]
+    critical = [rf"\item ${name} = {number_tex(cell.sample)}$: {escaped(words)}" for cell, words in items]
     lines = figure_lines(system, "branches", caption, "equilibria --vary")
     lines += listed(language.say("Numbers of equilibria:"), numbers)
     return "\n".join([*lines, *listed(language.say("Critical values:"), critical)]) + "\n"

@@ -265,9 +265,8 @@ def _stability(stability: Stability, results: Results) -> Iterator[Inline]:
         yield from lines[1:]
     yield Phrase(("(", Said("of each group of coordinates while the others keep to the unperturbed motion"), ")"))
     reasons = (cause for part in stability.subsystems for cause in part.theory.verdict.reasons)
-    for reason in dict.fromkeys(
-        cause for cause in reasons if cause.code is Because.OTHER_ANGLES
-    ):  # the names mean others
+    # The names mean others.
+    for reason in dict.fromkeys(cause for cause in reasons if cause.code is Because.OTHER_ANGLES):
         yield worded(sentence(reason))
 
 
